@@ -3,23 +3,30 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexstage.base.finding import DesignError
+from flexstage.base.number import stack
+from flexstage.mechanism.address import addresses, assign, get
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Normal, Pose
+from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads
+from flexstage.mechanism.store.patch import patch
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Block, Body, Imported, Inertia
 from flexstage.parts.cross_hinge import CrossHinge
-from flexstage.parts.freedom import Freedom
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
-from flexstage.spatial.frame import mirror
+from flexstage.spatial.frame import axes, mirror
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import mechanisms, moved, turns
@@ -198,3 +205,139 @@ def test_a_compound_is_mirrored_member_by_member():
     one, other = (comparable(model, [name]) for name in ("A/arm", "B/arm"))
     assert same(other, [mirror(1) @ matrix @ mirror(1) for matrix in one], 1e-12)
     assert not same(other, one, 1e-6)
+
+
+def likened():
+    """A stage on two pairs of leaves, the outer like the inner but for a shorter lower leaf, a heavier foot and a leaf elsewhere."""
+    inner = Unit(
+        {"foot": Body(mass=0.1, inertia=Inertia(1e-4, 1e-4, 1e-4)), "shoe": Body(mass=0.05, inertia=Inertia(1e-5, 1e-5, 1e-5))},
+        {
+            "upper": Link((GROUND, "foot"), "leaf", (0.0, 0.05, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+            "lower": Link(("foot", "shoe"), "leaf", (0.0, 0.02, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+            "weld": Link(("shoe", PLATFORM), "leaf", (0.0, 0.0, 0.01), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
+        },
+    )
+    lower = Link(("foot", "shoe"), "short", (0.001, 0.02, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+    outer = Unit({"foot": Body(mass=0.2, inertia=Inertia(2e-4, 1e-4, 1e-4))}, {"lower": lower}, like="inner")
+    leaf = Leaf("metal", length=0.03, thickness=0.0005, width=0.02)
+    return Mechanism(
+        "likened",
+        materials={"metal": Material(2e11, 0.3, 7800.0)},
+        parts={"leaf": leaf, "short": replace(leaf, length=0.02)},
+        bodies={PLATFORM: Body(mass=1.0, inertia=Inertia(1e-3, 1e-3, 1e-3))},
+        units={"outer": outer, "inner": inner},
+        place={"A": Placement("inner", Pose((0.05, 0.0, 0.0))), "B": Placement("outer", Pose((-0.05, 0.0, 0.0)))},
+        changes={
+            "inner/upper.thickness": 0.0006,
+            "outer/upper.at.z": 0.002,
+            "outer/weld.thickness": 0.0004,
+            "inner/weld.thickness": 0.0003,
+        },
+    )
+
+
+def test_a_unit_like_another_is_the_unit_drawn_out():
+    stage = likened()
+    assert not check(stage)
+    inner, outer = stage.units["inner"], stage.units["outer"]
+    links = {**inner.links, **outer.links}
+    links["upper"] = replace(links["upper"], at=(0.0, 0.05, 0.002))
+    whole = Unit({**inner.bodies, **outer.bodies}, links)
+    changes = {key: value for key, value in stage.changes.items() if key != "outer/upper.at.z"} | {"outer/upper.thickness": 0.0006}
+    by_hand = replace(stage, units={"outer": whole, "inner": inner}, changes=changes)
+    names = [PLATFORM, "A/foot", "A/shoe", "B/foot", "B/shoe"]
+    assert same(comparable(lumped(stage), names), comparable(lumped(by_hand), names), 1e-13)
+
+
+def test_a_unit_like_another_follows_it_and_files_keep_the_relation():
+    stage = likened()
+    assert loads(dumps(stage)) == stage
+    text = dumps(stage, {"units.outer": "as the inner one"})
+    changed = patch(
+        text, {"inner/lower.at.x": "3 mm", "units.inner.links.weld.at.y": "1 mm", "outer/weld.at.z": "4 mm", "B/weld.length": "31 mm"}
+    )
+    assert "# as the inner one" in changed
+    found = expand(loads(changed)).links
+    assert loads(changed).units["outer"].like == "inner"
+    assert [found[name].frame.position.round(9).tolist() for name in ("A/weld", "B/weld")] == [[0.05, 0.001, 0.01], [-0.05, 0.001, 0.004]]
+    assert found["B/lower"].frame.position[0] == -0.049  # drawn by itself
+    assert [found[name].part.length for name in ("A/weld", "B/weld")] == [0.03, 0.031]
+    assert "outer/weld.at.z" in addresses(loads(changed))
+    assert np.allclose(lumped(restrict(stage, {"outer/upper": (ALL, ())})).stiffness_matrix, lumped(stage).stiffness_matrix, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("like", "said"),
+    [
+        ("iner", 'units.outer.like: there is no unit "iner". The nearest name is inner'),
+        ("outer", "units.outer.like: it is like itself."),
+    ],
+)
+def test_units_like_nothing_or_themselves_are_refused(like, said):
+    stage = likened()
+    bad = replace(stage, units={**stage.units, "outer": replace(stage.units["outer"], like=like)}, changes={})
+    assert any(said in str(finding) for finding in check(bad))
+    circle = replace(stage, units={**stage.units, "inner": replace(stage.units["inner"], like="outer")})
+    assert sum("like one another in a circle" in str(finding) for finding in check(circle)) == 2
+
+
+def test_bodies_of_the_other_unit_are_addressed_there():
+    assert get(likened(), "outer/foot.mass") == 0.2
+    with pytest.raises(DesignError, match=r'takes its body "shoe" from inner\. Address inner/shoe'):
+        get(likened(), "outer/shoe.mass")
+
+
+@examples(15, 300)
+@given(mechanisms())
+def test_a_link_may_be_given_by_its_ends(mechanism):
+    def by_ends(link):
+        half = 0.5 * np.real(getattr(mechanism.parts[link.part], "span", 0.02)) * axes(link.along)[:, 0]
+        ends = {"start": tuple((stack(link.at) - half).tolist()), "end": tuple((stack(link.at) + half).tolist())}
+        return replace(link, at=None, along=None, **ends)
+
+    stage = replace(mechanism, links={name: by_ends(link) for name, link in mechanism.links.items()})
+    assert not check(stage)
+    assert loads(dumps(stage)) == stage
+    names = list(mechanism.bodies)
+    assert same(comparable(lumped(stage), names), comparable(lumped(mechanism), names), 1e-7)
+
+
+def strut(**place):
+    return Mechanism(
+        "strut",
+        materials={"metal": Material(2e11, 0.3, 7800.0)},
+        parts={"wire": Rod("metal", 0.03, 0.001)},
+        bodies={PLATFORM: Body(mass=1.0, point=True)},
+        links={"strut": Link((GROUND, PLATFORM), "wire", **place)},
+        sensors={"gauge": Gauge(range=1e-4)},
+        gauges={"S": Probe("gauge", PLATFORM, Pose(along=(0.0, 0.0, 1.0)), Positive.OPENS)},
+    )
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.031)}, "from and to are 31 mm apart, and part wire is 30 mm long"),
+        ({"start": (0.0, 0.0, 0.0)}, "links.strut: it has no to."),
+        ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "it has both at and to"),
+        ({"at": (0.0, 0.0, 0.0)}, 'it has no along. Write for example along = "x"'),
+        ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "links.strut.to: the direction is zero"),
+    ],
+)
+def test_ends_that_cannot_be(place, said):
+    assert any(said in str(finding) for finding in check(strut(**place)))
+
+
+def test_ends_are_addressed_as_files_call_them():
+    stage = strut(start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 0.03))
+    assert not check(stage)  # a gauge along z does not say which way is up, nor does a wire
+    moved_ = assign(assign(stage, "links.strut.from.x = 1 mm"), "strut.to.x = 1 mm")
+    assert expand(moved_).links["strut"].frame.position.tolist() == [0.001, 0.0, 0.015]
+    text = patch(dumps(stage), {"links.strut.from.y": "2 mm"})
+    assert 'from = ["0 mm", "2 mm", "0 mm"]' in text
+    assert get(loads(text, checked=False), "links.strut.from.y") == 0.002
+    likewise = replace(likened(), changes={})
+    placed = replace(likewise, place={**likewise.place, "B": Placement("outer", Pose(start=(-0.05, 0.0, 0.0), end=(-0.01, 0.0, 0.0)))})
+    assert loads(dumps(placed)) == placed
+    assert not check(placed)
+    assert lumped(placed).stiffness_matrix.tolist() == lumped(likewise).stiffness_matrix.tolist()

@@ -137,7 +137,8 @@ def _with_formula(draw: st.DrawFn, stage: Mechanism, address: str) -> Mechanism:
 
 def _with_departures(draw: st.DrawFn, stage: Mechanism) -> Mechanism:
     part = draw(st.sampled_from(sorted(stage.parts)))
-    link = dataclasses.replace(draw(values(RecordNode(Link))), part=part)
+    link = draw(values(RecordNode(Link)))
+    link = dataclasses.replace(link, part=part, at=link.at or (0.0, 0.0, 0.0))
     stage = dataclasses.replace(stage, units={"zz": Unit({}, {"link": link})}, place=draw(_placements()))
     wanted = draw(st.lists(st.sampled_from(_departures(stage)), max_size=3, unique=True))
     return dataclasses.replace(stage, changes=Table({key: draw(values(locate(stage, key).node)) for key in wanted}))

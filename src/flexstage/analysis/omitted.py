@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from flexstage.base.quantity import RATIO
+from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.linear.static import static_gain
@@ -55,7 +56,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
     >>> omitted(unit, EQUATION_3, ("platform.z", "B4")).unexplained < 1e-3
     True
     """
-    parts = {name for unit in mechanism.units.values() for link in unit.links.values() for name in (link.part,)}
+    parts = {name for unit in drawn_units(mechanism).values() for link in unit.links.values() for name in (link.part,)}
     known = {
         name: freedoms
         for name, freedoms in simple.items()
@@ -78,7 +79,7 @@ def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
     >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]
     ['rz']
     """
-    links = mechanism.units[name].links
+    links = drawn_units(mechanism)[name].links
     joined = [body for link in links.values() for body in link.bodies]
     known: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
     for key, link in links.items():

@@ -20,6 +20,9 @@ from flexstage.base.register import origin
 DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
 
+KEY = "key"
+"""Field metadata: what a file, and so an address, calls the field, where that word is one of Python's own."""
+
 _KEPT = "_digests"
 
 

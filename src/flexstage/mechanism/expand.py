@@ -5,18 +5,19 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TypeAlias, cast
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
-from flexstage.base.number import Array, Number, Table, stack
+from flexstage.base.number import Array, Number, Table, Vector, stack
+from flexstage.mechanism.likeness import drawn_units, link_lineage
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
-from flexstage.mechanism.path import complete, replace_member
-from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar
+from flexstage.mechanism.path import complete, has_member, replace_member
+from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
@@ -29,9 +30,9 @@ from flexstage.parts.superelement import Superelement
 from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
+_EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
 NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
 """What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
-_LINK_FIELDS = frozenset(each.name for each in fields(Link))
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,9 +210,15 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
     [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
     """
     if not isinstance(pattern, Polar):
-        return (_reflect(Frame(axes(pattern.along, pattern.up), stack(pattern.at)), pattern.mirror),) * count
+        return (_reflect(Frame(axes(pattern.direction, _upright(pattern)), stack(pattern.origin)), pattern.mirror),) * count
     step = pattern.step if pattern.step is not None else 2.0 * np.pi / count
     return tuple(_reflect(_polar_frame(pattern, pattern.first + number * step), pattern.mirror) for number in range(count))
+
+
+def _upright(pose: Pose) -> Vector | None:
+    """The direction of a pose's z axis; none is meant where the usual one, z, lies along x: then a gauge is roundly alike."""
+    x, y, z = (np.max(np.abs(np.real(component))) for component in pose.direction)
+    return None if pose.up == Pose().up and max(x, y) <= 1e-3 * z else pose.up
 
 
 def _reflect(frame: Frame, mirror: Normal | None) -> Frame:
@@ -257,7 +264,7 @@ class _Same:
 def _assembly(key: _Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
-    require([*_unknown_names(mechanism), *compound_findings(mechanism)])
+    require([*place_findings(mechanism), *_unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
     described = tuple(_links(mechanism, placed))
     elements = {link.name: link for link in described if isinstance(link, PlacedSuperelement)}
@@ -273,6 +280,26 @@ def _assembly(key: _Same) -> Assembly:
     require(_unknown_bodies(bodies, joined, mechanism.gauges))
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
     return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground, elements)
+
+
+def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Links that do not say where they are, or say it twice.
+
+    >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
+    links.strut: it has no from. Give both from and to, or at and along.
+    """
+    links = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    links += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    for where, link in links:
+        ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
+        stated = [name for name, value in {**place, **ends}.items() if value is not None]
+        if {"from", "to"} & set(stated) and {"at", "along"} & set(stated):
+            yield Finding(where, f"it has both {' and '.join(stated)}", "Give its ends, from and to, or its place, at and along")
+            continue
+        wanted = place if link.start is None and link.end is None else ends
+        for name in [name for name, value in wanted.items() if value is None]:
+            advice = "Give both from and to, or at and along" if wanted is ends else f"Write for example {name} = {_EXAMPLES[name]}"
+            yield Finding(where, f"it has no {name}", advice)
 
 
 def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
@@ -347,7 +374,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     >>> list(placed_bodies(double_triangle()))[:3]
     ['platform', 'B1/base', 'B1/tip']
     """
-    drawn = {name: unit.bodies for name, unit in mechanism.units.items()}
+    drawn = {name: unit.bodies for name, unit in drawn_units(mechanism).items()}
     placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.place.items() for copy in copy_names(key)]
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
@@ -384,9 +411,9 @@ class _DrawnBody:
 
 @dataclass(frozen=True, eq=False)
 class _DrawnLink:
-    """A link with its own address and frame in the frame it is drawn in."""
+    """A link with its frame in the frame it is drawn in; `owners` are the addresses whose departures count, its own the last."""
 
-    address: str
+    owners: tuple[str, ...]
     link: Link
     frame: Frame
 
@@ -394,7 +421,8 @@ class _DrawnLink:
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
     for name, body in mechanism.bodies.items():
         yield _DrawnBody(name, body, mass_properties(body, mechanism.materials, name), identity(), identity())
-    units = {unit: mechanism.units[unit].bodies for _, unit, _ in placed}
+    drawn = drawn_units(mechanism)
+    units = {unit: drawn[unit].bodies for _, unit, _ in placed}
     masses = {
         unit: {name: mass_properties(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
         for unit, bodies in units.items()
@@ -425,12 +453,13 @@ def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Arr
 
 def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
     bodies = placed_bodies(mechanism)
-    for name, drawn in _drawn_links("links.", mechanism.links).items():
-        yield _placed_link(mechanism, drawn, identity(), name, joined(drawn.link, bodies))
-    units = {name: _drawn_links(f"{name}/", unit.links) for name, unit in mechanism.units.items()}
+    for name, link in mechanism.links.items():
+        yield _placed_link(mechanism, _drawn_link(link, f"links.{name}"), identity(), name, joined(link, bodies))
+    units = drawn_units(mechanism)
+    links = {unit: {name: _unit_link(mechanism, unit, name, link) for name, link in item.links.items()} for unit, item in units.items()}
     for copy, unit, frame in placed:
-        own = mechanism.units[unit].bodies
-        for name, drawn in units[unit].items():
+        own = units[unit].bodies
+        for name, drawn in links[unit].items():
             yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", joined(drawn.link, bodies, copy, own))
 
 
@@ -492,25 +521,29 @@ def _inner_bodies(
                 yield _DrawnBody(f"{whole.name}.{name}", body, own, whole.frame, whole.frame)
 
 
-def _drawn_links(owner: str, links: Mapping[str, Link]) -> dict[str, _DrawnLink]:
-    return {name: _DrawnLink(f"{owner}{name}", link, _link_frame(link)) for name, link in links.items()}
+def _drawn_link(link: Link, *owners: str) -> _DrawnLink:
+    return _DrawnLink(owners, link, _link_frame(link))
+
+
+def _unit_link(mechanism: Mechanism, unit: str, name: str, link: Link) -> _DrawnLink:
+    return _drawn_link(link, *(f"{owner}/{name}" for owner in link_lineage(mechanism, unit, name)))
 
 
 def _link_frame(link: Link) -> Frame:
-    return Frame(axes(link.along, link.bends), stack(link.at))
+    return Frame(axes(link.direction, link.bends), stack(link.centre))
 
 
 def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, ends: Sequence[str]) -> PlacedLink | PlacedSuperelement:
-    link, part = apply_changes(mechanism, drawn.link, (drawn.address, name))
+    link, part = apply_changes(mechanism, drawn.link, (*drawn.owners, name))
     frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
     if ports_of(part):
         if frame.mirrored:
             raise refuse(name, *NO_IMAGE)
         whole = cast("Superelement", inner(part))
-        return PlacedSuperelement(name, drawn.address, link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
+        return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
     material = material_of(part)
     first, second = ends
-    return PlacedLink(name, drawn.address, (first, second), link, part, mechanism.materials[material] if material else None, frame)
+    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, mechanism.materials[material] if material else None, frame)
 
 
 def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:
@@ -547,7 +580,7 @@ def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> 
             path = tuple(address[len(owner) + 1 :].split("."))
             if path[0] in MISALIGNED:  # of a gauge that has a link's name
                 continue
-            if path[0] in _LINK_FIELDS:
+            if has_member(link, path[0]):
                 link = replace_member(link, complete(link, path), value)
             else:
                 part = replace_member(part, complete(part, path), value)

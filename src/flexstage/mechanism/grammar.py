@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Any
 
-from flexstage.base.digest import digest
+from flexstage.base.digest import KEY, digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
@@ -74,9 +74,6 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
 }
 TOLD_BY = "TOLD_BY"
 """Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
-
-KEY = "key"
-"""Metadata of a field that a file calls otherwise, because its word is one of Python's own."""
 
 _ALWAYS = ("gravity",)
 _TAGS_SCHEMA: dict[str, Any] = {

@@ -9,6 +9,7 @@ from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.formulas import NUMBERS
 from flexstage.mechanism.grammar import NumbersNode, RecordNode, node_of
+from flexstage.mechanism.likeness import ancestry, drawn_units, link_lineage
 from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
 from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.node import Node
@@ -94,14 +95,19 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
     name = owner if owner in mechanism.units else copies.get(owner, "")
     if name not in mechanism.units:
         raise refuse(address, f'"{owner}" is no unit and no copy of one', suggest_nearest(owner, [*mechanism.units, *copies]))
-    unit = mechanism.units[name]
+    unit = drawn_units(mechanism)[name]
     if owner == name and steps[0] in unit.bodies:
+        home = next(each for each in ancestry(mechanism, name) if steps[0] in mechanism.units[each].bodies)
+        if home != name:
+            advice = f"Address {home}/{steps[0]}, or draw the body in units.{name}.bodies"
+            raise refuse(address, f'unit {name} takes its body "{steps[0]}" from {home}', advice)
         return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), ("units", name, "bodies", *steps))
     if steps[0] not in unit.links:
         raise refuse(address, f'unit {name} has no link "{steps[0]}"', suggest_nearest(steps[0], unit.links))
-    drawn = f"{name}/{steps[0]}"
-    owners = (drawn,) if owner == name else (drawn, f"{owner}/{steps[0]}")
-    return _in_link(mechanism, address, ("units", name, "links", steps[0]), owners, steps[1:])
+    lineage = link_lineage(mechanism, name, steps[0])
+    owners = (*lineage, owner) if owner != name else lineage
+    tree = ("units", lineage[0], "links", steps[0])
+    return _in_link(mechanism, address, tree, tuple(f"{each}/{steps[0]}" for each in owners), steps[1:])
 
 
 def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:

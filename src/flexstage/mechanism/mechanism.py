@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
+from flexstage.base.digest import DOCUMENT_ONLY, KEY, Description
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
@@ -23,7 +23,7 @@ from flexstage.base.quantity import (
     STIFFNESS,
     TIME,
 )
-from flexstage.mechanism.pattern import Pattern
+from flexstage.mechanism.pattern import ORIGIN, Pattern, between, middle
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import DisplacementGauge, Positive
@@ -62,6 +62,7 @@ class Link(Description):
     `joins` names them, first to second: the relative twist is that of the second against the first. `part` names an entry of the
     mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, from the first body to the second, z along
     `bends` (the axis of the compliant rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
+    Instead of `at` and `along` the part's two ends may be given: `start` at the first body, `end` at the second.
 
     A part with ports (a superelement) joins a body at each, by name: several ports may be joined to one body. The link frame is then that
     of the part's axes, and `free` the freedoms of the second port's body against the first's, about its origin, where it has two.
@@ -69,10 +70,22 @@ class Link(Description):
 
     joins: Joins
     part: str
-    at: Annotated[Vector, LENGTH]
-    along: Annotated[Vector, DIRECTION]
+    at: Annotated[Vector, LENGTH] | None = None
+    along: Annotated[Vector, DIRECTION] | None = None
     bends: Annotated[Vector, DIRECTION] | None = None
     free: tuple[Freedom, ...] | None = None
+    start: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "from"})
+    end: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "to"})
+
+    @property
+    def centre(self) -> Vector:
+        """The part's centre: `at`, or the middle between both ends."""
+        return middle(self.start, self.end) if self.at is None and self.start and self.end else self.at or ORIGIN
+
+    @property
+    def direction(self) -> Vector:
+        """The direction of the part's x axis: `along`, or from end to end."""
+        return between(self.start, self.end) if self.along is None and self.start and self.end else self.along or ORIGIN
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -84,13 +97,17 @@ class Link(Description):
 class Unit(Description):
     """A sub-assembly drawn once in its own frame and placed by pattern: its `bodies` and `links`.
 
-    Links may also join bodies of the stage (`ground`, `platform`, ...). `stiffness` states the unit's own stiffness in actuator coordinates
-    for the mapped model (absent: computed where the unit is a direct or a lever unit).
+    Links may also join bodies of the stage (`ground`, `platform`, ...) and of other copies (`W/carriage`). `stiffness` states the unit's
+    own stiffness in actuator coordinates for the mapped model (absent: computed where the unit is a direct or a lever unit).
+
+    `like` names another unit, whose bodies and links this one has too, but for those that it draws under the same names; departures of
+    that unit (`inner/front.thickness`) are its own, its own (`outer/front.at.x`) go before. A stated stiffness is not taken over.
     """
 
-    bodies: Mapping[str, Body]
-    links: Mapping[str, Link]
+    bodies: Mapping[str, Body] = _empty()
+    links: Mapping[str, Link] = _empty()
     stiffness: Annotated[Number, STIFFNESS, POSITIVE] | None = None
+    like: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

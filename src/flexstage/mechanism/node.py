@@ -50,9 +50,8 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 
 _NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
-_OPERAND = (
-    rf"(-|\(|(sqrt|sin|cos|tan)\s*\(|\s)*([A-Za-z]\w*|{_NUMBER.removeprefix('[+-]?')}(\s*[A-Za-zµμ°%/(][A-Za-zµμ°%0-9^./() ]*)?)[)\s]*"
-)
+_UNIT = r"(\s*[A-Za-zµμ°%/(]|\s+1/)[A-Za-zµμ°%0-9^./() ]*"
+_OPERAND = rf"(-|\(|(sqrt|sin|cos|tan)\s*\(|\s)*([A-Za-z]\w*|{_NUMBER.removeprefix('[+-]?')}({_UNIT})?)[)\s]*"
 _FORMULA = rf"^(?![0-9.eE+-]*$){_OPERAND}([-+*/]{_OPERAND})*$"
 
 Wanted = tuple[str, str] | None

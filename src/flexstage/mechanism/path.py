@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
+from flexstage.base.digest import KEY
 from flexstage.base.number import Table
 
 _INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5}
@@ -41,7 +42,7 @@ def member(value: Any, name: str) -> Any:
         return value[name]
     if isinstance(value, tuple):
         return value[_index(name)]
-    return getattr(value, name)
+    return getattr(value, _field_name(value, name))
 
 
 def has_member(value: Any, name: str) -> bool:
@@ -54,7 +55,12 @@ def has_member(value: Any, name: str) -> bool:
         return name in value
     if isinstance(value, tuple):
         return 0 <= _index(name) < len(value)
-    return is_dataclass(value) and any(field.name == name for field in fields(value))
+    return is_dataclass(value) and any(name in (field.name, field.metadata.get(KEY)) for field in fields(value))
+
+
+def _field_name(value: Any, name: str) -> str:
+    """The field that a file calls so, where its word is one of Python's own (`from`)."""
+    return next((field.name for field in fields(value) if field.metadata.get(KEY) == name), name) if is_dataclass(value) else name
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
@@ -64,7 +70,7 @@ def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
     (('y',),)
     """
     if has_member(value, name):
-        return ((name,),)
+        return ((_field_name(value, name),),)
     if not is_dataclass(value):
         return ()
     found: list[tuple[str, ...]] = []

@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, TypeAlias
 
-from flexstage.base.digest import Description
+from flexstage.base.digest import KEY, Description
 from flexstage.base.number import Number, Vector
 from flexstage.base.quantity import ANGLE, DIRECTION, LENGTH, NOT_NEGATIVE
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+
+
+def between(start: Vector, end: Vector) -> Vector:
+    """The way from one point to another.
+
+    >>> between((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
+    (2.0, 1.0, 0.0)
+    """
+    return (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+
+
+def middle(start: Vector, end: Vector) -> Vector:
+    """The point half way between two.
+
+    >>> middle((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
+    (2.0, 0.5, 0.0)
+    """
+    return (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]), 0.5 * (start[2] + end[2]))
 
 
 class Facing(Enum):
@@ -51,13 +71,26 @@ class Polar(Description):
 class Pose(Description):
     """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular).
 
-    With `mirror` the copy is the image of that one in the stage's plane of that normal.
+    Instead of `at` and `along` two points of its x axis may be given: the origin `start`, and an `end` that x points to. With `mirror` the
+    copy is the image of that one in the stage's plane of that normal.
     """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
     up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
     mirror: Normal | None = None
+    start: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "from"})
+    end: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "to"})
+
+    @property
+    def origin(self) -> Vector:
+        """Where the copy's origin is."""
+        return self.at if self.start is None else self.start
+
+    @property
+    def direction(self) -> Vector:
+        """The direction of its x axis."""
+        return self.along if self.start is None or self.end is None else between(self.start, self.end)
 
 
 Pattern: TypeAlias = Polar | Pose

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Vector
-from flexstage.mechanism.expand import copies
+from flexstage.mechanism.expand import apply_changes, copies
+from flexstage.mechanism.likeness import drawn_units, link_lineage
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
 from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Body, owner_of
@@ -43,12 +44,16 @@ def _restrict(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
 
 def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic: Freedoms, free: Freedoms) -> Mechanism:
     unit, _, link = address.partition("/")
-    if unit not in result.units or link not in result.units[unit].links:
+    known = drawn_units(original)
+    if unit not in known or link not in known[unit].links:
         raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")
-    drawn = result.units[unit]
-    own = f"{drawn.links[link].part} of {address}"
-    part = _restrict(original.parts[original.units[unit].links[link].part], elastic, free)
-    links = {**drawn.links, link: replace(drawn.links[link], part=own)}
+    drawn, there = result.units[unit], known[unit].links[link]
+    own = f"{there.part} of {address}"
+    part = original.parts[there.part]
+    if link not in drawn.links:  # from then on the unit draws it itself: departures of the other one no longer count
+        there, part = apply_changes(original, there, tuple(f"{each}/{link}" for each in link_lineage(original, unit, link)))
+    part = _restrict(part, elastic, free)
+    links = {**drawn.links, link: replace(there, part=own)}
     return replace(result, parts={**result.parts, own: part}, units={**result.units, unit: replace(drawn, links=links)})
 
 
@@ -65,19 +70,19 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     units = {name: unit for name, unit, _ in copies(mechanism)}
     if copy not in units:
         raise refuse(copy, "no unit is placed under this name", f"Placed are {', '.join(units)}")
-    unit = mechanism.units[units[copy]]
+    unit = drawn_units(mechanism)[units[copy]]
     joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.bodies)), None)
     if joint is None:
         raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
     own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}
-    links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.at, guide)}
+    links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.centre, guide)}
     parts = dict(mechanism.parts) if guide is None else {**mechanism.parts, "guide": Joint((Freedom.X,))}
     return replace(
         mechanism,
         parts=parts,
-        bodies={PLATFORM: Body(reference=joint.at)},
+        bodies={PLATFORM: Body(reference=joint.centre)},
         links=links,
-        units={**mechanism.units, units[copy]: replace(unit, bodies=own)},
+        units={**mechanism.units, units[copy]: replace(mechanism.units[units[copy]], bodies=own)},
         place={copy: Placement(units[copy], Pose())},
         gauges={},
         payloads={},

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
+from flexstage.base.digest import KEY
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.quantity import RATIO, Bound, Quantity
-from flexstage.mechanism.grammar import KEY, OpenNode
+from flexstage.mechanism.grammar import OpenNode
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.node import AmountNode, ChoiceNode, NumberNode, TextsNode
 from flexstage.mechanism.store.decode import record_from

@@ -17,7 +17,7 @@ from flexstage.mechanism.checks.name import copy_findings, name_findings
 from flexstage.mechanism.checks.orientation import orientation_findings
 from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
-from flexstage.mechanism.expand import compound_findings
+from flexstage.mechanism.expand import compound_findings, place_findings
 from flexstage.mechanism.formulas import formula_findings
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -33,7 +33,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
     """
-    for ground in (kind_findings, copy_findings):
+    for ground in (kind_findings, copy_findings, place_findings):
         if findings := tuple(ground(mechanism)):
             return findings
     if findings := tuple(package_findings(mechanism.packages)):

@@ -15,6 +15,7 @@ from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
+from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import join
@@ -22,10 +23,12 @@ from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
 from flexstage.parts.condensation import superelement_findings
 from flexstage.parts.given import Given
 from flexstage.parts.mass import tensor
-from flexstage.parts.part import Part, Restricted
-from flexstage.parts.shape import Elastic
+from flexstage.parts.part import Part, Restricted, inner
+from flexstage.parts.shape import Elastic, Shaped
 from flexstage.parts.superelement import Superelement
 
+_NEAR = 1e-6
+"""How far the ends of a link may miss its part's length [m]: points are written with as many digits."""
 _SLACK = 1e-9
 """Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
 
@@ -50,6 +53,7 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
     for where, body in bodies.items():
         yield from _body(where, body) if body.of is None else _lent(where, body, stage.get(body.of))
     yield from _without_image(mechanism)
+    yield from _lengths(mechanism)
     for name, payload in mechanism.payloads.items():
         if payload.point and payload.inertia is not None:
             yield Finding(f"payloads.{name}.point", "it states an inertia, and a point has none", "Leave one of them out")
@@ -57,10 +61,28 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
             yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
 
 
+def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
+    """Links between two points that are not as far apart as their part is long."""
+    links = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    links += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    for where, link in links:
+        part = mechanism.parts.get(link.part)
+        own = None if part is None else inner(part)
+        if link.start is None or link.end is None or not isinstance(own, Shaped):
+            continue
+        apart = np.sqrt(np.sum(np.real(stack(link.direction)) ** 2, axis=-1))
+        off = np.abs(apart - np.real(own.span)) > _NEAR
+        if np.any(off):
+            at, values = first_failing(off, apart, np.asarray(own.span))
+            found, length = (show(value, LENGTH, digits=6) for value in values)
+            what = f"from and to are {found} apart, and part {link.part} is {length} long"
+            yield Finding(f"{where}{at}", what, "Move an end, or give the part that length")
+
+
 def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
     """Mirrored copies of what has no mirror image, or none that is known."""
     for key, placement in mechanism.place.items():
-        unit = mechanism.units.get(placement.unit)
+        unit = drawn_units(mechanism).get(placement.unit)
         if placement.pattern.mirror is None or unit is None:
             continue
         for name, link in unit.links.items():

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.expand import copy_names, joined, placed_bodies
+from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import imposes_stroke
 
@@ -42,8 +43,9 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
     bodies = placed_bodies(mechanism)
     edges = [edge for name, link in mechanism.links.items() for edge in _edges(name, link.part, joined(link, bodies))]
+    units = drawn_units(mechanism)
     for key, placement in mechanism.place.items():
-        unit = mechanism.units[placement.unit]
+        unit = units[placement.unit]
         for copy in copy_names(key):
             for name, link in unit.links.items():
                 edges += _edges(f"{copy}/{name}", link.part, joined(link, bodies, copy, unit.bodies))

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.mechanism.expand import copy_names, joined, placed_bodies, port_findings
 from flexstage.mechanism.grammar import RESERVED
+from flexstage.mechanism.likeness import drawn_units, likeness_findings
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.given import Given
@@ -30,6 +31,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _bodies(mechanism)
     yield from _owners(mechanism)
     yield from _materials(mechanism)
+    yield from likeness_findings(mechanism)
     yield from _check_placement(mechanism)
     yield from _clashes(mechanism)
     yield from _loops(mechanism)
@@ -99,8 +101,8 @@ def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
     stage = placed_bodies(mechanism)
     for name, link in mechanism.links.items():
         yield f"links.{name}", link, stage
-    for unit, drawn in mechanism.units.items():
-        for name, link in drawn.links.items():
+    for unit, drawn in drawn_units(mechanism).items():
+        for name, link in mechanism.units[unit].links.items():
             yield f"units.{unit}.links.{name}", link, stage | dict(drawn.bodies)
 
 
@@ -161,9 +163,9 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:
     """Links of a unit that join a body of one copy: in that copy both ends may be the same."""
-    bodies = placed_bodies(mechanism)
+    bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
     for key, placement in mechanism.place.items():
-        unit = mechanism.units.get(placement.unit, Unit({}, {}))
+        unit = units.get(placement.unit, Unit())
         far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.bodies)}
         for copy in copy_names(key) if far else ():
             for name, link in far.items():

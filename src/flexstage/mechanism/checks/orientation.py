@@ -39,13 +39,13 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for name, placement in mechanism.place.items():
         yield from _pattern(f"place.{name}", placement.pattern)
     for name, probe in mechanism.gauges.items():
-        yield from _pattern(f"gauges.{name}", probe.pattern)
+        yield from _pattern(f"gauges.{name}", probe.pattern, is_round=True)
 
 
 def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]]) -> Iterator[Finding]:
     for name, link in links:
         where = f"{prefix}links.{name}"
-        yield from _pair(f"{where}.along", link.along, f"{where}.bends", link.bends)
+        yield from _pair(f"{where}.{'to' if link.along is None else 'along'}", link.direction, f"{where}.bends", link.bends)
         part = mechanism.parts.get(link.part)
         if part is not None and link.bends is None and not is_round(part, link.free):
             yield Finding(where, *_unsaid(link.part, ported=bool(ports_of(part))))
@@ -78,9 +78,18 @@ def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]
             yield from _pair(f"{here}.along", solid.along, f"{here}.up", None if isinstance(solid, Cylinder) else solid.up)
 
 
-def _pattern(where: str, pattern: Pattern) -> Iterator[Finding]:
-    if isinstance(pattern, Pose):
-        yield from _pair(f"{where}.pose.along", pattern.along, f"{where}.pose.up", pattern.up)
+def _pattern(where: str, pattern: Pattern, *, is_round: bool = False) -> Iterator[Finding]:
+    """What is `is_round`, as a gauge is about its line, need not say which way is up."""
+    if not isinstance(pattern, Pose):
+        return
+    here, usual = f"{where}.pose", Pose()
+    ends = [name for name, point in (("from", pattern.start), ("to", pattern.end)) if point is not None]
+    if len(ends) == 1:
+        yield Finding(here, f"it has {ends[0]} alone", "Give both from and to, or at and along")
+    elif ends and (pattern.at != usual.at or pattern.along != usual.along):
+        yield Finding(here, "it has both from and to and at or along", "Leave one of them")
+    up = None if is_round and pattern.up == usual.up else pattern.up
+    yield from _pair(f"{here}.{'to' if ends else 'along'}", pattern.direction, f"{here}.up", up)
 
 
 def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> Iterator[Finding]:

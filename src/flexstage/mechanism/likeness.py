@@ -1,0 +1,71 @@
+"""Units that are like another: what they take from it, and whose departures count for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from flexstage.base.finding import Finding, suggest_nearest
+from flexstage.base.number import Table
+from flexstage.mechanism.mechanism import Mechanism, Unit
+
+
+def drawn_units(mechanism: Mechanism) -> Mapping[str, Unit]:
+    """The units with all bodies and links that they take from those they are like; what a unit draws itself goes before.
+
+    >>> drawn_units(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {}, stiffness=1e6)}))["outer"].like
+    'inner'
+    """
+    if all(unit.like is None for unit in mechanism.units.values()):
+        return mechanism.units
+    return {name: _drawn(mechanism, name) for name in mechanism.units}
+
+
+def _drawn(mechanism: Mechanism, name: str) -> Unit:
+    unit = mechanism.units[name]
+    models = [mechanism.units[each] for each in reversed(ancestry(mechanism, name))]
+    bodies = {key: body for each in models for key, body in each.bodies.items()}
+    links = {key: link for each in models for key, link in each.links.items()}
+    return replace(unit, bodies=Table(bodies), links=Table(links))
+
+
+def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
+    """A unit, the one it is like, the one that is like, and so on; ends where one is not there or comes again.
+
+    >>> ancestry(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {})}), "outer")
+    ('outer', 'inner')
+    """
+    found: list[str] = []
+    while name in mechanism.units and name not in found:
+        found.append(name)
+        name = mechanism.units[name].like or ""
+    return tuple(found)
+
+
+def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
+    """The units whose departures count for a unit's link, from the one that draws it on.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> link_lineage(double_triangle(), "horizontal", "front")
+    ('horizontal',)
+    """
+    line = ancestry(mechanism, unit)
+    own = next((number for number, name in enumerate(line) if link in mechanism.units[name].links), 0)
+    return line[own::-1]
+
+
+def likeness_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Units like one that is not there, or, by whatever way, like themselves.
+
+    >>> print(*likeness_findings(Mechanism("", units={"outer": Unit({}, {}, like="iner"), "inner": Unit({}, {})})))
+    units.outer.like: there is no unit "iner". The nearest name is inner.
+    """
+    for name, unit in mechanism.units.items():
+        if unit.like is None:
+            continue
+        line = ancestry(mechanism, name)
+        if unit.like not in mechanism.units:
+            yield Finding(f"units.{name}.like", f'there is no unit "{unit.like}"', suggest_nearest(unit.like, mechanism.units))
+        elif mechanism.units[line[-1]].like == name:
+            what = "it is like itself" if len(line) == 1 else f"it is like itself: {', '.join(line)} are like one another in a circle"
+            yield Finding(f"units.{name}.like", what, "Draw one of them by itself")
