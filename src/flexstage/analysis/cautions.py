@@ -29,6 +29,7 @@ from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.expansion import ground_of
+from flexstage.mechanism.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.mechanism.outline import outlines
 from flexstage.models.ideal import ideal
@@ -178,6 +179,7 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
         *_large_motions(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
+        *unused_findings(mechanism),
     )
 
 

@@ -290,6 +290,20 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(address, what, "Set the value by the formula, or take the formula out")
 
 
+def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Named numbers that no formula refers to.
+
+    >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
+    numbers.arm: no formula refers to it, so that it changes nothing. Write it where it is meant, or take it out.
+    """
+    used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
+    for name in mechanism.numbers:
+        if name not in used:
+            yield Finding(
+                _PREFIX + name, "no formula refers to it, so that it changes nothing", "Write it where it is meant, or take it out"
+            )
+
+
 def _si(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else "other values"
 

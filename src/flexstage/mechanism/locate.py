@@ -132,6 +132,8 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
     for number, step in enumerate(steps):
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
+        if isinstance(value, NamedNumber):
+            raise refuse(address, f'there is no "{step}": {steps[number - 1]} is one number', "Address the number itself")
         for name in _complete(value, address, node, step, last=number == len(steps) - 1):
             node, value = node.child(value, name), member(value, name)
             path += (name,)

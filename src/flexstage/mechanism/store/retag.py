@@ -12,6 +12,7 @@ from tomlkit.items import InlineTable
 from flexstage.base.finding import refuse
 from flexstage.mechanism.address import tag_of
 from flexstage.mechanism.catalogue import shipped_catalogue
+from flexstage.mechanism.formulas import NUMBERS
 from flexstage.mechanism.grammar import TAGS
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
@@ -56,7 +57,8 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
         document = tomlkit.parse(text)
         for address, tag in tags.items():
             place = locate(mechanism, address)
-            _put(document, place.path if beside and not place.owners else (), place.address, tag)
+            path = (NUMBERS, place.number) if place.number else place.path
+            _put(document, path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
         now = mechanism_from(parse_toml(found, where), shipped_catalogue())
     except (TOMLKitError, ValueError):  # findings are ValueErrors

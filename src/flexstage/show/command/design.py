@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from flexstage.analysis.complete import read
+from flexstage.base.expression import parse_expression
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.mechanism.address import assign
 from flexstage.mechanism.checks import require_valid
@@ -14,6 +15,7 @@ from flexstage.mechanism.store import load
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 from flexstage.show.command.output import require_writable
+from flexstage.show.command.terminal import print_note
 from flexstage.spatial.frame import COMPONENTS
 
 
@@ -27,7 +29,10 @@ def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Seque
 
 
 def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
-    """The description after all assignments, checked anew; raises `DesignError` with all that is wrong with any of them."""
+    """The description after all assignments, checked anew; raises `DesignError` with all that is wrong with any of them.
+
+    A formula that an assignment takes the place of is told on stderr.
+    """
     findings: list[Finding] = []
     result = mechanism
     for text in changes:
@@ -36,6 +41,11 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
         except DesignError as error:
             findings += [Finding(_where(text, each.where), each.what, each.advice) for each in error.findings]
     require(findings)
+    for address, text in mechanism.formulas.items():
+        if address not in result.formulas:
+            numbers = " or ".join(f"numbers.{name}" for name in sorted(parse_expression(text).names))
+            advice = f"; to move all that depends on it, set {numbers}" if numbers else ""
+            print_note(f'note: {address} is set by itself, its formula "{text}" is not kept{advice}')
     return require_valid(result) if changes else mechanism
 
 

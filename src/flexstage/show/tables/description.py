@@ -16,6 +16,7 @@ from flexstage.show.table import Cell, Column, Mark, Table, make_table
 from flexstage.spatial.frame import COMPONENTS
 
 TITLES = {
+    "numbers": "Named numbers",
     "materials": "Materials",
     "parts": "Parts",
     "bodies": "Bodies",
@@ -162,7 +163,9 @@ def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str) 
     word, _, source = tag.partition(" ")
     unit = values[0][1]
     text = values[0][0] if len(values) == 1 else f"({', '.join(text for text, _ in values)})"
-    return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, _TAGS.get(word, Mark.PLAIN)), Cell(source)
+    formulas = ", ".join(f"= {mechanism.formulas[address]}" for address in addresses if address in mechanism.formulas)
+    origin = f"{formulas}; {source}" if formulas and source else formulas or source
+    return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, _TAGS.get(word, Mark.PLAIN)), Cell(origin)
 
 
 def _value(mechanism: Mechanism, address: str) -> tuple[str, str]:
