@@ -10,6 +10,7 @@ import pytest
 from flexstage.analysis.cautions import cautions
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.store import loads
 from flexstage.models.ideal import ideal
 from flexstage.parts.freedom import ALL, Freedom
 
@@ -99,3 +100,32 @@ def test_the_links_that_block_are_named_with_what_to_free() -> None:
     assert {name.partition(".")[0] for name in one.against} == {"left"}
     both = ideal(with_freedoms(mechanism, {"left": frozenset(), "right": frozenset()})).blocked["B"]
     assert (set(both.free), both.together) == ({"left.y", "right.y"}, True)
+
+
+def test_a_stack_without_hinges_is_told_where_they_belong() -> None:
+    """A lever pushed by a stack that is fixed to it and to the ground cannot turn; with hinges at the ends it does."""
+    rigid = loads(LEVER)
+    (told,) = ideal(rigid).blockages
+    assert str(told).startswith("stack: the stroke cannot move: it is blocked by the locked freedoms of pivot (x), stack (rz)")
+    assert "It joins ground and platform without a hinge, and gives way along itself alone: put a hinge at each end" in told.advice
+    ends = 'bodies.base = { mass = "1 g", point = true }\nbodies.tip = { mass = "1 g", point = true }\n[parts]'
+    hinged = LEVER.replace('["ground", "platform"], part = "stack"', '["base", "tip"], part = "stack"').replace("[parts]", ends) + JOINTS
+    assert ideal(loads(hinged)).blockages == ()
+
+
+LEVER = """
+format = "flexstage 1"
+name = "lever"
+materials.steel.like = "17-4PH"
+bodies.platform = { mass = "50 g", point = true }
+[parts]
+pivot = { kind = "notch", material = "steel", thickness = "0.8 mm", width = "10 mm", profile = { shape = "circular", radius = "3 mm" } }
+stack = { kind = "piezo", like = "PiezoDrive SA050536" }
+[links]
+pivot = { joins = ["ground", "platform"], part = "pivot", at = ["0 mm", "-8 mm", "0 mm"], along = "y", bends = "z" }
+stack = { joins = ["ground", "platform"], part = "stack", at = ["15 mm", "-23 mm", "0 mm"], along = "y" }
+"""
+JOINTS = """
+low = { joins = ["ground", "base"], part = "pivot", at = ["15 mm", "-45 mm", "0 mm"], along = "y", bends = "z" }
+high = { joins = ["tip", "platform"], part = "pivot", at = ["15 mm", "-1 mm", "0 mm"], along = "y", bends = "z" }
+"""

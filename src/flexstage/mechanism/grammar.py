@@ -47,6 +47,7 @@ from flexstage.mechanism.node import (
     whole_text,
 )
 from flexstage.mechanism.pattern import Polar, Pose
+from flexstage.mechanism.trade import advise_key, advise_kind
 from flexstage.parts import GAUGES, PARTS
 from flexstage.parts.body import Block, Cylinder, Imported
 from flexstage.parts.gauge import DisplacementGauge, Gauge
@@ -270,7 +271,7 @@ class RecordNode(Node):
                 values[name] = slot.default
         known = [key for slot in self.fields.values() for key in slot.keys]
         for key in [key for key in raw if key not in used]:
-            reader.refuse(join(where, key), "this key is not known here", suggest_nearest(key, set(known) - used or known))
+            reader.refuse(join(where, key), "this key is not known here", advise_key(key, set(known) - used, known))
         return BAD if BAD in values.values() else self.record(**values)
 
     def _like_is_known(self, raw: dict[str, Any], where: str, reader: Reader) -> bool:
@@ -396,7 +397,7 @@ class UnionNode(Node):
         if name is None:
             return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
-            advice = suggest_nearest(kind(name), options)
+            advice = advise_kind(kind(name), options)
             return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 

@@ -20,7 +20,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, free_deformations, layout, require_room, twist_at
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
@@ -107,7 +107,15 @@ def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
     names = tuple(f"{links[link]}.{freedom}" for link, _, freedom in ends)
     meant = {f"{links[name]}.{freedom.value}" for name, link in graph.assembly.links.items() for freedom in link.part.intended}
     actuators = list(graph.assembly.strokes)
-    return {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+    found = {name: blockage(rows, graph.order.size + actuators.index(name), names, frozenset(meant)) for name in immobile}
+    return {name: replace(each, ends=_rigid_ends(graph.assembly.links[graph.assembly.strokes[name]], each)) for name, each in found.items()}
+
+
+def _rigid_ends(link: PlacedLink, found: Blockage) -> tuple[str, ...]:
+    """Those of ground and platform that an actuator joins, where what it does not give way by works against its stroke."""
+    own = f"{link.drawn.removeprefix('links.')}."
+    stiff = any(name.startswith(own) for name in found.against)
+    return tuple(body for body in link.joins if body in (GROUND, PLATFORM)) if stiff else ()
 
 
 def _comparable(graph: _Graph) -> Array:

@@ -23,12 +23,14 @@ _RANK = 1e-9
 class Blockage:
     """Why a stroke cannot move: the locked freedoms that work against it, strongest first, and what to free.
 
-    `against` and `free` name them `link.freedom`; of `free` any one is enough, or `together`, all of them are needed.
+    `against` and `free` name them `link.freedom`; of `free` any one is enough, or `together`, all of them are needed. `ends` are those of
+    ground and platform that the actuator joins by itself, where its own locked freedoms work against its stroke: a hinge belongs there.
     """
 
     against: tuple[str, ...]
     free: tuple[str, ...]
     together: bool = False
+    ends: tuple[str, ...] = ()
 
 
 def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: frozenset[str]) -> Blockage:
@@ -39,7 +41,7 @@ def blockage(constraints: Array, stroke: int, names: Sequence[str], wanted: froz
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0
     >>> blockage(rows, 6, ("stack.x", "leaf.x", "leaf.y"), frozenset())
-    Blockage(against=('leaf.x',), free=('leaf.x',), together=False)
+    Blockage(against=('leaf.x',), free=('leaf.x',), together=False, ends=())
     """
     against = _against(constraints, stroke)
     alone = _decisive(constraints, stroke) & ~_decisive(_at_platform(constraints), stroke)[: len(constraints)]

@@ -192,7 +192,11 @@ def _by_link(freedoms: tuple[str, ...]) -> str:
 def _freeing(blockage: Blockage) -> str:
     *rest, last = blockage.free or ("one of them",)
     word = "and" if blockage.together else "or"
-    return f"Free {', '.join(rest)} {word} {last}" if rest else f"Free {last}"
+    told = f"ree {', '.join(rest)} {word} {last}" if rest else f"ree {last}"
+    if not blockage.ends:
+        return f"F{told}"
+    hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at that end"
+    return f"It joins {' and '.join(blockage.ends)} without a hinge, and gives way along itself alone: put {hinge}; or f{told}"
 
 
 def _scales(names: tuple[str, ...], rotation: float) -> Array:
