@@ -128,6 +128,16 @@ class ListNode(Node):
 class NumbersNode(ListNode):
     """Numbers in a row, any number of them, each of which has an address: its place, counted from nought."""
 
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The numbers."""
+        if not is_row(self, raw, self.length, where, reader):
+            return BAD
+        return every([reader.read(self.item, part, f"{where}.{place}") for place, part in enumerate(raw)])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """The numbers."""
+        return [writer.write(self.item, item, f"{where}.{place}") for place, item in enumerate(value)]
+
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Its items by place."""
         return ((str(place), self.item, item) for place, item in enumerate(value))
