@@ -43,7 +43,7 @@ def test_units_are_si_inside_and_stated_at_the_border(stage: fs.Mechanism) -> No
 def test_position_angles_count_from_x_towards_y(stage: fs.Mechanism) -> None:
     """30 degrees is 0.5236 inside, and lies at (cos, sin)."""
     turned = replace(stage, gauges={"S": replace(stage.gauges["S1-S3"], pattern=replace(_polar(stage), first=np.deg2rad(30.0)))})
-    found = expand(turned).gauges["S"].frame.position
+    found = expand(turned).gauges["S"].sights[0].frame.position
     np.testing.assert_allclose(found[:2] / _polar(stage).radius, [np.sqrt(0.75), 0.5], atol=1e-12)
 
 
@@ -102,8 +102,8 @@ def test_gauge_rows_are_readings_over_platform_coordinates(stage: fs.Mechanism) 
     mapping, reference = fs.ideal(stage).gauge_mapping, expand(stage).bodies["platform"].reference
     assert (mapping.rows, mapping.columns) == (tuple(expand(stage).gauges), COMPONENTS)
     for row, gauge in enumerate(expand(stage).gauges.values()):
-        moved = transport(gauge.frame.position - reference)[:3]
-        np.testing.assert_allclose(mapping.values[row], gauge.frame.rotation[:, 0] @ moved, atol=1e-12)
+        moved = transport(gauge.sights[0].frame.position - reference)[:3]
+        np.testing.assert_allclose(mapping.values[row], gauge.sights[0].frame.rotation[:, 0] @ moved, atol=1e-12)
 
 
 def test_amplified_rows_of_the_mapping_carry_one_over_the_amplification(stage: fs.Mechanism) -> None:

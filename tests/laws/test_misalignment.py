@@ -48,12 +48,12 @@ def test_only_the_copy_that_is_named_moves():
 
 def test_a_gauge_reads_along_its_own_line():
     stage = double_triangle()
-    frame = expand(stage).gauges["S1"].frame
+    frame = expand(stage).gauges["S1"].sights[0].frame
     reference = expand(stage).bodies["platform"].reference
     line = frame.rotation @ exponential(np.array(ROTATION)) @ np.array([1.0, 0.0, 0.0])
     point = frame.position + frame.rotation @ np.array(SHIFT)
     found = ideal(misaligned(stage, "S1")).sensing[0]
-    sign = expand(stage).gauges["S1"].sign
+    sign = expand(stage).gauges["S1"].sights[0].weight
     np.testing.assert_allclose(found, sign * np.concatenate([line, np.cross(point - reference, line)]), atol=1e-12)
 
 

@@ -211,7 +211,7 @@ def test_a_drawn_stage_has_no_crosstalk_and_turned_copies_that_of_their_lines_of
     assert matrix("open", at_rest) == pytest.approx(np.eye(6), abs=1e-9)
     assert matrix("held", at_rest) == pytest.approx(np.eye(6), abs=1e-9)
     unit = next(frame for name, _, frame in copies(stage) if name == "B1")
-    ways = {"open": ("B1", unit), "held": ("S1", bench.assembly.gauges["S1"].frame)}
+    ways = {"open": ("B1", unit), "held": ("S1", bench.assembly.gauges["S1"].sights[0].frame)}
     for kind, (name, frame) in ways.items():
         turned = set_value(stage, f"{name}.rotation.z", angle)
         found = matrix(kind, dict(zip(names, poses(bench_of(turned), asked), strict=True))) - np.eye(6)

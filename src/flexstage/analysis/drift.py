@@ -22,6 +22,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
@@ -129,7 +130,8 @@ def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
     [1.0, 0.0, 0.0, 0.0]
     """
     moved = drifted.of(PLATFORM)
-    return Matrix(moved.values - gauge_inverse.values @ drifted.gauges.values, moved.rows, moved.columns, moved.unit)
+    readings = drifted.gauges.part(gauge_inverse.columns, FIELDS)
+    return Matrix(moved.values - gauge_inverse.values @ readings.values, moved.rows, moved.columns, moved.unit)
 
 
 def _growth(arm: Array, origin: Array) -> Array:
@@ -190,14 +192,18 @@ def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
 
 
 def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
-    names = tuple(thermal.assembly.gauges)
-    rows: list[Array] = []
-    for gauge in thermal.assembly.gauges.values():
-        ends = [_material_motion(thermal, twists, body, gauge.frame.position) for body in (gauge.body, gauge.base)]
-        direction = gauge.sign * gauge.frame.rotation[..., :, 0]
-        rows.append((direction[..., None, :] @ (ends[0] - ends[1])[..., :3, :])[..., 0, :])
+    gauges = thermal.assembly.gauges
+    rows = [sum(_reading(thermal, twists, sight) for sight in gauge.sights) for gauge in gauges.values()]
     values = np.stack(np.broadcast_arrays(*rows), axis=-2) if rows else np.zeros((0, 4))
-    return Matrix(values, names, FIELDS, ratio_units(("m",) * len(names), _FIELD_UNITS))
+    return Matrix(values, tuple(gauges), FIELDS, ratio_units(tuple(gauge.unit for gauge in gauges.values()), _FIELD_UNITS))
+
+
+def _reading(thermal: _Thermal, twists: Mapping[str, Array], sight: Sight) -> Array:
+    """What a sight adds to a reading (..., 4): material of the body against material of the base."""
+    ends = [_material_motion(thermal, twists, body, at.position) for body, at in ((sight.body, sight.frame), (sight.base, sight.foot))]
+    rows = slice(0, 3) if sight.component < 3 else slice(3, 6)
+    direction = np.asarray(sight.weight)[..., None] * sight.frame.rotation[..., :, sight.component % 3]
+    return (direction[..., None, :] @ (ends[0] - ends[1])[..., rows, :])[..., 0, :]
 
 
 def _material_motion(thermal: _Thermal, twists: Mapping[str, Array], body: str, point: Array) -> Array:

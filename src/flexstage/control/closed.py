@@ -142,16 +142,15 @@ def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[Syst
 
 def _estimate(given: Plant) -> System:
     """Readings with their noise, and the pose from them; the error."""
-    gauges = tuple(Channel(name, "m") for name in given.gauges)
-    entry = tuple(Channel(f"gap.{name}", "m") for name in given.gauges)
+    gauges, entry = given.coordinates.readings(), given.coordinates.readings("gap.")
     gain = np.vstack([np.eye(len(gauges)), given.coordinates.pose])
     return static(gain, entry, (*gauges, *_channels("pose", given)), given.hardware.step)
 
 
 def _sums(given: Plant) -> System:
     """What a hold gives on, and the error."""
-    entry = (*(Channel(f"entry.{name}", "m") for name in given.actuators), *_channels("difference", given))
-    exit_ = (*(Channel(name, "m") for name in given.actuators), *_channels("error", given))
+    entry = (*given.coordinates.commands("entry."), *_channels("difference", given))
+    exit_ = (*given.coordinates.commands(), *_channels("error", given))
     return static(np.eye(len(entry)), entry, exit_, given.hardware.step)
 
 
@@ -168,11 +167,11 @@ def _commands(given: Plant) -> tuple[str, ...]:
 
 
 def _units(given: Plant, cut: Cut) -> tuple[str, ...]:
-    return given.coordinates.units if cut is Cut.POSE else ("m",) * len(given.actuators)
+    return given.coordinates.units if cut is Cut.POSE else tuple(channel.unit for channel in given.coordinates.commands())
 
 
 def _noises(given: Plant) -> tuple[Channel, ...]:
-    return tuple(Channel(f"noise.{name}", "m") for name in (*given.gauges, *given.actuators))
+    return (*given.coordinates.readings("noise."), *given.coordinates.commands("noise."))
 
 
 def _disturbances(given: Plant) -> tuple[Channel, ...]:

@@ -10,7 +10,9 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import LENGTH
+from flexstage.base.record import INNER
 from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _MISSING = 1e-9
@@ -20,7 +22,8 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates a loop holds: a stage's ideal motions xi (x ... rz, or those of them it has).
 
-    `pose` (f, g) gives xi from gauge readings, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more.
+    `pose` (f, g) gives xi from gauge readings, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. Sums of
+    gauges are part of it: `gauges` are the single ones. `gauge_units` and `input_units` are those of readings and inputs (absent: m).
     `strokes` (n, f) gives strokes from xi, R_a of Eq. 13; `back` (f, n) is its (least-squares) inverse. `units` are m or rad, `length` [m]
     makes rotations comparable with translations.
     """
@@ -33,11 +36,23 @@ class Coordinates:
     strokes: Array
     back: Array
     length: Annotated[float, LENGTH]
+    gauge_units: Annotated[tuple[str, ...], INNER] = ()
+    input_units: Annotated[tuple[str, ...], INNER] = ()
 
     @property
     def scale(self) -> Array:
         """Factors (f,) that make all coordinates lengths: 1, and `length` for rotations."""
         return np.array([1.0 if unit == "m" else self.length for unit in self.units])
+
+    def readings(self, prefix: str = "") -> tuple[Channel, ...]:
+        """A channel a gauge, its name behind a prefix, in its unit."""
+        units = self.gauge_units or ("m",) * len(self.gauges)
+        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.gauges, units, strict=True))
+
+    def commands(self, prefix: str = "") -> tuple[Channel, ...]:
+        """A channel an actuator, its name behind a prefix, in the unit of its input."""
+        units = self.input_units or ("m",) * len(self.actuators)
+        return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
 
 
 def coordinates(kinematics: Kinematics) -> Coordinates:
@@ -54,23 +69,36 @@ def coordinates(kinematics: Kinematics) -> Coordinates:
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
     scale = np.array([1.0 if unit == "m" else kinematics.length for unit in units])
     strokes = np.real(first_design(kinematics.actuation, 2))
-    seen = np.real(first_design(kinematics.sensing @ kinematics.motion, 2))
+    told = _even(kinematics)[:, None] * np.real(first_design(kinematics.seen, 2)) / scale
     require(
         [
             *_missing("actuators", strokes / scale, kinematics, "make", "Add actuators, or lock the freedoms they cannot move"),
-            *_missing("gauges", seen / scale, kinematics, "tell", "Add gauges, or turn them so that every motion changes a reading"),
+            *_missing("gauges", told, kinematics, "tell", "Add gauges, or turn them so that every motion changes a reading"),
         ]
     )
     return Coordinates(
         names=kinematics.coordinates,
         units=units,
         actuators=kinematics.actuators,
-        gauges=kinematics.gauges,
-        pose=np.linalg.pinv(seen / scale) / scale[:, None],
+        gauges=kinematics.single_gauges,
+        gauge_units=tuple(kinematics.reading_units[kinematics.gauges.index(name)] for name in kinematics.single_gauges),
+        pose=_pose(kinematics, told) / scale[:, None],
         strokes=strokes,
         back=np.linalg.pinv(strokes / scale) / scale[:, None],
         length=kinematics.length,
     )
+
+
+def _even(kinematics: Kinematics) -> Array:
+    """Factors (t,) that make readings comparable: 1, and the stage's length for rotations."""
+    units = dict(zip(kinematics.gauges, kinematics.reading_units, strict=True))
+    return np.array([1.0 if units[name] == "m" else kinematics.length for name in kinematics.telling])
+
+
+def _pose(kinematics: Kinematics, told: Array) -> Array:
+    """Coordinates (f, s), all lengths, from readings of single gauges; `told` are all comparable readings from coordinates."""
+    pose = np.linalg.pinv(told) * _even(kinematics)
+    return pose @ np.real(first_design(kinematics.selection, 2)) if kinematics.sums else pose
 
 
 def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: str) -> list[Finding]:
@@ -83,7 +111,7 @@ def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: 
     if not len(lost):
         return []
     shown = "; ".join(_direction(row, kinematics) for row in lost)
-    number = len(kinematics.actuators if kind == "actuators" else kinematics.gauges)
+    number = len(kinematics.actuators if kind == "actuators" else kinematics.telling)
     what = f"{number} {kind} {verb} {count - len(lost)} of the platform's {count} ideal motions; missing: {shown}"
     return [Finding(kind, what, advice)]
 

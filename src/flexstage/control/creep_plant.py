@@ -25,7 +25,7 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
     """
     if creep.axes != len(given.actuators):
         raise refuse("creep", f"it has {creep.axes} axes, the stage {len(given.actuators)} actuators", "Give one to each actuator")
-    entering = tuple(Channel(name, "m") for name in given.actuators)
+    entering = given.coordinates.commands()
     crept = {name: f"crept.{name}" for name in given.actuators}
     first = creep.system(entering, tuple(Channel(name, "m") for name in crept.values()))
     whole = connect([first, rename(given.system, crept)], {}, _inputs(given, entering), given.system.output_names)

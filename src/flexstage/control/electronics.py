@@ -17,7 +17,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
 from flexstage.parts.actuator import ChargedActuator
-from flexstage.parts.gauge import DisplacementGauge
+from flexstage.parts.gauge import Instrument
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class AmplifierSettings(amplifier.Amplifier):
 class GaugeSettings:
     """What replaces or adds to what a design file says of a gauge; what is absent is the gauge's own, or limits nothing.
 
-    `bandwidth` [Hz] of its first-order lag, `noise_density` [m/Hz^(1/2)] one-sided and white before that lag, `resolution` [m] its step;
-    `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
+    `bandwidth` [Hz] of its first-order lag, `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before that lag, `resolution`
+    [m, rad] its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
     """
 
     bandwidth: float | None = None
@@ -70,8 +70,8 @@ class Sensor:
     """One gauge between stage and computer.
 
     `bandwidth` [Hz] of its lag (infinite: none), `filter_order` and `filter_corner` [Hz] of the Butterworth filter behind it,
-    `noise_density` [m/Hz^(1/2)] one-sided and white before both (None: not stated), `resolution` [m] of the number read (0: none),
-    `half_range` [m] what it can measure both ways.
+    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before both (None: not stated), `resolution` [m, rad] of the number read
+    (0: none), `half_range` [m, rad] what it can measure both ways.
     """
 
     bandwidth: float = np.inf
@@ -127,7 +127,7 @@ def hardware(
     >>> round(given.amplifiers["B1"].bandwidth), round(given.amplifiers["B1"].step * 1e9, 3)  # 1/(2 pi 100 ohm 0.4 uF), 150 um/2^16
     (3979, 2.289)
     """
-    piezos, placed = stacks(mechanism), expand(mechanism).gauges
+    piezos, placed = stacks(mechanism), {name: item for name, item in expand(mechanism).gauges.items() if not item.members}
     powers = _by_name(amplifiers, tuple(piezos), AmplifierSettings(), "actuator")
     limits = stroke_limits(mechanism)
     require(finding for name, setting in powers.items() for finding in _amplifier_findings(name, setting, piezos[name]))
@@ -181,7 +181,7 @@ def _gain(piezo: ChargedActuator) -> float:
     return float(piezo.stroke / (piezo.voltage_high - piezo.voltage_low))
 
 
-def _sensor(setting: GaugeSettings, gauge: DisplacementGauge) -> Sensor:
+def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
     return Sensor(
         bandwidth=_first_stated(setting.bandwidth, gauge.bandwidth, np.inf),
         noise_density=setting.noise_density if setting.noise_density is not None else _float_or_none(gauge.noise_density),
@@ -241,7 +241,7 @@ def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> I
             yield Finding(name, f"its stroke goes from {item.low:g} m to {item.high:g} m", "Give low below high")
         return
     if not 0.0 <= item.resolution < np.inf:
-        yield Finding(name, f"its resolution is {item.resolution:g} m", "Give a length of 0 or more")
+        yield Finding(name, f"its resolution is {item.resolution:g}", "Give 0 or more")
     if not 0 <= item.filter_order <= 12:
         yield Finding(name, f"its filter has order {item.filter_order}", "Give 0 (none) to 12")
     if item.filter_order and not 0.0 < item.filter_corner < np.inf:

@@ -24,7 +24,7 @@ def integral(given: Plant, gain: float) -> System:
     strokes, step, units = given.coordinates.strokes, given.hardware.step, given.coordinates.units
     count = strokes.shape[1]
     inputs = tuple(Channel(f"error.{name}", unit) for name, unit in zip(given.coordinates.names, units, strict=True))
-    outputs = tuple(Channel(f"command.{name}", "m") for name in given.actuators)
+    outputs = given.coordinates.commands("command.")
     if step is None:
         return System(np.zeros((count, count)), np.eye(count), gain * strokes, np.zeros_like(strokes), inputs, outputs)
     return System(np.eye(count), np.eye(count), gain * step * strokes, gain * step * strokes, inputs, outputs, step)

@@ -258,13 +258,17 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     if len(bare) < len(sensors) - len(silent) and closed.step is not None:
         yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
     if budget.slowly_rounding:
-        half = 1e9 * 0.5 * max(sensors[name].resolution for name in budget.slowly_rounding)
+        units = {channel.name: channel.unit for channel in given.coordinates.readings()}
+        half = ", ".join(
+            _half_step([sensors[name] for name in budget.slowly_rounding if units[name] == unit], unit)
+            for unit in sorted({units[name] for name in budget.slowly_rounding})
+        )
         most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slowly_rounding)
         yield (
             "rounding is counted as white noise, and is none: from sample to sample the readings of "
             f"{', '.join(budget.slowly_rounding)} move by "
             f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
-            f"by half a step, {half:.3g} nm, which no loop sees"
+            f"by half a step, {half}, which no loop sees"
         )
     if closed.step is None and any(sensor.resolution for sensor in sensors.values()):
         yield "a continuous loop rounds nothing: rounding of gauges and converters is left out"
@@ -274,3 +278,8 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     unbounded = list(band_spectra(closed, {}, outputs))
     if unbounded:
         yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"
+
+
+def _half_step(sensors: list[Sensor], unit: str) -> str:
+    """Half the largest step of gauges of one unit, in billionths of it."""
+    return f"{1e9 * 0.5 * max(sensor.resolution for sensor in sensors):.3g} n{unit}"

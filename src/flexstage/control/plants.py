@@ -33,7 +33,7 @@ class Plant:
     """A stage with amplifiers and gauges, continuous: what a hold drives and a sampler sees.
 
     `system` has as inputs the free strokes `<actuator>` [m] that the hold gives to the amplifiers, `ground.<c>` [m, rad] and wrenches
-    `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m] (the gauge's reading behind its lag and filter, before noise and rounding),
+    `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m, rad] (its reading behind its lag and filter, before noise and rounding),
     `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
     `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
     compliance is a static term; `note` says what was simplified.
@@ -196,12 +196,12 @@ def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -
 
 def _with_hardware(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
     """Amplifiers before the stage, lags and filters behind its gauges; the names of all states."""
-    amplifiers, lags = _amplifiers(loop.actuators, given), _lags(loop.gauges, given)
-    filters = [_filter(name, given.sensors.get(name, Sensor())) for name in loop.gauges]
+    amplifiers, lags = _amplifiers(loop, given), _lags(loop, given)
+    filters = [_filter(channel, given.sensors.get(channel.name, Sensor())) for channel in loop.readings()]
     others = tuple(channel for channel in stage.inputs if channel.name not in loop.actuators)
     body = rename(stage, {name: f"stroke.{name}" for name in loop.actuators})
     motions = tuple(name for name in stage.output_names if name not in loop.gauges)
-    inputs = (*(Channel(name, "m") for name in loop.actuators), *others)
+    inputs = (*loop.commands(), *others)
     outputs = (*(f"gap.{name}" for name in loop.gauges), *motions)
     names = [*states, *_slow("amplifier", loop.actuators, amplifiers), *_slow("gauge", loop.gauges, lags)]
     names += [f"filter.{name}.{number + 1}" for name, each in zip(loop.gauges, filters, strict=True) for number in range(len(each.A))]
@@ -213,19 +213,19 @@ def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
     return [f"{kind}.{name}" for name, gain in zip(names, np.diag(lags.D), strict=True) if gain == 0.0]
 
 
-def _amplifiers(names: tuple[str, ...], given: Hardware) -> System:
-    bandwidths = np.array([given.amplifiers[name].bandwidth if name in given.amplifiers else np.inf for name in names])
-    return lag(tuple(Channel(name, "m") for name in names), bandwidths, tuple(Channel(f"stroke.{name}", "m") for name in names))
+def _amplifiers(loop: Coordinates, given: Hardware) -> System:
+    bandwidths = np.array([given.amplifiers[name].bandwidth if name in given.amplifiers else np.inf for name in loop.actuators])
+    return lag(loop.commands(), bandwidths, loop.commands("stroke."))
 
 
-def _lags(names: tuple[str, ...], given: Hardware) -> System:
-    bandwidths = np.array([given.sensors[name].bandwidth if name in given.sensors else np.inf for name in names])
-    return lag(tuple(Channel(name, "m") for name in names), bandwidths, tuple(Channel(f"lagged.{name}", "m") for name in names))
+def _lags(loop: Coordinates, given: Hardware) -> System:
+    bandwidths = np.array([given.sensors[name].bandwidth if name in given.sensors else np.inf for name in loop.gauges])
+    return lag(loop.readings(), bandwidths, loop.readings("lagged."))
 
 
-def _filter(name: str, sensor: Sensor) -> System:
+def _filter(read: Channel, sensor: Sensor) -> System:
     """A Butterworth low-pass of gain 1."""
-    entry, exit_ = (Channel(f"lagged.{name}", "m"),), (Channel(f"gap.{name}", "m"),)
+    entry, exit_ = (Channel(f"lagged.{read.name}", read.unit),), (Channel(f"gap.{read.name}", read.unit),)
     if not sensor.filter_order:
         return static(np.eye(1), entry, exit_)
     order, turning = sensor.filter_order, 2.0 * np.pi * sensor.filter_corner
@@ -249,9 +249,8 @@ def sensor_filter(given: Plant) -> System:
     >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
     0.6708
     """
-    lags = _lags(given.gauges, given.hardware)
-    filters = [_filter(name, given.hardware.sensors.get(name, Sensor())) for name in given.gauges]
-    inputs = tuple(Channel(name, "m") for name in given.gauges)
+    lags, inputs = _lags(given.coordinates, given.hardware), given.coordinates.readings()
+    filters = [_filter(channel, given.hardware.sensors.get(channel.name, Sensor())) for channel in inputs]
     whole = connect([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
     old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
     return rename(whole, old)

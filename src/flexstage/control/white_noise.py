@@ -124,7 +124,7 @@ def _sampled_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tupl
 
 
 def gauge_noise(given: Plant, gauge: str, density: float) -> System:
-    """The samples of a gauge's white noise of a `density` [m/Hz^(1/2)] behind its lag and filter, from unit white inputs (sampled loops).
+    """The samples of a gauge's white noise of a `density` behind its lag and filter, from unit white inputs (sampled loops).
 
     >>> from flexstage.control.example import integral_loop
     >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)
@@ -137,7 +137,7 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
 
 def _filtered_noise(filters: System, name: str, density: float, step: float) -> System:
     """The samples of white noise behind lag and filter: x[k+1] = e^{AT} x[k] + L w[k], unit w."""
-    outputs = (Channel(f"coloured.{name}", "m"),)
+    outputs = (Channel(f"coloured.{name}", filters.outputs[0].unit),)
     used = _reachable(filters)
     if not len(used.A):
         return System(used.A, used.B, used.C, used.D * density / np.sqrt(2.0 * step), (Channel(f"white.{name}", "1"),), outputs, step)
@@ -193,7 +193,7 @@ def _continuous_white(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, t
     links = {f"noise.{name}": {} for name in (*given.gauges, *given.actuators)}
     links |= {f"noise.{name}": {f"filtered.{name}": 1.0} for name in given.gauges}
     entry = {f"noise.{name}": f"white.{name}" for name in (*given.gauges, *given.actuators)}
-    before = replace(sensor_filter(given), inputs=tuple(Channel(f"before.{name}", "m") for name in given.gauges))
+    before = replace(sensor_filter(given), inputs=given.coordinates.readings("before."))
     links |= {f"before.{name}": {} for name in given.gauges}
     for source, size in parts.items():
         place = f"before.{source.channel}" if source.kind is Kind.GAUGE else f"noise.{source.channel}"

@@ -399,10 +399,11 @@ def _advice(first: _Thing, second: _Thing) -> str:
 
 def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> Iterator[Finding]:
     for name, gauge in assembly.gauges.items():
-        things = solids.get(gauge.body, [])
-        if not things or any(isinstance(thing.form, Imported) for thing in things):
+        seen = gauge.single
+        things = solids.get(seen.body, []) if seen is not None and gauge.gauge.gap else []
+        if seen is None or not things or any(isinstance(thing.form, Imported) for thing in things):
             continue
-        frame = _first(gauge.frame)
+        frame = _first(seen.frame)
         points = np.concatenate([piece.points for thing in things for piece in thing.pieces])
         side = float(np.max(np.ptp(points, axis=0)))
         if any(np.any(_inside(thing, frame.position[None])) for thing in things):
@@ -411,7 +412,7 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
             continue
         beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
         if beside > _BRACKET * side:
-            yield _off_target(name, gauge.body, beside, _miss(frame, things, beside + 2.0 * side))
+            yield _off_target(name, seen.body, beside, _miss(frame, things, beside + 2.0 * side))
 
 
 def _is_within(reach: float, point: Array, piece: Convex) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -14,14 +13,14 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.mechanism.likeness import drawn_units, link_lineage
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, posed
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
 from flexstage.mechanism.path import complete, has_member, replace_member
-from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose
+from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
+from flexstage.mechanism.sight import PlacedGauge, gauge_findings, link_names, place_sum, sight, sight_of_link
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, Solid, owner_of, solid_frame
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
-from flexstage.parts.gauge import DisplacementGauge, Positive
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
 from flexstage.parts.material import Material
@@ -137,18 +136,6 @@ class PlacedSuperelement:
 
 
 @dataclass(frozen=True, eq=False)
-class PlacedGauge:
-    """A gauge of the expanded stage: measuring point and direction in the stage's frame, sign of its reading along that direction."""
-
-    name: str
-    gauge: DisplacementGauge
-    body: str
-    base: str
-    frame: Frame
-    sign: float
-
-
-@dataclass(frozen=True, eq=False)
 class Assembly:
     """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
 
@@ -184,19 +171,6 @@ class Assembly:
     def thrusts(self) -> Mapping[str, str]:
         """Input name to link name of the force actuators."""
         return {name: link for name, link in self.actuators.items() if not self.actuator(name).takes_stroke}
-
-
-def copy_names(key: str) -> tuple[str, ...]:
-    """The copies that a placement key names.
-
-    >>> copy_names("B1-B3"), copy_names("top")
-    (('B1', 'B2', 'B3'), ('top',))
-    """
-    match = re.fullmatch(r"(.*?)(\d+)-(?:\1)?(\d+)", key)
-    if match is None:
-        return (key,)
-    stem, first, last = match[1], int(match[2]), int(match[3])
-    return tuple(f"{stem}{number}" for number in range(first, last + 1))
 
 
 def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
@@ -277,9 +251,9 @@ def _assembly(key: _Same) -> Assembly:
     bodies = {
         item.name: _placed_body((item, *lent.get(item.name, ())), joined, mechanism.materials) for item in drawn if item.body.of is None
     }
-    require(_unknown_bodies(bodies, joined, mechanism.gauges))
+    require(_unknown_bodies(bodies, joined, posed(mechanism.gauges)))
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
-    return Assembly(bodies, links, dict(_gauges(mechanism)), _actuators(links), dict(_points(drawn)), ground, elements)
+    return Assembly(bodies, links, _gauges(mechanism, links), _actuators(links), dict(_points(drawn)), ground, elements)
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -319,7 +293,11 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
         for name, solid in body.solids.items()
     ]
     named += [(f"place.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.place.items()]
-    named += [(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors) for name, probe in mechanism.gauges.items()]
+    named += [
+        (f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+        for name, probe in mechanism.gauges.items()
+        if not isinstance(probe, GaugeSum)
+    ]
     for where, kind, name, known in named:
         if name and name not in known:
             yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, known))
@@ -628,14 +606,22 @@ def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
     return {(owner if owner and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
 
 
-def _gauges(mechanism: Mechanism) -> Iterator[tuple[str, PlacedGauge]]:
-    for key, probe in mechanism.gauges.items():
-        names = copy_names(key)
-        frames = copy_frames(probe.pattern, len(names))
-        for name, frame in zip(names, frames, strict=True):
-            yield name, _placed_gauge(mechanism, probe, name, misalign(frame, mechanism.changes, name))
+def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, PlacedGauge]:
+    """The gauges in the description's order; sums of what stands there."""
+    require(gauge_findings(mechanism, links))
+    single = {item.name: item for key, place in mechanism.gauges.items() for item in _single_gauges(mechanism, links, key, place)}
+    formed = {name: place for name, place in mechanism.gauges.items() if isinstance(place, GaugeSum)}
+    sums = {name: place_sum(name, place, mechanism.gauges, single) for name, place in formed.items()}
+    return {name: sums[name] if name in sums else single[name] for key in mechanism.gauges for name in copy_names(key)}
 
 
-def _placed_gauge(mechanism: Mechanism, probe: Probe, name: str, frame: Frame) -> PlacedGauge:
-    sign = 1.0 if probe.positive is Positive.OPENS else -1.0
-    return PlacedGauge(name, mechanism.sensors[probe.gauge], probe.body, probe.base or GROUND, frame.right_handed, sign)
+def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: str, place: GaugePlace) -> Iterator[PlacedGauge]:
+    names = copy_names(key)
+    if isinstance(place, Probe):
+        gauge = mechanism.sensors[place.gauge]
+        for name, frame in zip(names, copy_frames(place.pattern, len(names)), strict=True):
+            yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.changes, name).right_handed),))
+    elif isinstance(place, LinkProbe):
+        gauge = mechanism.sensors[place.gauge]
+        for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
+            yield PlacedGauge(name, gauge, (sight_of_link(link.joins, link.frame, link.part, gauge),))

@@ -14,7 +14,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
 from flexstage.parts.mass import solid_properties
-from flexstage.parts.part import Part, inner, material_of
+from flexstage.parts.part import inner, material_of, span
 from flexstage.parts.shape import Shaped
 
 _STATED, _ASKED = "as stated", "as asked"
@@ -119,17 +119,6 @@ def coefficient(link: PlacedLink) -> Number:
     holder = inner(link.part) if link.material is None else link.material
     value = getattr(holder, "expansion", None)
     return np.nan if value is None else value
-
-
-def span(part: Part) -> Number:
-    """Length of a part along its x axis [m], zero for given matrices and joints.
-
-    >>> from flexstage.parts.leaf import Leaf
-    >>> span(Leaf("steel", length=0.05, thickness=0.001, width=0.01))
-    0.05
-    """
-    own = inner(part)
-    return own.span if isinstance(own, Shaped) else 0.0
 
 
 def _grows(link: PlacedLink) -> bool:

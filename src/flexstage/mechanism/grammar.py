@@ -20,7 +20,18 @@ from flexstage.base.digest import KEY, digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
-from flexstage.mechanism.mechanism import BESIDE, Joins, Mechanism, ModalDamping, NamedNumber, RayleighDamping, StructuralDamping
+from flexstage.mechanism.mechanism import (
+    BESIDE,
+    GaugeSum,
+    Joins,
+    LinkProbe,
+    Mechanism,
+    ModalDamping,
+    NamedNumber,
+    Probe,
+    RayleighDamping,
+    StructuralDamping,
+)
 from flexstage.mechanism.node import (
     BAD,
     COMPLIANCES,
@@ -50,7 +61,7 @@ from flexstage.mechanism.pattern import Polar, Pose
 from flexstage.mechanism.trade import advise_key, advise_kind
 from flexstage.parts import GAUGES, PARTS
 from flexstage.parts.body import Block, Cylinder, Imported
-from flexstage.parts.gauge import DisplacementGauge, Gauge
+from flexstage.parts.gauge import Gauge, Instrument
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.shape import Elastic
 
@@ -59,7 +70,13 @@ LIKE = "like"
 RESERVED = (TAGS, LIKE)
 """Keys that may stand in any table of a file and are no field."""
 
+BY_FIELD = ""
+"""In the place of the key of alternatives that are told apart by which of their fields stands in the table; the name is the field's."""
+
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
+    Probe: (BY_FIELD, "body"),
+    LinkProbe: (BY_FIELD, "link"),
+    GaugeSum: (BY_FIELD, "sum"),
     Circular: ("shape", "circular"),
     Elliptic: ("shape", "elliptic"),
     Filleted: ("shape", "filleted"),
@@ -440,6 +457,17 @@ class UnionNode(Node):
 
 
 @dataclass(frozen=True)
+class FieldUnionNode(UnionNode):
+    """One of several classes, told apart by which of their fields stands in the table; the first where none of them does."""
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record of the alternative whose field stands there."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        return next((option for name, option in self.options if name in raw), self.options[0][1]).read(raw, where, reader)
+
+
+@dataclass(frozen=True)
 class Slot:
     """A field: its key in a file, what it holds, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
 
@@ -560,13 +588,14 @@ def _node(hint: Any) -> Node:
         return NamedNode()
     if hint == Joins:
         return JoinsNode()
-    if hint is DisplacementGauge:
+    if hint is Instrument:
         kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
         return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
     if hint is Elastic or origin in (types.UnionType, typing.Union):
         options = [each for option in typing.get_args(hint) or (hint,) for each in (PARTS.all.values() if option is Elastic else [option])]
         told = [_discriminator(option) for option in options]
-        return UnionNode(told[0][0], tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True)))
+        named = tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True))
+        return FieldUnionNode(None, named) if told[0][0] == BY_FIELD else UnionNode(told[0][0], named)
     if origin is tuple:
         return _tuple(typing.get_args(hint))
     if isinstance(origin, type) and issubclass(origin, Mapping):

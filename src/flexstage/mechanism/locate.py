@@ -10,7 +10,7 @@ from flexstage.mechanism.expand import copy_names
 from flexstage.mechanism.formulas import NUMBERS
 from flexstage.mechanism.grammar import NumbersNode, RecordNode, node_of
 from flexstage.mechanism.likeness import ancestry, drawn_units, link_lineage
-from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber, posed
 from flexstage.mechanism.misalignment import MISALIGNED, Misalignment
 from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import completions, has_member, member
@@ -72,7 +72,7 @@ def locate(mechanism: Mechanism, address: str) -> Place:
 
 def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
     """Whether the steps say where a copy or a gauge stands."""
-    gauges = [name for key in mechanism.gauges for name in copy_names(key)]
+    gauges = [name for key in posed(mechanism.gauges) for name in copy_names(key)]
     owners = [*unit_of_copy(mechanism), *gauges]
     if steps[0] not in owners or len(steps) < 2 or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
         return False

@@ -26,7 +26,7 @@ from flexstage.base.quantity import (
 from flexstage.mechanism.pattern import ORIGIN, Pattern, between, middle
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.gauge import DisplacementGauge, Positive
+from flexstage.parts.gauge import Instrument, Positive
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part
 
@@ -120,16 +120,42 @@ class Placement(Description):
 
 @dataclass(frozen=True, eq=False)
 class Probe(Description):
-    """Gauges that read the motion of `body` against `base` along the x axis of the pattern's frame, at its origin.
+    """Gauges that read the motion of `body` against `base` along, or about, the x axis of the pattern's frame, at its origin.
 
-    x points from the gauge to its target: the gap opens when the target moves along +x.
+    x points from a gauge of gaps to its target: the gap opens when the target moves along +x, and `positive` says whether its reading then
+    grows. The others state none: their reading grows along +x, or with a turn about +x by the right-hand rule.
     """
 
     gauge: str
     body: str
     pattern: Pattern
-    positive: Positive
+    positive: Positive | None = None
     base: str = GROUND
+
+
+@dataclass(frozen=True, eq=False)
+class LinkProbe(Description):
+    """A gauge on a link of the expanded stage (`B1/pzt`): it reads the link's deformation along, or about, the link's x axis.
+
+    The second body against the first: positive where the link becomes longer. `B1-B3/pzt` are the links of as many gauges.
+    """
+
+    gauge: str
+    link: str
+
+
+@dataclass(frozen=True, eq=False)
+class GaugeSum(Description):
+    """A weighted sum of other gauges that read one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
+
+    Its members are read through it: the pose follows from the gauges that no sum takes up, sums among them. Its noise, steps and range
+    are those of its members.
+    """
+
+    sum: Mapping[str, Annotated[Number, RATIO]]
+
+
+GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,8 +216,8 @@ class Mechanism(InNotebook, Description):
     links: Mapping[str, Link] = _empty()
     units: Mapping[str, Unit] = _empty()
     place: Mapping[str, Placement] = _empty()
-    sensors: Mapping[str, DisplacementGauge] = _empty()
-    gauges: Mapping[str, Probe] = _empty()
+    sensors: Mapping[str, Instrument] = _empty()
+    gauges: Mapping[str, GaugePlace] = _empty()
     payloads: Mapping[str, Payload] = _empty()
     forces: Mapping[str, Force] = _empty()
     gravity: Annotated[Vector, ACCELERATION] = (0.0, 0.0, -9.80665)
@@ -209,3 +235,12 @@ class Mechanism(InNotebook, Description):
     sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
+
+
+def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
+    """The gauges that stand at poses of their own, not on links and not as sums of others.
+
+    >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
+    []
+    """
+    return {name: item for name, item in gauges.items() if isinstance(item, Probe)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, TypeAlias
@@ -94,3 +95,16 @@ class Pose(Description):
 
 
 Pattern: TypeAlias = Polar | Pose
+
+
+def copy_names(key: str) -> tuple[str, ...]:
+    """The copies that a placement key names.
+
+    >>> copy_names("B1-B3"), copy_names("top")
+    (('B1', 'B2', 'B3'), ('top',))
+    """
+    match = re.fullmatch(r"(.*?)(\d+)-(?:\1)?(\d+)", key)
+    if match is None:
+        return (key,)
+    stem, first, last = match[1], int(match[2]), int(match[3])
+    return tuple(f"{stem}{number}" for number in range(first, last + 1))

@@ -22,6 +22,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import Layout, deformation, free_deformations, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.blockage import Blockage, blockage
+from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.parts.freedom import ALL, Freedom
@@ -81,6 +82,8 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         actuators=tuple(graph.assembly.strokes),
         coordinates=tuple(COMPONENTS[index] for index in freedoms),
         gauges=tuple(graph.assembly.gauges),
+        gauge_units=tuple(gauge.unit for gauge in graph.assembly.gauges.values()),
+        sums={name: gauge.members for name, gauge in graph.assembly.gauges.items() if gauge.members},
         actuation=strokes,
         sensing=_sensing(graph, sensed),
         motion=bodies[..., :6, :],
@@ -262,9 +265,7 @@ def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> 
 
 def _reading(graph: _Graph, name: str) -> Array:
     """What a gauge reads (..., 1, N) of the bodies' motions."""
-    gauge = graph.assembly.gauges[name]
-    ends = [twist_at(graph.assembly, graph.order, body, gauge.frame)[..., :1, :] for body in (gauge.body, gauge.base)]
-    return gauge.sign * (ends[0] - ends[1])
+    return reading(graph.assembly.gauges[name], lambda body, frame: twist_at(graph.assembly, graph.order, body, frame))
 
 
 def _elongations(graph: _Graph) -> dict[str, Array]:
@@ -294,7 +295,7 @@ def _sensing(graph: _Graph, bodies: Array) -> Array:
 
 def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
     gauge, row = graph.assembly.gauges[name], _reading(graph, name)
-    if {gauge.body, gauge.base} <= {PLATFORM, "ground"}:
+    if all({sight.body, sight.base} <= {PLATFORM, "ground"} for sight in gauge.sights):
         return row[..., :6]
     weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length) ** 2
     return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)

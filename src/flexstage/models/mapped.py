@@ -90,7 +90,7 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
     outputs = np.concatenate(np.broadcast_arrays(kinematics.motion), axis=-2)
     sensing = kinematics.sensing @ kinematics.motion
     channels = [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
-    channels += [Channel(name, "m") for name in kinematics.gauges]
+    channels += [Channel(name, unit) for name, unit in zip(kinematics.gauges, kinematics.reading_units, strict=True)]
     inputs = [Channel(name, "m") for name in kinematics.actuators]
     inputs += [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
     transposed = np.swapaxes(kinematics.motion, -1, -2)

@@ -3,9 +3,10 @@
 from flexstage.base.register import Register
 from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.cross_hinge import CrossHinge
+from flexstage.parts.encoder import Encoder
 from flexstage.parts.folded_leaf import FoldedLeaf
 from flexstage.parts.force_actuator import ForceActuator
-from flexstage.parts.gauge import DisplacementGauge, Gauge
+from flexstage.parts.gauge import Gauge, Instrument
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -14,7 +15,9 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
 from flexstage.parts.spring import Spring
+from flexstage.parts.strain_gauge import StrainGauge
 from flexstage.parts.superelement import Superelement
+from flexstage.parts.tilt import Tilt
 from flexstage.parts.voice_coil import VoiceCoil
 
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
@@ -24,5 +27,5 @@ PARTS: Register[type[Elastic]] = Register(
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 
-GAUGES: Register[type[DisplacementGauge]] = Register("flexstage.gauges", {Gauge.kind: Gauge})
+GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in (Gauge, Tilt, Encoder, StrainGauge)})
 """Kinds of gauges; one that states no kind is a `Gauge`."""

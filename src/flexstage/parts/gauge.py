@@ -1,14 +1,18 @@
-"""Displacement gauges (capacitive gap sensors)."""
+"""Gauges: what all kinds have, and displacement gauges (capacitive gap sensors)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.number import Number
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE
+from flexstage.base.number import Number, magnitude
+from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, ROTATION, Quantity
+from flexstage.parts.freedom import ROTATIONS, Freedom
 
 
 class Positive(Enum):
@@ -18,18 +22,38 @@ class Positive(Enum):
     CLOSES = "closes"
 
 
-class DisplacementGauge(Description):
+class Instrument(Description):
     """What every `kind` of gauge has, as fields or worked out of them; `parts.GAUGES` lists the kinds.
 
-    Measuring `range` (total span) and `resolution` (quantisation step) [m], white `noise_density` [m/Hz^0.5] and `bandwidth` [Hz]; the
-    last two are `None` where they are unknown.
+    It reads one `freedom` of a body's motion against its base's, in its own frame: a displacement [m] or a rotation [rad]. `gap`: it looks
+    along x at a target, and whether its reading grows as the gap opens or closes is stated. `inside`: it stands on a link. Measuring
+    `range` (total span) and `resolution` (quantisation step) [m, rad], white `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz];
+    the last two are `None` where they are unknown.
     """
 
     kind: ClassVar[str]
+    freedom: ClassVar[Freedom] = Freedom.X
+    gap: ClassVar[bool] = False
+    inside: ClassVar[bool] = False
     range: Number
     resolution: Number
     noise_density: Number | None
     bandwidth: Number | None
+
+    @property
+    def quantity(self) -> Quantity:
+        """What it reads.
+
+        >>> Gauge(range=500e-6).quantity.si
+        'm'
+        """
+        return ROTATION if self.freedom in ROTATIONS else DISPLACEMENT
+
+
+class DisplacementGauge(Instrument):
+    """What every kind has that looks at a target along its x axis and reads the gap between them."""
+
+    gap: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,3 +66,42 @@ class Gauge(DisplacementGauge):
     noise_density: Annotated[Number, NOISE_DENSITY, NOT_NEGATIVE] | None = None
     bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+
+@dataclass(frozen=True, eq=False)
+class Combination(Instrument):
+    """What a weighted sum of gauges is worth, as one of the `read` quantity."""
+
+    kind: ClassVar[str] = "sum"
+    read: Quantity
+    range: Number
+    resolution: Number
+    noise_density: Number | None
+    bandwidth: Number | None
+
+    @property
+    def quantity(self) -> Quantity:
+        """What it reads."""
+        return self.read
+
+
+def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
+    """The sum of gauges, each with its weight, whose errors are independent.
+
+    Range sum |w_i| r_i and resolution sum |w_i| q_i (the worst signs), noise density (sum w_i^2 n_i^2)^(1/2), unknown where one of them is;
+    the members' bandwidth where they have the same.
+
+    >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])
+    >>> round(1e6 * float(pair.range), 6), round(1e12 * float(pair.noise_density), 6)
+    (100.0, 25.0)
+    """
+    densities = [weight * gauge.noise_density for weight, gauge in members if gauge.noise_density is not None]
+    first, *rest = (gauge.bandwidth for _, gauge in members)
+    alike = first is not None and all(other is not None and np.all(first == other) for other in rest)
+    return Combination(
+        members[0][1].quantity,
+        range=sum(magnitude(weight) * gauge.range for weight, gauge in members),
+        resolution=sum(magnitude(weight) * gauge.resolution for weight, gauge in members),
+        noise_density=sum(density**2 for density in densities) ** 0.5 if len(densities) == len(members) else None,
+        bandwidth=first if alike else None,
+    )

@@ -12,7 +12,7 @@ from flexstage.base.number import Number
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
-from flexstage.parts.shape import Elastic
+from flexstage.parts.shape import Elastic, Shaped
 from flexstage.parts.superelement import Port
 
 
@@ -107,3 +107,14 @@ def push_of(part: Part) -> Number | None:
     """
     own = inner(part)
     return None if isinstance(own, Joint) else own.push
+
+
+def span(part: Part) -> Number:
+    """Length of a part along its x axis [m], zero for given matrices and joints.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> span(Leaf("steel", length=0.05, thickness=0.001, width=0.01))
+    0.05
+    """
+    own = inner(part)
+    return own.span if isinstance(own, Shaped) else 0.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array, first_design
 from flexstage.mechanism.expand import copy_names, expand
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism, posed
 from flexstage.mechanism.outline import outlines
 from flexstage.mechanism.pattern import Normal, Polar
 from flexstage.parts.body import Block, Cylinder
@@ -43,7 +43,7 @@ def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
     ()
     """
     placed = [(key, placement.pattern) for key, placement in mechanism.place.items()]
-    placed += [(key, probe.pattern) for key, probe in mechanism.gauges.items()]
+    placed += [(key, probe.pattern) for key, probe in posed(mechanism.gauges).items()]
     return tuple(
         _ring(copy_names(key), pattern) for key, pattern in placed if isinstance(pattern, Polar) and first_value(pattern.radius) > 0.0
     )

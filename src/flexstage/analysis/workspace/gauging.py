@@ -12,9 +12,10 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.record import VIEW, Along
+from flexstage.base.record import INNER, VIEW, Along
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
@@ -27,9 +28,9 @@ _LEVEL = 1e-9
 class GaugeRange(InNotebook):
     """Gauge readings at the worst corner of a box of commands, against half the measuring range (gauges set to mid-range), (..., g) each.
 
-    `swing` [m] the largest reading, `limit` [m] half the range. `radius` [m] is each gauge's distance from the platform's axis,
-    `largest_here` [m] the largest that fits at its own angle, `largest_anywhere` [m] at any angle (infinite: the range holds everywhere;
-    NaN: it does not even hold on the axis).
+    `swing` the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
+    platform's axis, `largest_here` [m] the largest that fits at its own angle, `largest_anywhere` [m] at any angle (infinite: the range
+    holds everywhere; NaN: it does not even hold on the axis, or the gauge does not stand between platform and ground).
     """
 
     gauges: tuple[str, ...]
@@ -40,6 +41,7 @@ class GaugeRange(InNotebook):
     largest_here: Array
     largest_anywhere: Array
     provenance: str
+    units: Annotated[tuple[str, ...], INNER] = ()
 
     @property
     def fits(self) -> Annotated[Array, Along("gauges")]:
@@ -51,14 +53,16 @@ class GaugeRange(InNotebook):
         """Rows are the gauges."""
         columns = ("swing", "limit", "radius", "largest_here", "largest_anywhere")
         values = np.stack([getattr(self, name) for name in columns], axis=-1)
-        return Matrix(values, self.gauges, columns, "m")
+        units = tuple((unit, unit, "m", "m", "m") for unit in self.units or ("m",) * len(self.gauges))
+        return Matrix(values, self.gauges, columns, units)
 
 
 @dataclass(frozen=True, eq=False)
 class PoseResolution(InNotebook):
     """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
 
-    `gauge_steps` and `gauge_noise` (..., g) [m] are what each gauge has. `worst`: all gauges off by one step with the worst signs,
+    S is by single gauges, through the sums that take them up; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are what each of these
+    has. `worst`: all gauges off by one step with the worst signs,
     sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the rms of the stated noise densities over the gauges'
     bandwidths (NaN where none is stated).
     """
@@ -81,25 +85,34 @@ class PoseResolution(InNotebook):
 def gauge_inverse(kinematics: Kinematics) -> Matrix:
     """S (..., 6, g): platform motion per gauge reading, R_s^-1 for six gauges, its least-squares inverse on the ideal motions otherwise.
 
-    Raises `DesignError` where the gauges do not see every ideal motion.
+    Where there are sums of gauges, R_s is of the gauges that no sum takes up, and the columns of S are the single gauges. Raises
+    `DesignError` where the gauges do not see every ideal motion.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> gauge_inverse(ideal(double_triangle(SM_REF_A))).values[2, 3:].round(6).tolist()
     [0.333333, 0.333333, 0.333333]
     """
-    seen = kinematics.sensing @ kinematics.motion
+    seen, reading = kinematics.seen, dict(zip(kinematics.gauges, kinematics.reading_units, strict=True))
     scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
-    first = np.real(seen[(0,) * (seen.ndim - 2)]) * scale
+    even = _even(kinematics, reading)
+    first = np.real((even * seen)[(0,) * (seen.ndim - 2)]) * scale
     rank = int(np.linalg.matrix_rank(first, tol=1e-9)) if first.size else 0
     if rank < kinematics.mobility:
         raise refuse(
             "gauges",
-            f"{len(kinematics.gauges)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
+            f"{len(kinematics.telling)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
-    values = kinematics.motion @ (scale[:, None] * _pseudo_inverse(seen * scale))
-    return Matrix(values, COMPONENTS, kinematics.gauges, tuple((f"{unit}/m",) * len(kinematics.gauges) for unit in TWIST_UNITS))
+    values = kinematics.motion @ (scale[:, None] * _pseudo_inverse(even * seen * scale) * even[:, 0])
+    single = kinematics.single_gauges
+    values = values @ kinematics.selection if kinematics.sums else values
+    return Matrix(values, COMPONENTS, single, tuple(tuple(f"{unit}/{reading[name]}" for name in single) for unit in TWIST_UNITS))
+
+
+def _even(kinematics: Kinematics, units: Mapping[str, str]) -> Array:
+    """Factors (t, 1) that make readings comparable: 1, and the stage's length for rotations."""
+    return np.array([1.0 if units[name] == "m" else kinematics.length for name in kinematics.telling])[:, None]
 
 
 def _pseudo_inverse(matrix: Array) -> Array:
@@ -124,7 +137,8 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
     10.0
     """
     inverse = gauge_inverse(kinematics)
-    gauges = [placed.gauge for placed in expand(mechanism).gauges.values()]
+    placed = expand(mechanism).gauges
+    gauges = [placed[name].gauge for name in inverse.columns]
     steps = stack([gauge.resolution for gauge in gauges])
     noises = stack(
         [
@@ -173,11 +187,12 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
         largest_here=np.broadcast_to(here, swing.shape),
         largest_anywhere=np.broadcast_to(anywhere, swing.shape),
         provenance=kinematics.provenance,
+        units=kinematics.reading_units,
     )
 
 
 def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
-    """How far each gauge moves either way (..., g) [m] at the worst corner of a box of motions given by their half widths.
+    """How far each reading goes either way (..., g) [m, rad] at the worst corner of a box of motions given by their half widths.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -188,7 +203,7 @@ def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
 
 
 def half_ranges(assembly: Assembly) -> Array:
-    """Half of each gauge's range (..., g) [m].
+    """Half of each gauge's range (..., g) [m, rad].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> half_ranges(expand(double_triangle()))[:2].tolist()
@@ -207,27 +222,30 @@ def _half(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
 
 def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Array, Array, Array]:
     """Radius of a gauge, the largest radius at its own angle, and the largest at any angle."""
-    placed = assembly.gauges[name]
-    arm = placed.frame.position - assembly.bodies[PLATFORM].reference
+    placed = assembly.gauges[name].single
+    if placed is None:
+        unknown = np.full(box.shape[:-2], np.nan)
+        return unknown, unknown, unknown
+    arm = 0.5 * (placed.frame.position + placed.foot.position) - assembly.bodies[PLATFORM].reference
     radius = np.sqrt(arm[..., 0] ** 2 + arm[..., 1] ** 2)
     if {placed.body, placed.base} != {PLATFORM, GROUND}:
         return radius, np.full_like(radius, np.nan), np.full_like(radius, np.nan)
     outward = np.where(radius[..., None] > 0.0, arm[..., :2] / np.where(radius > 0.0, radius, 1.0)[..., None], np.array([1.0, 0.0]))
     angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
-    largest = _largest_radius(box, limit, angles, direction=placed.frame.rotation[..., :, 0], outward=outward, height=arm[..., 2])
+    largest = _largest_radius(box, limit, angles, direction=_row(placed), outward=outward, height=arm[..., 2])
     return radius, largest[..., 0], np.min(largest, axis=-1)
 
 
 def _largest_radius(box: Array, limit: Array, angles: Array, *, direction: Array, outward: Array, height: Array) -> Array:
     """Largest radius (..., angles) at which the swing sum_j |A_j + r B_j| stays within the limit, the gauge carried around the axis.
 
-    At the first angle it measures along `direction` and lies at `height` in the direction `outward` from the axis. Convex and piecewise
-    linear in r: Newton's steps from above end in as many steps as there are pieces.
+    At the first angle it reads the translation or rotation along its `direction` (..., 6) and lies at `height` in the direction `outward`
+    from the axis. Convex and piecewise linear in r: Newton's steps from above end in as many steps as there are pieces.
     """
-    turned = _around(direction, angles)
+    turned, about = (_around(part, angles) for part in (direction[..., :3], direction[..., 3:]))
     out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
     up = np.asarray(height)[..., None, None] * np.array([0.0, 0.0, 1.0])
-    fixed = np.concatenate(np.broadcast_arrays(turned, np.cross(up, turned)), axis=-1) @ box
+    fixed = np.concatenate(np.broadcast_arrays(turned, np.cross(up, turned) + about), axis=-1) @ box
     growing = np.concatenate(np.broadcast_arrays(np.zeros_like(turned), np.cross(out, turned)), axis=-1) @ box
     start, slope = np.sum(np.abs(fixed), axis=-1), np.sum(np.abs(growing), axis=-1)
     bound = np.asarray(limit)[..., None] * (1.0 + 1e-12)
@@ -240,6 +258,13 @@ def _largest_radius(box: Array, limit: Array, angles: Array, *, direction: Array
         steps = grows & (excess > 0.0) & (steep > 0.0)
         radius = np.where(steps, radius - excess / np.where(steps, steep, 1.0), radius)
     return np.where(start > bound, np.nan, np.where(grows, radius, np.inf))
+
+
+def _row(sight: Sight) -> Array:
+    """The translation or rotation that is read (..., 6), in the stage's axes."""
+    axis = sight.frame.rotation[..., :, sight.component % 3]
+    parts = (axis, np.zeros_like(axis))
+    return np.concatenate(parts if sight.component < 3 else parts[::-1], axis=-1)
 
 
 def _around(vector: Array, angles: Array) -> Array:

@@ -111,7 +111,7 @@ def channels(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
 
 
 def _strokes(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
-    return tuple(Channel(f"{kind}.{name}", "m") for name in coordinates.actuators)
+    return coordinates.commands(f"{kind}.")
 
 
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:

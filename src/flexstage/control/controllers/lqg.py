@@ -211,9 +211,8 @@ def with_feedforward_states(control: System, given: LQG) -> System:
 
 def _ports(control: LQG) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
     coordinates = control.coordinates
-    applied = tuple(Channel(f"applied.{name}", "m") for name in coordinates.actuators)
-    commands = tuple(Channel(f"command.{name}", "m") for name in coordinates.actuators)
-    return (*channels("error", coordinates), *channels("pose", coordinates), *applied), commands
+    applied = coordinates.commands("applied.")
+    return (*channels("error", coordinates), *channels("pose", coordinates), *applied), coordinates.commands("command.")
 
 
 def _findings(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances) -> Iterator[Finding]:

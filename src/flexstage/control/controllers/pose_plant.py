@@ -7,7 +7,6 @@ from dataclasses import replace
 from flexstage.control.controllers.decentralised import channels
 from flexstage.control.plants import Plant, zero_order_hold
 from flexstage.control.system import System, select
-from flexstage.models.linear.model import Channel
 
 
 def pose_plant(plant: Plant) -> System:
@@ -20,5 +19,5 @@ def pose_plant(plant: Plant) -> System:
     """
     whole = select(zero_order_hold(plant), plant.actuators, [f"gap.{name}" for name in plant.gauges])
     pose = plant.coordinates.pose
-    commands = tuple(Channel(f"command.{name}", "m") for name in plant.actuators)
+    commands = plant.coordinates.commands("command.")
     return replace(whole, C=pose @ whole.C, D=pose @ whole.D, inputs=commands, outputs=channels("pose", plant.coordinates))

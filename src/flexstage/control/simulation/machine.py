@@ -95,6 +95,16 @@ class Machine:
         """Names of the plant's outputs that the gauges round."""
         return tuple(f"gap.{name}" for name in self.gauges)
 
+    def read(self, prefix: str = "") -> tuple[Channel, ...]:
+        """A channel a gauge, its name behind a prefix, in the unit of its reading."""
+        units = {channel.name: channel.unit for channel in self.plant.outputs}
+        return tuple(Channel(f"{prefix}{name}", units[f"gap.{name}"]) for name in self.gauges)
+
+    def strokes(self, prefix: str = "") -> tuple[Channel, ...]:
+        """A channel an actuator, its name behind a prefix, in the unit of its input."""
+        units = {channel.name: channel.unit for channel in self.plant.inputs}
+        return tuple(Channel(f"{prefix}{name}", units[name]) for name in self.actuators)
+
     @property
     def commands(self) -> tuple[str, ...]:
         """Names of the controller's outputs."""

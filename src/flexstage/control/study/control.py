@@ -27,7 +27,6 @@ from flexstage.control.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Kind, Tuning
 from flexstage.control.tuning.tune import tune
-from flexstage.models.linear.model import Channel
 
 _KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
     {
@@ -126,7 +125,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
 def _open_loop(given: ResolvedSetup, gains: Array) -> System:
     """Strokes for the reference, whatever the gauges say."""
     loop = given.plant.coordinates
-    return static(gains, channels("reference", loop), tuple(Channel(f"command.{name}", "m") for name in loop.actuators), given.step)
+    return static(gains, channels("reference", loop), loop.commands("command."), given.step)
 
 
 def _loops(given: ResolvedSetup, gains: Array) -> Loops:

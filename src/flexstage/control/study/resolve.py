@@ -16,7 +16,8 @@ from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.floor import floor_spectra
-from flexstage.control.study.setup import LoopSetup
+from flexstage.control.study.setup import GaugeSetup, LoopSetup
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
@@ -120,7 +121,7 @@ def _delay_findings(samples: float) -> Iterator[Finding]:
 
 
 def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:
-    power, gauges = setup.amplifier, setup.gauges
+    power = setup.amplifier
     return hardware(
         mechanism,
         rate=rate,
@@ -133,11 +134,16 @@ def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float)
             noise_density=power.noise,
             bits=power.bits,
         ),
-        gauges=GaugeSettings(
-            bandwidth=gauges.bandwidth,
-            noise_density=gauges.noise,
-            resolution=gauges.resolution,
-            filter_order=gauges.filter_order,
-            filter_corner=gauges.filter_corner,
-        ),
+        gauges={name: _sensing(setup.gauges, item.unit) for name, item in expand(mechanism).gauges.items() if not item.members},
+    )
+
+
+def _sensing(gauges: GaugeSetup, unit: str) -> GaugeSettings:
+    """Settings of a gauge of that unit: noise and steps of a set-up are those of displacement gauges."""
+    return GaugeSettings(
+        bandwidth=gauges.bandwidth,
+        noise_density=gauges.noise if unit == "m" else None,
+        resolution=gauges.resolution if unit == "m" else None,
+        filter_order=gauges.filter_order,
+        filter_corner=gauges.filter_corner,
     )

@@ -250,8 +250,8 @@ def _run(given: ResolvedSetup, course: Course, computed: Machine, cautions: tupl
 
 def _range_cautions(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
     """Gauges that went beyond their range."""
-    for name, share, reach in zip(found.gauges, found.out_of_range, computed.reach, strict=True):
+    for read, share, reach in zip(computed.read(), found.out_of_range, computed.reach, strict=True):
         if share > 0.0:
-            what = f"{name} measures {1e6 * reach:.4g} um both ways and is beyond it in {100.0 * share:.3g} % of the samples"
+            what = f"{read.name} measures {1e6 * reach:.4g} u{read.unit} both ways and is beyond it in {100.0 * share:.3g} % of the samples"
             advice = "The loop goes on by its last good reading: command less, or take a gauge of a longer range"
             yield Finding(f"trajectory {course.name}", what, advice)

@@ -37,8 +37,8 @@ class Chain:
     """Transfers over the lines of a transform of three blocks of `size` samples at `finer` times the sampling rate.
 
     From white numbers of unit variance: `strokes` (l, m) to the free strokes, `inputs` (l, m) to the recorded inputs [m], `outputs`
-    (l, p, m) to the gauges [m], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers to the
-    gauges' noise [m]. `note` says how damping is taken.
+    (l, p, m) to the gauges [m, rad], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers
+    to the gauges' noise. `note` says how damping is taken.
     """
 
     size: int
@@ -57,7 +57,7 @@ class Chain:
 
     @property
     def output_rms(self) -> Array:
-        """Expected rms (p,) of the gauge readings [m]: motion and noise."""
+        """Expected rms (p,) of the gauge readings [m, rad]: motion and noise."""
         return np.sqrt(self._power(np.sum(np.abs(self.outputs) ** 2, axis=-1)) + self._power(np.abs(self.gauge) ** 2))
 
     @property

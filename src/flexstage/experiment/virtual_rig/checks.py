@@ -151,15 +151,14 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
 
 
 def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    walked = plan.setup.sensing.drift * np.sqrt(plan.length / plan.rate / 60.0)
-    for name, rms, span in zip(plan.gauges, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
+    walked = plan.walks * np.sqrt(plan.length / plan.rate / 60.0)
+    for name, unit, rms, span in zip(plan.gauges, plan.units, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
-            what = f"peaks of 6 x {1e6 * rms:.4g} um rms pass half its range of {1e6 * span:.4g} um"
+            what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms pass half its range of {1e6 * span:.4g} u{unit}"
             yield Finding(name, what, "Drive less, let it drift less, or take a gauge of larger range")
     seen = np.hypot(chain.output_rms, walked)
     if np.all(_PEAK * seen < 0.5 * plan.steps):
         best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
-        what = (
-            f"peaks of 6 x {1e6 * seen[best]:.4g} um rms stay within half a step of {1e6 * plan.steps[best]:.4g} um, and so at the others"
-        )
+        unit, within = plan.units[best], "and so at the others"
+        what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms stay within half a step of {1e6 * plan.steps[best]:.4g} u{unit}, {within}"
         yield Finding(plan.gauges[best], what, "Drive more, or take gauges of finer resolution: all readings would stand still")

@@ -14,7 +14,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.actuator import ChargedActuator
-from flexstage.parts.gauge import DisplacementGauge
+from flexstage.parts.gauge import Instrument
 
 _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
@@ -25,15 +25,17 @@ TAPER = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A set-up with everything settled, by driven actuator (m,) and by gauge (p,), SI.
+    """A set-up with everything settled, by driven actuator (m,) and by single gauge (p,) with the `units` of its reading, SI.
 
     `rms` of the commanded free stroke, `low` and `high` end of the stroke; `bandwidths` of amplifiers (infinite: ideal), `lags` those of
-    gauges; `volts` per metre of free stroke (NaN where the stack states no voltage); `highest` platform mode [Hz].
+    gauges, `walks` what these drift in a minute; `volts` per metre of free stroke (NaN where the stack states no voltage); `highest`
+    platform mode [Hz].
     """
 
     setup: RigSetup
     actuators: tuple[str, ...]
     gauges: tuple[str, ...]
+    units: tuple[str, ...]
     rate: float
     band: tuple[float, float]
     corner: float
@@ -47,6 +49,7 @@ class Plan:
     densities: Array
     steps: Array
     lags: Array
+    walks: Array
     ranges: Array
 
     @property
@@ -69,7 +72,8 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
     limits = stroke_limits(mechanism)
     places = [limits.actuators.index(name) for name in names]
     piezos = [stacks(mechanism)[name] for name in names]
-    gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items()}
+    gauges = {name: placed.gauge for name, placed in expand(mechanism).gauges.items() if not placed.members}
+    metres = np.array([gauge.quantity.si == "m" for gauge in gauges.values()])
     highest = highest_mode(mechanism, model)
     rate = setup.rate if setup.rate is not None else 2.0 ** np.ceil(np.log2(_RATE_OVER_HIGHEST * highest))
     volts = np.array([volts_per_metre(piezo) for piezo in piezos])
@@ -78,6 +82,7 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
         setup=setup,
         actuators=tuple(names),
         gauges=tuple(gauges),
+        units=tuple(gauge.quantity.si for gauge in gauges.values()),
         rate=float(rate),
         band=setup.drive.band if setup.drive.band is not None else (0.0, _BAND_SHARE * float(rate)),
         corner=setup.filter.corner if setup.filter.corner is not None else _BAND_SHARE * float(rate),
@@ -88,9 +93,10 @@ def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan
         volts=volts,
         capacitances=capacitances,
         bandwidths=setup.amplifier.cutoff(capacitances),
-        densities=_gauge_values(setup.sensing.density, [gauge.noise_density for gauge in gauges.values()], 0.0),
-        steps=_gauge_values(setup.sensing.resolution, [gauge.resolution for gauge in gauges.values()], 0.0),
-        lags=_gauge_values(None, [gauge.bandwidth for gauge in gauges.values()], np.inf),
+        densities=_asked(setup.sensing.density, metres, _stated([gauge.noise_density for gauge in gauges.values()], 0.0)),
+        steps=_asked(setup.sensing.resolution, metres, _stated([gauge.resolution for gauge in gauges.values()], 0.0)),
+        lags=_stated([gauge.bandwidth for gauge in gauges.values()], np.inf),
+        walks=_asked(setup.sensing.drift, metres, np.zeros(len(gauges))),
         ranges=_ranges(list(gauges.values())),
     )
 
@@ -138,9 +144,14 @@ def _commanded_rms(setup: RigSetup, piezos: list[ChargedActuator], volts: Array)
     return np.array([_DEFAULT_SHARE * float(np.real(piezo.stroke)) for piezo in piezos])
 
 
-def _gauge_values(asked: float | None, stated: list[Number | None], otherwise: float) -> Array:
-    return np.array([asked if asked is not None else otherwise if value is None else float(np.real(value)) for value in stated])
+def _stated(values: list[Number | None], otherwise: float) -> Array:
+    return np.array([otherwise if value is None else float(np.real(value)) for value in values])
 
 
-def _ranges(gauges: list[DisplacementGauge]) -> Array:
+def _asked(value: float | None, metres: Array, stated: Array) -> Array:
+    """What a set-up asks of displacement gauges; of others what is stated."""
+    return stated if value is None else np.where(metres, value, stated)
+
+
+def _ranges(gauges: list[Instrument]) -> Array:
     return np.array([float(np.real(gauge.range)) for gauge in gauges])

@@ -82,4 +82,4 @@ def as_record(test: Simulated) -> Record:
 def _channels(plan: Plan) -> tuple[Channel, ...]:
     unit = "V" if plan.setup.recorded is Recorded.VOLTAGE else "um"
     inputs = (Channel(name, unit, Role.INPUT) for name in plan.actuators)
-    return (*inputs, *(Channel(name, "um", Role.OUTPUT) for name in plan.gauges))
+    return (*inputs, *(Channel(name, f"u{read}", Role.OUTPUT) for name, read in zip(plan.gauges, plan.units, strict=True)))

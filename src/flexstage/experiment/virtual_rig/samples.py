@@ -90,9 +90,9 @@ class Simulated:
 
     def _drift(self, number: int) -> Array | float:
         """The random walk of every gauge: a step has the variance of a minute's over the samples of a minute."""
-        if not self.plan.setup.sensing.drift:
+        if not np.any(self.plan.walks):
             return 0.0
-        step = self.plan.setup.sensing.drift / np.sqrt(60.0 * self.plan.rate)
+        step = self.plan.walks / np.sqrt(60.0 * self.plan.rate)
         seed, columns = self.plan.setup.seed, range(len(self.plan.gauges))
         return step * np.stack([walk(seed, column, number, self.block) for column in columns], axis=1)
 

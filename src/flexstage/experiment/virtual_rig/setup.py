@@ -54,7 +54,7 @@ class Sensing:
     """What gauges add: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
 
     Where absent, density and resolution are those each gauge of the design states (none stated: none). `drift` is a random walk, its
-    standard deviation after a minute [m].
+    standard deviation after a minute [m]. They are those of displacement gauges: gauges of rotations have what they state, and no drift.
     """
 
     density: float | None = None

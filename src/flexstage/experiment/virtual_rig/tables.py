@@ -26,8 +26,8 @@ def rig_table(test: Simulated) -> Table:
         for name, rms, scale in zip(plan.actuators, test.chain.input_rms, test.input_scale, strict=True)
     ]
     read = [
-        (Cell(name, Mark.STRONG), "output", "um", format_value(rms, "m", 4), f"{1e9 * step:.4g} nm" if step else "")
-        for name, rms, step in zip(plan.gauges, test.chain.output_rms, plan.steps, strict=True)
+        (Cell(name, Mark.STRONG), "output", f"u{read}", format_value(rms, read, 4), f"{1e9 * step:.4g} n{read}" if step else "")
+        for name, read, rms, step in zip(plan.gauges, plan.units, test.chain.output_rms, plan.steps, strict=True)
     ]
     clock = f"{test.length} samples at {number(plan.rate, 6)} Hz"
     noise = f"noise from {number(plan.band[0], 4)} to {number(plan.band[1], 4)} Hz"

@@ -7,10 +7,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.expand import copy_names, joined, placed_bodies, port_findings
+from flexstage.mechanism.expand import joined, placed_bodies, port_findings
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.likeness import drawn_units, likeness_findings
-from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, Link, Mechanism, Unit
+from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
+from flexstage.mechanism.pattern import copy_names
+from flexstage.mechanism.sight import gauge_findings
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.given import Given
 from flexstage.parts.part import material_of
@@ -153,9 +155,13 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _check_known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
     gauged = {GROUND, *(name for name, body in placed_bodies(mechanism).items() if body.of is None)}
     for name, probe in mechanism.gauges.items():
-        yield from _check_known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+        if not isinstance(probe, GaugeSum):
+            yield from _check_known(f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+    for name, probe in posed(mechanism.gauges).items():
         yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
         yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
+    links = {f"{copy}/{name}" for copy, unit in _copies(mechanism) for name in unit.links}
+    yield from gauge_findings(mechanism, links.union(mechanism.links))
     for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
         for name, item in items.items():
             yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})

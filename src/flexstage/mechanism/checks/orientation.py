@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Vector, stack
 from flexstage.mechanism.checks.value import LARGEST, first_failing
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism, posed
 from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.freedom import Freedom
@@ -38,7 +38,7 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
             yield from _pair(f"parts.{name}.ports.{port}.along", placed.along, f"parts.{name}.ports.{port}.up", placed.up)
     for name, placement in mechanism.place.items():
         yield from _pattern(f"place.{name}", placement.pattern)
-    for name, probe in mechanism.gauges.items():
+    for name, probe in posed(mechanism.gauges).items():
         yield from _pattern(f"gauges.{name}", probe.pattern, is_round=True)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly
 from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.mechanism.sight import PlacedGauge, Sight
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame
 
@@ -82,7 +83,7 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
     """
     return (
         *_components(twist_places(assembly), COMPONENTS, TWIST_UNITS),
-        *(Channel(name, "m") for name in assembly.gauges),
+        *(Channel(name, gauge.unit) for name, gauge in assembly.gauges.items()),
         *_components(wrench_owners(assembly), FORCES, WRENCH_UNITS),
     )
 
@@ -128,7 +129,7 @@ def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
 
 
 def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
-    """The reading (..., 1, n) of every gauge: the body's motion against the base's along the gauge's axis, with its sign.
+    """The reading (..., 1, n) of every gauge: bodies' motions against those of their bases, each along or about an axis, with its weight.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.expand import expand
@@ -136,10 +137,19 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
     >>> [row.tolist() for row in gauge_rows(expand(parallelogram()), alone)]
     [[[1.0]]]
     """
-    return [
-        gauge.sign * (motions.at(gauge.body, gauge.frame)[..., :1, :] - motions.at(gauge.base, gauge.frame)[..., :1, :])
-        for gauge in assembly.gauges.values()
-    ]
+    return [reading(gauge, motions.at) for gauge in assembly.gauges.values()]
+
+
+def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
+    """What a gauge reads (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
+    first, *rest = (_see(sight, at) for sight in gauge.sights)
+    return sum(rest, first)
+
+
+def _see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
+    rows = slice(sight.component, sight.component + 1)
+    seen = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
+    return np.asarray(sight.weight)[..., None, None] * seen
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.models.linear.blockage import Blockage
@@ -42,7 +42,8 @@ class Kinematics(InNotebook):
     `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f), `bodies` the motion of all body coordinates per
     xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
     `free` says which freedoms were taken as free at each link. `length` is the scale that makes rotations comparable with translations.
-    `blocked` says of each immobile actuator which locked freedoms hold its stroke.
+    `blocked` says of each immobile actuator which locked freedoms hold its stroke. `gauge_units` are those of the readings (absent: m),
+    `sums` the weights of the gauges that each sum of gauges takes up.
 
     `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion; `thrust` (..., f, t) is the generalised force that
     a unit of their input (`thrust_inputs`, N or A) exerts on xi, V^T W.
@@ -66,6 +67,8 @@ class Kinematics(InNotebook):
     thrusts: tuple[str, ...] = ()
     thrust_inputs: Annotated[tuple[str, ...], INNER] = ()
     thrust: Array = field(default_factory=lambda: np.zeros((6, 0)))
+    gauge_units: Annotated[tuple[str, ...], INNER] = ()
+    sums: Annotated[Mapping[str, Mapping[str, Number]], INNER] = field(default_factory=dict)
 
     @property
     def mobility(self) -> Annotated[int, VIEW]:
@@ -130,7 +133,38 @@ class Kinematics(InNotebook):
     @property
     def gauge_mapping(self) -> Annotated[Matrix, Called("R_s")]:
         """R_s = ds/dx (Eq. 14 of Shin & Moon)."""
-        return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(("m",) * len(self.gauges), TWIST_UNITS))
+        return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(self.reading_units, TWIST_UNITS))
+
+    @property
+    def reading_units(self) -> tuple[str, ...]:
+        """Unit of each gauge's reading."""
+        return self.gauge_units or ("m",) * len(self.gauges)
+
+    @property
+    def single_gauges(self) -> tuple[str, ...]:
+        """The gauges that are no sums of others."""
+        return tuple(name for name in self.gauges if name not in self.sums)
+
+    @property
+    def telling(self) -> tuple[str, ...]:
+        """The gauges, sums among them, that no sum takes up: the pose follows from these."""
+        taken = {member for members in self.sums.values() for member in members}
+        return tuple(name for name in self.gauges if name not in taken)
+
+    @property
+    def selection(self) -> Array:
+        """Readings of the `telling` gauges from those of the `single_gauges` (..., t, s): ones, and the weights of sums."""
+        rows = [[np.asarray(self.sums.get(name, {name: 1.0}).get(single, 0.0)) for single in self.single_gauges] for name in self.telling]
+        batch = np.broadcast_shapes(*(item.shape for row in rows for item in row))
+        flat = [np.broadcast_to(item, batch) for row in rows for item in row]
+        return np.stack(flat, axis=-1).reshape(*batch, len(rows), -1) if flat else np.zeros((0, 0))
+
+    @property
+    def seen(self) -> Array:
+        """Readings of the `telling` gauges per ideal motion (..., t, f)."""
+        if not self.sums:
+            return self.sensing @ self.motion
+        return self.sensing[..., [self.gauges.index(name) for name in self.telling], :] @ self.motion
 
     @property
     def inverse(self) -> Array:

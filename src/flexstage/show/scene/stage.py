@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedGauge, PlacedLink, PlacedSolid, expand
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSolid, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.sight import Sight
 from flexstage.parts.part import is_actuator
 from flexstage.show.scene.facet import SHARP, Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
 from flexstage.show.scene.inner import outer
@@ -61,7 +62,7 @@ def scene(mechanism: Mechanism) -> Scene:
     facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
     facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size)]
-    facets += [facet for gauge in assembly.gauges.values() for facet in _gauge(gauge, size)]
+    facets += [facet for name, sight in _sights(assembly) for facet in _gauge(name, sight, size)]
     references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
     return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
 
@@ -229,21 +230,26 @@ def _foot(name: str, end: Array, frame: Frame, section: tuple[float, float, floa
     return [_place(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), name))]
 
 
-def _gauge(gauge: PlacedGauge, size: float) -> list[Facet]:
+def _gauge(name: str, sight: Sight, size: float) -> list[Facet]:
     """An arrow along the measuring direction, its tip at the measured point."""
     tip, head, shaft = 0.0, -0.35 * _ARROW * size, -_ARROW * size
     thick, thin, none = circle(0.022 * size, 10), circle(0.008 * size, 10), circle(1e-4 * size, 10)
-    paint = Paint(Kind.GAUGE, (gauge.base, gauge.base), gauge.name)
+    paint = Paint(Kind.GAUGE, (sight.base, sight.base), name)
     facets = loft(extrude(np.array([head, tip]), [thick, none]), paint, round_section=True)
-    facets += loft(extrude(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{gauge.name} shaft"), round_section=True)
-    return [_place(facet, _frame(gauge.frame)) for facet in facets]
+    facets += loft(extrude(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{name} shaft"), round_section=True)
+    return [_place(facet, _frame(sight.frame)) for facet in facets]
+
+
+def _sights(assembly: Assembly) -> Iterator[tuple[str, Sight]]:
+    """What single gauges look at, by name; sums are their members."""
+    yield from ((name, gauge.single) for name, gauge in assembly.gauges.items() if gauge.single is not None)
 
 
 def _labels(assembly: Assembly, size: float) -> Iterator[Label]:
     for name, link in assembly.actuators.items():
         yield Label(name, _point(assembly.links[link].frame.position), Kind.DRIVE)
-    for name, gauge in assembly.gauges.items():
-        frame = _frame(gauge.frame)
+    for name, sight in _sights(assembly):
+        frame = _frame(sight.frame)
         yield Label(name, _point(frame.position - _ARROW * size * frame.rotation[:, 0]), Kind.GAUGE)
 
 

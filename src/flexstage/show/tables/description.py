@@ -43,7 +43,7 @@ def composition_table(mechanism: Mechanism) -> Table:
     assembly = expand(mechanism)
     links = (*assembly.links.values(), *assembly.superelements.values())
     kinds = Counter(kind_name(link.part) for link in links)
-    gauges = Counter(probe.gauge for key, probe in mechanism.gauges.items() for _ in copy_names(key))
+    gauges = Counter(getattr(place, "gauge", "sum") for key, place in mechanism.gauges.items() for _ in copy_names(key))
     units = Counter(placement.unit for key, placement in mechanism.place.items() for _ in copy_names(key))
     rows = [
         ("bodies", str(len(assembly.bodies)), ", ".join(f"{count} x {unit}" for unit, count in units.items())),

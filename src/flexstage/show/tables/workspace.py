@@ -131,16 +131,16 @@ def gauge_range_table(gauges: GaugeRange) -> Table:
     """
     swing, limit = first_design(gauges.swing, 1), first_design(gauges.limit, 1)
     places = (gauges.radius, gauges.largest_here, gauges.largest_anywhere)
+    units = ["" if unit == "m" else f" u{unit}" for unit in gauges.units or ("m",) * len(gauges.gauges)]
     radii = [[_radius(float(value)) for value in first_design(each, 1)] for each in places]
     rows = [
         (
             Cell(name, Mark.STRONG),
-            number(1e6 * float(swing[index])),
-            number(1e6 * float(limit[index])),
+            *(number(1e6 * float(each[index])) + unit for each in (swing, limit)),
             _share_cell(float(swing[index] / limit[index])),
             *(column[index] for column in radii),
         )
-        for index, name in enumerate(gauges.gauges)
+        for (index, name), unit in zip(enumerate(gauges.gauges), units, strict=True)
     ]
     heads = ["gauge", Column("swing", "um"), Column("half range", "um"), Column("used")]
     heads += [Column("radius", "mm"), Column("largest, same angle", "mm"), Column("largest, any angle", "mm")]

@@ -73,7 +73,7 @@ def command(bench: Bench, point: str) -> Command:
 
 
 def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
-    rows = _gauges(bench, reference)
+    rows = _gauges(bench, reference, bench.kinematics.length)
     weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.length] * 3])
     scaled = rows / weights
     if len(rows) < len(COMPONENTS) or np.linalg.cond(scaled) > _SINGULAR:
@@ -81,9 +81,14 @@ def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
     return np.linalg.pinv(scaled) / weights[:, None]
 
 
-def _gauges(bench: Bench, reference: Array) -> Array:
-    """Gauge readings per twist at the point (..., g, 6)."""
-    return bench.kinematics.sensing @ transport(bench.assembly.bodies[PLATFORM].reference - reference)
+def _gauges(bench: Bench, reference: Array, length: float) -> Array:
+    """Readings per twist at the point (..., g, 6) of the gauges that no sum takes up; rotations count over a `length`."""
+    kinematics, carry = bench.kinematics, transport(bench.assembly.bodies[PLATFORM].reference - reference)
+    if not kinematics.sums and set(kinematics.reading_units) <= {"m"}:
+        return kinematics.sensing @ carry
+    rows = [kinematics.gauges.index(name) for name in kinematics.telling]
+    even = np.array([1.0 if kinematics.reading_units[row] == "m" else length for row in rows])[:, None]
+    return even * kinematics.sensing[..., rows, :] @ carry
 
 
 def _strokes(bench: Bench) -> list[Array]:
@@ -134,6 +139,6 @@ def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
     moved = gain @ (ratio[..., None] * asked.gains)
     found = [moved[..., row, column] for row in range(len(COMPONENTS)) for column in range(len(asked.coordinates))]
     if asked.sensing is not None:
-        held = np.linalg.inv(asked.sensing @ _gauges(bench, asked.reference))
+        held = np.linalg.inv(asked.sensing @ _gauges(bench, asked.reference, asked.length))
         found += [held[..., row, column] for row in range(len(COMPONENTS)) for column in range(len(COMPONENTS))]
     return tuple(found)

@@ -9,7 +9,7 @@ from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.mechanism.address import get
 from flexstage.mechanism.expand import PlacedLink, copy_names, expand
 from flexstage.mechanism.locate import Place, locate, unit_of_copy
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import Mechanism, posed
 from flexstage.mechanism.misalignment import MISALIGNED
 from flexstage.mechanism.node import NumberNode, VectorNode
 from flexstage.parts.compound import Compound
@@ -97,7 +97,7 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
     if owner == "units":
         return tuple(copies)
     if owner == "gauges":
-        return tuple(name for key in design.gauges for name in copy_names(key))
+        return tuple(name for key in posed(design.gauges) for name in copy_names(key))
     if owner in (*design.place, *design.gauges) and len(copy_names(owner)) > 1:
         return copy_names(owner)
     return tuple(copy for copy, unit in copies.items() if unit == owner)

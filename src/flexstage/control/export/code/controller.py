@@ -30,10 +30,10 @@ def controller_code(given: Machine, name: str = "controller", about: str = "") -
     ['pose', 'error', 'command', 'asked', 'given', 'status']
     """
     linear = parts(given)
-    strokes = tuple(Channel(actuator, "m") for actuator in given.actuators)
+    strokes = given.strokes()
     inputs = (
         Signal("reference", tuple(Channel(f"reference.{each.name}", each.unit) for each in given.coordinates), "wanted pose"),
-        Signal("reading", tuple(Channel(gauge, "m") for gauge in given.gauges), "readings of the gauges"),
+        Signal("reading", given.read(), "readings of the gauges"),
     )
     return Program(
         name=identifier(name),
@@ -79,7 +79,9 @@ def outputs(given: Machine, strokes: tuple[Channel, ...]) -> tuple[Signal, ...]:
         "asked": "strokes asked of the amplifiers, behind inverse and converter",
         "given": "strokes the amplifiers give, within their limits",
     }
-    named = (Signal(kind, tuple(Channel(f"{kind}.{each.name}", "m") for each in strokes), meaning) for kind, meaning in meanings.items())
+    named = (
+        Signal(kind, tuple(Channel(f"{kind}.{each.name}", each.unit) for each in strokes), meaning) for kind, meaning in meanings.items()
+    )
     volts = Signal("volts", tuple(Channel(f"volts.{each.name}", "V") for each in strokes), "volts for the amplifiers")
     inputs = (*given.gauges, *(f"reference.{name}" for name in given.names))
     status = Signal("status", tuple(Channel(f"status.{name}", "1") for name in inputs), _STATUS)

@@ -1,0 +1,37 @@
+"""Linear encoders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.number import Number
+from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, RATIO
+from flexstage.parts.gauge import Instrument
+
+
+@dataclass(frozen=True, eq=False)
+class Encoder(Instrument):
+    """An encoder reads how far the scale on a body moves along the gauge's x axis: positive along +x.
+
+    Over `range` (total travel of its scale) it counts a `period` divided into `steps` (one: the period is the step itself); white
+    `noise_density`, `bandwidth`. A scale that turns with the body reads the same to first order.
+    """
+
+    kind: ClassVar[str] = "encoder"
+    range: Annotated[Number, DISPLACEMENT, POSITIVE]
+    period: Annotated[Number, DISPLACEMENT, POSITIVE]
+    steps: Annotated[Number, RATIO, POSITIVE] = 1.0
+    noise_density: Annotated[Number, NOISE_DENSITY, NOT_NEGATIVE] | None = None
+    bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def resolution(self) -> Number:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """One of its steps [m].
+
+        >>> Encoder(range=20e-3, period=8e-6, steps=2048.0).resolution
+        3.90625e-09
+        """
+        return self.period / self.steps

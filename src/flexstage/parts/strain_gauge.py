@@ -1,0 +1,28 @@
+"""Strain gauges on stacks and other links."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.number import Number
+from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE
+from flexstage.parts.gauge import Instrument
+
+
+@dataclass(frozen=True, eq=False)
+class StrainGauge(Instrument):
+    """A strain gauge on a link reads how much longer the link has become between its faces, the free stroke of a stack included.
+
+    Its numbers are stated in elongation, not in strain: measuring `range` (total span) and `resolution` (quantisation step) [m], white
+    `noise_density` [m/Hz^0.5], `bandwidth` [Hz].
+    """
+
+    kind: ClassVar[str] = "strain"
+    inside: ClassVar[bool] = True
+    range: Annotated[Number, DISPLACEMENT, POSITIVE]
+    resolution: Annotated[Number, DISPLACEMENT, NOT_NEGATIVE] = 0.0
+    noise_density: Annotated[Number, NOISE_DENSITY, NOT_NEGATIVE] | None = None
+    bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)

@@ -1,0 +1,28 @@
+"""Tilt gauges (autocollimators, angle interferometers)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.number import Number
+from flexstage.base.quantity import FREQUENCY, NOT_NEGATIVE, POSITIVE, ROTATION, ROTATION_NOISE
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.gauge import Instrument
+
+
+@dataclass(frozen=True, eq=False)
+class Tilt(Instrument):
+    """A tilt gauge reads the rotation of a body about the gauge's x axis, by the right-hand rule; where it stands does not matter.
+
+    Measuring `range` (total span) and `resolution` (quantisation step) [rad], white `noise_density` [rad/Hz^0.5], `bandwidth` [Hz].
+    """
+
+    kind: ClassVar[str] = "tilt"
+    freedom: ClassVar[Freedom] = Freedom.RX
+    range: Annotated[Number, ROTATION, POSITIVE]
+    resolution: Annotated[Number, ROTATION, NOT_NEGATIVE] = 0.0
+    noise_density: Annotated[Number, ROTATION_NOISE, NOT_NEGATIVE] | None = None
+    bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
