@@ -76,7 +76,9 @@ from flexstage.mechanism.checks import (
 )
 from flexstage.mechanism.mechanism import (
     Force as Force,
+    GaugeSum as GaugeSum,
     Link as Link,
+    LinkProbe as LinkProbe,
     Mechanism as Mechanism,
     ModalDamping as ModalDamping,
     NamedNumber as NamedNumber,
@@ -131,6 +133,9 @@ from flexstage.parts.condensation import (
 from flexstage.parts.cross_hinge import (
     CrossHinge as CrossHinge,
 )
+from flexstage.parts.encoder import (
+    Encoder as Encoder,
+)
 from flexstage.parts.folded_leaf import (
     FoldedLeaf as FoldedLeaf,
 )
@@ -178,11 +183,17 @@ from flexstage.parts.rod import (
 from flexstage.parts.spring import (
     Spring as Spring,
 )
+from flexstage.parts.strain_gauge import (
+    StrainGauge as StrainGauge,
+)
 from flexstage.parts.superelement import (
     FileUnits as FileUnits,
     MatrixNames as MatrixNames,
     Port as Port,
     Superelement as Superelement,
+)
+from flexstage.parts.tilt import (
+    Tilt as Tilt,
 )
 from flexstage.show.matlab import (
     to_mat as to_mat,

@@ -88,7 +88,7 @@ def test_check_analyse_and_schema_know_it(work, package):
     assert "sag" in (work / "analyse.json").read_text()
     known = json.loads(flexstage(work, "schema", path=package))["$defs"]
     assert known["Taper"]["properties"]["kind"] == {"const": "taper"}
-    assert known["Encoder"]["properties"]["kind"] == {"const": "encoder"}
+    assert known["Interferometer"]["properties"]["kind"] == {"const": "interferometer"}
 
 
 def test_its_compound_is_its_members(work, package):

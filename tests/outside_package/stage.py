@@ -1,4 +1,4 @@
-"""The shipped parallelogram, with the tapered leaf, the encoder and a line about the sag; it names the package they come from."""
+"""The shipped parallelogram, with the tapered leaf, the interferometer and a line about the sag; it names the package they come from."""
 
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dumps
@@ -14,10 +14,10 @@ length = "25 mm"
 thickness = "0.9 mm"
 end_thickness = "1.2 mm"
 """
-ENCODER = """[sensors.probe]
-kind = "encoder"
+INTERFEROMETER = """[sensors.probe]
+kind = "interferometer"
 travel = "200 um"
-period = "20 nm"
+fringe = "20 nm"
 steps = 1000
 bandwidth = "3000 Hz"
 """
@@ -49,4 +49,4 @@ def design():
     assert LEAF in before
     assert LINE in after
     after = after[after.index("\n\n") :].replace(LINE, f'{LINE}sag = "at most 0.1 mm"\n')
-    return before.replace(LEAF, TAPER) + ENCODER + after
+    return before.replace(LEAF, TAPER) + INTERFEROMETER + after

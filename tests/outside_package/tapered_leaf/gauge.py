@@ -1,4 +1,4 @@
-"""An encoder: a scale that is read in steps."""
+"""An interferometer: fringes that are counted in steps."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from flexstage.parts.gauge import DisplacementGauge
 
 
 @dataclass(frozen=True, eq=False)
-class Encoder(DisplacementGauge):
-    """An encoder over `travel`, its scale of a `period` divided into `steps`."""
+class Interferometer(DisplacementGauge):
+    """An interferometer over `travel`, its `fringe` divided into `steps`."""
 
-    kind: ClassVar[str] = "encoder"
+    kind: ClassVar[str] = "interferometer"
     travel: Annotated[Number, DISPLACEMENT, POSITIVE]
-    period: Annotated[Number, DISPLACEMENT, POSITIVE]
+    fringe: Annotated[Number, DISPLACEMENT, POSITIVE]
     steps: Annotated[Number, RATIO, POSITIVE]
     bandwidth: Annotated[Number, FREQUENCY, POSITIVE] | None = None
 
@@ -28,7 +28,7 @@ class Encoder(DisplacementGauge):
     @property
     def resolution(self) -> Number:
         """One step."""
-        return self.period / self.steps
+        return self.fringe / self.steps
 
     @property
     def noise_density(self) -> Number | None:

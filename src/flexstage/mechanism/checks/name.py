@@ -160,8 +160,7 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     for name, probe in posed(mechanism.gauges).items():
         yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
         yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
-    links = {f"{copy}/{name}" for copy, unit in _copies(mechanism) for name in unit.links}
-    yield from gauge_findings(mechanism, links.union(mechanism.links))
+    yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
     for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
         for name, item in items.items():
             yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
@@ -199,3 +198,9 @@ def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body])
     yield from _check_known(f"{where}.part", "part", link.part, mechanism.parts)
     if link.part in mechanism.parts:
         yield from port_findings(where, link, mechanism.parts)
+
+
+def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:
+    for key, placement in mechanism.place.items():
+        links = mechanism.units[placement.unit].links if placement.unit in mechanism.units else ()
+        yield from (f"{copy}/{name}" for copy in copy_names(key) for name in links)
