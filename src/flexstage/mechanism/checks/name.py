@@ -201,6 +201,7 @@ def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body])
 
 
 def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:
+    units = drawn_units(mechanism)
     for key, placement in mechanism.place.items():
-        links = mechanism.units[placement.unit].links if placement.unit in mechanism.units else ()
+        links = units[placement.unit].links if placement.unit in units else ()
         yield from (f"{copy}/{name}" for copy in copy_names(key) for name in links)
