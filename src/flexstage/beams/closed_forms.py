@@ -156,6 +156,36 @@ def lobontiu_filleted_axial(young: Number, width: Number, thickness: Number, len
     return (length - 2.0 * fillet) / (young * width * thickness) + wu_zhou_axial(young, width, thickness, fillet)
 
 
+def lobontiu_parabolic_rotation(young: Number, width: Number, thickness: Number, along: Number, across: Number) -> Number:
+    """Rotational compliance about z of a parabolic hinge [rad/(N m)], thickness t + 2 c (x/a)^2, |x| <= a.
+
+    With k = 2c/t: 24 a / (E b t^3) (1/(4 (1 + k)^2) + 3/(8 (1 + k)) + 3 atan(k^1/2) / (8 k^1/2)), the integral of Lobontiu et al.
+    (Precision Engineering 26, 2002).
+    """
+    k = 2.0 * across / thickness
+    share = 0.25 / (1.0 + k) ** 2 + 0.375 / (1.0 + k) + 0.375 * np.arctan(np.sqrt(k)) / np.sqrt(k)
+    return 24.0 * along / (young * width * thickness**3) * share
+
+
+def lobontiu_parabolic_axial(young: Number, width: Number, thickness: Number, along: Number, across: Number) -> Number:
+    """Axial compliance of a parabolic hinge [m/N]: 2 a / (E b (2 c t)^1/2) atan((2c/t)^1/2)."""
+    return 2.0 * along / (young * width * np.sqrt(2.0 * across * thickness)) * np.arctan(np.sqrt(2.0 * across / thickness))
+
+
+def lobontiu_hyperbolic_rotation(young: Number, width: Number, thickness: Number, along: Number, across: Number) -> Number:
+    """Rotational compliance about z of a hyperbolic hinge, 24 a / (E b t^2 (t + 2c)) [rad/(N m)].
+
+    Its thickness is (t^2 + 4 c (c + t) (x/a)^2)^1/2: both cuts are branches of one hyperbola (Lobontiu et al. 2002).
+    """
+    return 24.0 * along / (young * width * thickness * thickness * (thickness + 2.0 * across))
+
+
+def lobontiu_hyperbolic_axial(young: Number, width: Number, thickness: Number, along: Number, across: Number) -> Number:
+    """Axial compliance of the same hinge [m/N]: 2 a / (E b t k) asinh k, k = 2 (c (c + t))^1/2 / t."""
+    k = 2.0 * np.sqrt(across * (across + thickness)) / thickness
+    return 2.0 * along / (young * width * thickness * k) * np.arcsinh(k)
+
+
 def _root_and_angle(s: Number) -> tuple[Number, Number]:
     root = np.sqrt(4.0 * s + 1.0)
     return root, np.arctan(root)

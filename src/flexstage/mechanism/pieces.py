@@ -199,7 +199,15 @@ def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float]
             far = min(half, there)
             if far <= here:
                 continue
-            heights = contour.height(np.linspace(here, far, 9))
-            above = float(np.max(np.linspace(heights[0], heights[-1], 9) - heights))
-            low, high = (max(0.0, float(height) - above) for height in (heights[0], heights[-1]))
+            low, high = _below(contour.height(np.linspace(here, far, 9)))
             yield ((here, far), (low, high)) if side > 0.0 else ((-far, -here), (high, low))
+
+
+def _below(heights: Array) -> tuple[float, float]:
+    """Ends of a straight line below heights at equal distances: their chord, lowered; no end below nought."""
+    share = np.linspace(0.0, 1.0, len(heights))
+    above = float(np.max(heights[0] + (heights[-1] - heights[0]) * share - heights))
+    low, high = float(heights[0]) - above, float(heights[-1]) - above
+    if low < 0.0:
+        return 0.0, float(np.min(heights[1:] / share[1:]))
+    return (float(np.min(heights[:-1] / (1.0 - share[:-1]))), 0.0) if high < 0.0 else (low, high)
