@@ -20,6 +20,7 @@ HOMES = {
     "parts.notch": "Notch",
     "parts.neck": "Neck",
     "parts.leaf": "Leaf LeafSection",
+    "parts.reinforced_leaf": "ReinforcedLeaf",
     "parts.rod": "Rod",
     "parts.given": "Given Joint",
     "parts.spring": "Spring",

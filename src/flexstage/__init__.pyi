@@ -177,6 +177,9 @@ from flexstage.parts.profile import (
     Straight as Straight,
     Vee as Vee,
 )
+from flexstage.parts.reinforced_leaf import (
+    ReinforcedLeaf as ReinforcedLeaf,
+)
 from flexstage.parts.rod import (
     Rod as Rod,
 )

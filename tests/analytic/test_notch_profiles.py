@@ -29,6 +29,21 @@ ELLIPTIC = (
     (8.0, 2.0, 0.8, 6.704537e-5, -1.17, 6.251940e-6, -2.33, 4.100871e-4, -2.15, 6.9853e-5),
     (5.0, 5.0, 0.5, 9.176335e-5, -3.80, 4.434686e-6, -13.0, 8.275846e-5, -7.18, 8.9411e-5),
 )
+# t = 1, b = 5 mm | C_rz, C_x, C_y about the centre by `flexstage solid --what hinge --accuracy 0.3%` (blocks at both ends), each with the
+# error of beam theory
+CONTOURS = {
+    "parabolic": (Parabolic(5.0, 3.0), 2.9815e-5, -3.48, 5.4286e-6, -11.02, 5.1174e-5, 0.91),
+    "hyperbolic": (Hyperbolic(5.0, 3.0, 2.0), 2.4357e-5, -5.87, 4.9011e-6, -12.25, 3.4903e-5, 4.40),
+    "power 4": (Power(5.0, 3.0, 4.0), 5.6473e-5, -1.10, 7.3293e-6, -10.26, 1.6200e-4, -4.19),
+    "V of 90 degrees": (Vee(10.0, 2.0, 0.5 * np.pi), 2.1447e-5, -10.07, 4.5937e-6, -20.52, 2.3277e-5, 0.92),
+    "free": (FreeForm((0.0, 1.0, 2.5, 5.0), (0.0, 0.3, 1.0, 3.0)), 2.0590e-5, -7.80, 4.6957e-6, -12.01, 3.2040e-5, 6.02),
+    "free, two throats": (FreeForm((0.0, 2.0, 3.5, 5.0), (1.0, 0.0, 0.6, 3.0)), 3.5841e-5, -11.88, 6.4815e-6, -17.93, 1.9346e-4, -10.70),
+}
+
+
+def contour(name):
+    """A hinge of the table, in N and mm."""
+    return Notch("m", thickness=1.0, width=5.0, profile=CONTOURS[name][0])
 
 
 def assert_errors(part, row):
@@ -46,6 +61,13 @@ def test_filleted_errors_against_finite_elements(row):
 @pytest.mark.parametrize("row", ELLIPTIC)
 def test_elliptic_errors_against_finite_elements(row):
     assert_errors(Notch("m", thickness=row[2], width=10.0, profile=Elliptic(row[0], row[1])), row[3:9])
+
+
+@pytest.mark.parametrize("name", CONTOURS)
+def test_contours_are_as_wrong_as_recorded(name):
+    found, row = diagonal(contour(name)), CONTOURS[name][1:]
+    for value, true, stated in zip((found[5], found[0], found[1]), row[::2], row[1::2], strict=True):
+        assert error(value, true) == pytest.approx(stated, abs=0.012)
 
 
 @pytest.mark.parametrize("row", ELLIPTIC)

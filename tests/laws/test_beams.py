@@ -22,6 +22,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Elliptic, Filleted, FreeForm, Hyperbolic, Parabolic, Power, Straight, Vee
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 
 sizes = st.floats(0.2, 8.0)
@@ -29,6 +30,12 @@ sizes = st.floats(0.2, 8.0)
 
 def _vee(flank, radius, angle):
     return Vee(length=2.0 * (flank + radius * np.sin(0.5 * (np.pi - angle))), radius=radius, angle=angle)
+
+
+def _reinforced(middle, flexure, thickness, step, section, share):
+    fillet = None if share is None else share * min(step, flexure)
+    length, thick = middle + 2.0 * flexure, thickness + 2.0 * step
+    return ReinforcedLeaf("m", length, thickness, 5.0, section, flexure_length=flexure, reinforced_thickness=thick, fillet=fillet)
 
 
 def _table(rows):
@@ -53,6 +60,7 @@ beams = st.one_of(
     st.builds(Notch, material=st.just("m"), thickness=sizes, width=sizes, profile=profiles),
     st.builds(Neck, material=st.just("m"), thickness=sizes, width=st.none() | sizes, profile=profiles),
     st.builds(Leaf, material=st.just("m"), length=sizes, thickness=sizes, width=sizes, section=st.sampled_from(LeafSection)),
+    st.builds(_reinforced, sizes, sizes, sizes, sizes, st.sampled_from(LeafSection), st.none() | st.floats(0.1, 0.9)),
     st.builds(Rod, material=st.just("m"), length=sizes, diameter=sizes),
     st.builds(
         Piezo, stroke=sizes, stiffness=sizes, length=sizes, diameter=sizes, mass=sizes, bending_rigidity=st.none() | sizes,

@@ -9,20 +9,25 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
+from flexstage.beams.quadrature import stations
 from flexstage.parts.given import Joint
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
-from flexstage.parts.profile import Circular, Filleted, Straight
+from flexstage.parts.profile import Circular, Filleted, FreeForm, Straight
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.draw import SHAPES, Shape
+from flexstage.solid.fea.draw import SHAPES, Shape, draw_form
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
 from flexstage.solid.fea.piece import medium
 from flexstage.solid.fea.roots import Roots
 from flexstage.solid.fea.stub import beam, circle, rectangle
 from flexstage.spatial.frame import transport
+from tests.analytic.hinges import STEEL as IN_MILLIMETRES
+from tests.analytic.test_leaf_plate import REINFORCED, reinforced_in_mm
+from tests.analytic.test_notch_profiles import CONTOURS, contour
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 MM = 1e-3
@@ -169,3 +174,38 @@ def test_a_root_of_an_arc_turns_where_it_is() -> None:
     for sideways, about, sign in ((1, 5, -1.0), (2, 4, 1.0)):
         more = rooted[about, about] - held[about, about]
         assert 1.0 * MM < sign * rooted[sideways, about] / more < 3.0 * MM
+
+
+ROUGH = Accuracy(error=0.0, orders=(3, 3), meshes=1)
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "agreed"), [(ROUGH, 0.045), pytest.param(Accuracy(error=0.003, orders=(2, 5), meshes=3), 0.004, marks=pytest.mark.full)]
+)
+@pytest.mark.parametrize("name", CONTOURS)
+def test_contours_are_what_is_recorded_of_them(name: str, accuracy: Accuracy, agreed: float) -> None:
+    found = np.diag(hinge_compliance(contour(name), IN_MILLIMETRES, accuracy).compliance)
+    np.testing.assert_allclose(found[[5, 0, 1]], CONTOURS[name][1::2], rtol=agreed)
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "agreed"), [(ROUGH, 0.03), pytest.param(Accuracy(error=0.002, orders=(2, 5), meshes=2), 0.003, marks=pytest.mark.full)]
+)
+def test_a_reinforced_leaf_is_what_is_recorded_of_it(accuracy: Accuracy, agreed: float) -> None:
+    """But for torsion, which wants a high order of flat elements."""
+    size, elements, _ = REINFORCED[0]
+    found = np.diag(hinge_compliance(reinforced_in_mm(*size), IN_MILLIMETRES, accuracy).compliance)
+    np.testing.assert_allclose(found[[0, 1, 2, 4, 5]], np.array(elements)[[0, 1, 2, 4, 5]], rtol=agreed)
+
+
+def test_a_fillet_is_drawn_as_it_is() -> None:
+    leaf = ReinforcedLeaf("m", 0.04, 3e-4, 0.02, flexure_length=8e-3, reinforced_thickness=3e-3, fillet=5e-4)
+    area = 40.0 * 0.3 + 24.0 * 2.7 + 4.0 * 0.25 * (1.0 - 0.25 * np.pi)
+    assert draw_form(leaf).mass == pytest.approx(20.0 * area, rel=1e-9)
+
+
+def test_a_table_is_drawn_as_it_is() -> None:
+    """Its cubics are exact in CAD: the volume is the integral of its height."""
+    table = Notch("m", 1.0 * MM, 3.0 * MM, FreeForm((0.0, 1.0 * MM, 2.5 * MM, 5.0 * MM), (0.3 * MM, 0.0, 1.0 * MM, 3.0 * MM)))
+    points = stations(table.profile, table.thickness)
+    assert draw_form(table).mass == pytest.approx(3e9 * MM * points.whole(1.0 * MM + 2.0 * points.growth), rel=1e-9)

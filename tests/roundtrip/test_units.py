@@ -30,9 +30,7 @@ from flexstage.base.quantity import (
 from flexstage.base.unit import convert, parse, show
 
 MEASURABLE = [
-    value
-    for value in vars(quantity).values()
-    if isinstance(value, Quantity) and value is not quantity.DIRECTION and value.si != "mixed"
+    value for value in vars(quantity).values() if isinstance(value, Quantity) and value is not quantity.DIRECTION and value.si != "mixed"
 ]
 
 

@@ -8,6 +8,7 @@ from flexstage.beams.leaf import LEAF
 from flexstage.beams.neck import NECK
 from flexstage.beams.notch import NOTCH
 from flexstage.beams.piezo import PIEZO
+from flexstage.beams.reinforced_leaf import REINFORCED_LEAF
 from flexstage.beams.rod import ROD
 from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
@@ -17,11 +18,12 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
+_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
 _OWN = {**_HINGES, Piezo: PIEZO, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""

@@ -84,7 +84,7 @@ def _arc(along: Number, across: Number, thinnest: Number, last: Number = 0.5 * n
 
 def _fillet_stations(profile: Filleted, thinnest: Number) -> Stations:
     straight = _straight(0.5 * profile.length - profile.radius)
-    return _join([straight, _arc(profile.radius, profile.radius, thinnest)], [0.0, 0.5 * profile.length - profile.radius])
+    return in_series([straight, _arc(profile.radius, profile.radius, thinnest)], [0.0, 0.5 * profile.length - profile.radius])
 
 
 def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
@@ -97,7 +97,7 @@ def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
     log = np.log1p(run / double)
     along = double * np.expm1(log * _points())
     flank = Stations(along, (double + along) * log, start + slope * along, _rule(1))
-    return _join([_arc(profile.radius, profile.radius, thinnest, profile.slope), flank], [0.0, profile.tip])
+    return in_series([_arc(profile.radius, profile.radius, thinnest, profile.slope), flank], [0.0, profile.tip])
 
 
 def _parabola(profile: Parabolic, thinnest: Number) -> Stations:
@@ -145,7 +145,7 @@ def _raise(share: Array, exponent: Array) -> Array:
 def _table(profile: FreeForm, thinnest: Number) -> Stations:
     """Each piece of a table by itself, its points drawn towards its thinner end as far as it grows from there."""
     pieces, starts = zip(*((_piece(step, cubic, thinnest), start) for start, step, cubic in profile.pieces()), strict=True)
-    return _join(pieces, starts)
+    return in_series(pieces, starts)
 
 
 def _piece(step: Number, cubic: Sequence[Number], thinnest: Number) -> Stations:
@@ -164,8 +164,8 @@ def _piece(step: Number, cubic: Sequence[Number], thinnest: Number) -> Stations:
     return Stations(step * share, step * scale * span * np.cosh(there), growth, _rule(1, _FEW_POINTS))
 
 
-def _join(pieces: Sequence[Stations], starts: Sequence[Number]) -> Stations:
-    """Pieces one after the other, each from its start on."""
+def in_series(pieces: Sequence[Stations], starts: Sequence[Number]) -> Stations:
+    """Pieces one after the other, each from its start on [m]; their rules have one number of points."""
     positions = [np.asarray(start)[..., None] + piece.position for start, piece in zip(starts, pieces, strict=True)]
     columns = (positions, [piece.rate for piece in pieces], [piece.growth for piece in pieces])
     position, rate, growth = (_concatenate(column) for column in columns)

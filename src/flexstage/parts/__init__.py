@@ -12,6 +12,7 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
 from flexstage.parts.spring import Spring
@@ -20,10 +21,11 @@ from flexstage.parts.superelement import Superelement
 from flexstage.parts.tilt import Tilt
 from flexstage.parts.voice_coil import VoiceCoil
 
+_HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (Notch, Neck, Leaf, Rod, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
+    "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 

@@ -20,6 +20,7 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 
 CATALOGUE = "the shipped catalogue"
@@ -124,7 +125,7 @@ def _thickness(field: str) -> Rule:
 
 
 RULES: Mapping[type, tuple[Rule, ...]] = {
-    **dict.fromkeys((Leaf, Notch, Neck), (_thickness("thickness"),)),
+    **dict.fromkeys((Leaf, ReinforcedLeaf, Notch, Neck), (_thickness("thickness"),)),
     Rod: (_thickness("diameter"),),
     Material: (
         Rule("young", lambda each: each.young, 1e9, 1.05e12, "Pa", _SOLIDS),

@@ -25,11 +25,13 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular, Contour, Filleted, Profile, length
 from flexstage.parts.profile import rise as cut_height
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.contour import contour_edges
 from flexstage.solid.fea.imported import imported_shape
 from flexstage.solid.fea.piece import MILLIMETRES, Form
+from flexstage.solid.fea.reinforced_leaf import reinforced_solid
 from flexstage.solid.fea.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
 
@@ -224,6 +226,7 @@ _OWN: Mapping[type[Shaped], Shape] = {
     Notch: Shape(lambda form: _extrude(form.thickness, form.profile, form.width), cut),
     Neck: Shape(_neck, cut),
     Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
+    ReinforcedLeaf: Shape(reinforced_solid),
     Rod: Shape(lambda form: _round(form.diameter, form.length), bar),
     Piezo: Shape(lambda form: _round(form.diameter, form.length)),
 }

@@ -1,0 +1,81 @@
+"""Leaves with a thick middle by beam theory: three pieces in series, the thin ones with plate action."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.number import Array, Number
+from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.law import PartLaw, Range, ratio
+from flexstage.beams.plate import moment_factor, shear_factor
+from flexstage.beams.quadrature import Stations, in_series, stations
+from flexstage.beams.section import cowper_rectangle, rectangle
+from flexstage.beams.torsion import constrained_twist, free_twist
+from flexstage.parts.leaf import LeafSection
+from flexstage.parts.material import Material
+from flexstage.parts.profile import Circular, Straight
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+
+
+def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
+    """The leaf as a Timoshenko beam of varying thickness (Cowper's shear factor), its ends kept from warping unless its section is a beam.
+
+    Warping and bimoment go on through the steps (Vlasov's beam with the shear of `beams.torsion`).
+    """
+    points = _points(part)
+    thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
+    section = rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.poisson))[..., None])
+    young, shear, density = (np.asarray(each)[..., None] for each in (material.young, material.shear, material.density))
+    is_beam = part.section is LeafSection.BEAM
+    twisting = free_twist(section, shear) if is_beam else constrained_twist(section, points, young, shear)
+    return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
+
+
+def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
+    """The diagonal (..., 6) of its compliance about its centre: that of the beam, less what its thin ends are stiffer as plates.
+
+    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`; it turns by
+    the moment in its own middle, and shears there. This takes the middle as stiff: it is if it is twice as thick. The middle itself is a
+    beam, free to curve across. With `section` beam nothing is stiffer.
+    """
+    whole = reinforced_beam(part, material).diagonal()
+    if part.section is LeafSection.BEAM:
+        return whole
+    thin = part.flexure_length - (0.0 if part.fillet is None else part.fillet)
+    slenderness, arm = thin / part.width, 0.5 * (part.length - thin)
+    turning = 24.0 * thin / (material.young * part.width * part.thickness**3)
+    rotation = turning * (1.0 / moment_factor(slenderness, material.poisson) - 1.0)
+    across = turning * thin * thin / 12.0 * (1.0 / shear_factor(slenderness, material.poisson) - 1.0)
+    nothing = np.zeros(np.broadcast_shapes(np.shape(rotation), np.shape(arm)))
+    return whole + np.stack(np.broadcast_arrays(nothing, arm * arm * rotation + across, nothing, nothing, nothing, rotation), axis=-1)
+
+
+def _points(part: ReinforcedLeaf) -> Stations:
+    """The middle, the fillet where there is one, and the flexure, by a rule each."""
+    start = 0.5 * part.length - part.flexure_length
+    radius: Number = 0.0 if part.fillet is None else part.fillet
+    middle, thin = (stations(Straight(2.0 * each), part.thickness) for each in (start, part.flexure_length - radius))
+    middle = Stations(middle.position, middle.rate, np.asarray(part.step)[..., None] + middle.growth, middle.rule)
+    if part.fillet is None:
+        return in_series([middle, thin], [0.0, start])
+    return in_series([middle, _descend(stations(Circular(radius), part.thickness), radius), thin], [0.0, start, start + radius])
+
+
+def _descend(arc: Stations, radius: Number) -> Stations:
+    """A quarter circle from its end to its throat."""
+    position = np.asarray(radius)[..., None] - arc.position
+    return Stations(position[..., ::-1], arc.rate[..., ::-1], arc.growth[..., ::-1], arc.rule)
+
+
+def _concentration(part: ReinforcedLeaf) -> Number:
+    """Smith's factor of the fillet (`beams.profiled.concentration`); without one its corners are not described, as those of a leaf."""
+    return 1.0 if part.fillet is None else (1.0 + part.thickness / (2.0 * part.fillet)) ** 0.45
+
+
+def _ranges(part: ReinforcedLeaf) -> tuple[Range, ...]:
+    thin = Range("thickness over width", ratio(part.thickness, part.width), high=0.2)
+    long = Range("flexure length over thickness", ratio(part.flexure_length, part.thickness), low=10.0)
+    return thin, long, Range("reinforced thickness over thickness", ratio(part.reinforced_thickness, part.thickness), low=2.0)
+
+
+REINFORCED_LEAF = PartLaw(reinforced_beam, reinforced_diagonal, concentration=_concentration, ranges=_ranges)

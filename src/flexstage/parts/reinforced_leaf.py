@@ -1,0 +1,62 @@
+"""Leaf springs that are stiffened in their middle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.number import Number
+from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.profile import single
+from flexstage.parts.shape import Order, Section
+
+_ARC = np.linspace(0.0, 0.5 * np.pi, 9)
+
+
+@dataclass(frozen=True, eq=False)
+class ReinforcedLeaf(Leaf):
+    """A leaf with a thick middle: thin over the `flexure_length` at both ends, `reinforced_thickness` thick between them.
+
+    The step is square, or has a quarter circle of radius `fillet` at its foot, which takes its radius of the flexure's length. Intended
+    freedoms are a leaf's.
+    """
+
+    kind: ClassVar[str] = "reinforced_leaf"
+    flexure_length: Annotated[Number, LENGTH, POSITIVE] = field(kw_only=True)
+    reinforced_thickness: Annotated[Number, LENGTH, POSITIVE] = field(kw_only=True)
+    fillet: Annotated[Number, LENGTH, POSITIVE] | None = field(default=None, kw_only=True)
+
+    @property
+    def is_prismatic(self) -> bool:
+        """It has steps."""
+        return False
+
+    @property
+    def step(self) -> Number:
+        """Height of the step on each side [m]."""
+        return 0.5 * (self.reinforced_thickness - self.thickness)
+
+    @property
+    def silhouette(self) -> tuple[tuple[float, Section], ...]:
+        """Stations of its ends, steps and fillets, and the sections there."""
+        half, radius = 0.5 * single(self.length), 0.0 if self.fillet is None else single(self.fillet)
+        start = half - single(self.flexure_length)
+        arc = [(start + radius * (1.0 - np.sin(p)), radius * (1.0 - np.cos(p))) for p in (_ARC[::-1] if radius else _ARC[:1])]
+        right = [(start, single(self.step)), *arc, (half, 0.0)]
+        rows = [*((-x, up) for x, up in reversed(right)), *right]
+        return tuple((float(x), Section(self.thickness + 2.0 * up, self.width).first) for x, up in rows)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Thinner than wide, two flexures fit into its length and their fillets into them, and the middle is the thicker."""
+        yield from super().orders
+        half, advice = 0.5 * self.length, "Make it longer or the flexures shorter"
+        yield Order("flexure_length", self.flexure_length, half, "half the length", advice)
+        yield Order("thickness", self.thickness, self.reinforced_thickness, "the reinforced_thickness", "Exchange them", strict=False)
+        if self.fillet is not None:
+            yield Order("fillet", self.fillet, self.step, "the height of the step", "Make the fillet smaller", strict=False)
+            yield Order("fillet", self.fillet, self.flexure_length, "the flexure_length", "Make the fillet smaller")
