@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping
 from flexstage.mechanism.store import dump, load
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import transfer
+from flexstage.models.linear.port import ports
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
@@ -62,9 +64,9 @@ def elastic(seed, ports=3, inner=8):
     return Elastic(1e6 * away @ springs @ away, 0.1 * away @ weights @ away + own, stated)
 
 
-def part_of(body, folder, **stated):
+def part_of(body, folder, damping=None, **stated):
     """The body as a part, by a file in a folder."""
-    np.savez(folder / "body.npz", K=body.stiffness, M=body.mass)
+    np.savez(folder / "body.npz", K=body.stiffness, M=body.mass, **({} if damping is None else {"D": damping}))
     return superelement(Superelement(FileUnits.SI, body.ports, file=str(folder / "body.npz"), **stated))
 
 
@@ -165,6 +167,38 @@ def test_wrenches_at_the_ports_balance_and_carry_the_load(folder, seed):
     np.testing.assert_allclose(seen[2], 0.0, atol=1e-7)
 
 
+def damping_of(body, seed):
+    """Random damping of all but rigid motions."""
+    moving = np.linalg.svd(body.stiffness)[0][:, :-6]
+    random = np.random.default_rng(seed).normal(size=(moving.shape[1], moving.shape[1]))
+    return 50.0 * moving @ random @ random.T @ moving.T
+
+
+@examples(10, 100)
+@given(seeds)
+def test_its_own_damping_is_that_of_the_matrices(folder, seed):
+    """Responses at the platform with every inner mode kept: those of K, M and D of the file."""
+    body = elastic(seed)
+    damping = damping_of(body, seed)
+    made = stage(part_of(body, folder, damping, arrays=MatrixNames(damping="D")))
+    made = replace(made, bodies={"platform": Body(reference=body.ports["right"].at), "top": Body()})
+    hertz = np.array([0.5, 1.1]) * np.sqrt(eigen(lumped(made)).values[[0, 3]]) / (2.0 * np.pi)
+    model = lumped(made)
+    found = transfer(model, ports(model, TWIST, WRENCH), hertz, ModalDamping(0.0))
+    turn = spatial_rotation(body.frames[1].rotation)
+    for seen, omega in zip(found, 2.0 * np.pi * hertz, strict=True):
+        dynamic = (body.stiffness + 1j * omega * damping - omega**2 * body.mass)[6:, 6:]
+        close(seen, turn @ np.linalg.inv(dynamic)[:6, :6] @ turn.T, 1e-7)
+
+
+def test_damping_that_resists_rigid_motions_is_told(tmp_path):
+    body = elastic(25)
+    with pytest.raises(DesignError, match="damping matrix: it resists rigid motions"):
+        part_of(body, tmp_path, body.mass, arrays=MatrixNames(damping="D"))
+    with pytest.raises(DesignError, match="damping matrix: it drives some motion"):
+        part_of(body, tmp_path, -damping_of(body, 25), arrays=MatrixNames(damping="D"))
+
+
 def test_its_weight_is_borne_by_the_ground(folder):
     """What weight passes into the ground port, and what of the part's mass hangs on that port itself, is the weight of all."""
     body = elastic(3)
@@ -248,7 +282,7 @@ WRONG = {
     "not square": (lambda body: broken(body, stiffness=body.stiffness[:-1]), "stiffness matrix: it is 25 x 26, not square"),
     "of two sizes": (
         lambda body: broken(body, mass=body.mass[:-1, :-1]),
-        "Export both over the same coordinates",
+        "26 x 26, 25 x 25",
     ),
     "not symmetric": (lambda body: broken(body, stiffness=skew(body.stiffness)), "it is not symmetric: entry (1, 9)"),
     "not finite": (lambda body: broken(body, mass=np.full_like(body.mass, np.nan)), "676 of its entries are no finite numbers"),

@@ -222,7 +222,8 @@ def _block_diagonal(first: Array, second: Array) -> Array:
 def _viscous(assembly: Assembly) -> dict[str, Array]:
     """What parts damp by themselves, by link."""
     found = _by_part(lambda part, _: viscous_damping(part), assembly)
-    return {name: damping for name, damping in found.items() if damping is not None}
+    elements = {name: _condensed(element).damping for name, element in assembly.superelements.items()}
+    return {name: damping for name, damping in (*found.items(), *elements.items()) if damping is not None}
 
 
 def _endless(assembly: Assembly, values: Mapping[str, Array], what: str) -> Iterator[Finding]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -36,14 +36,15 @@ class Condensed:
     """A superelement over its ports and modes with the ports held, SI, each port's twist at its origin in its axes, ports in file order.
 
     `stiffness` (6 (p - 1), 6 (p - 1)) of the ports but the first, that one held; `squares` (m,) of the modes' angular frequencies, the
-    modes mass-normalised; `inertia` (6 p + m, 6 p + m) of all. `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are
-    what the matrices say of a rigid motion. `error` is the stiffness against rigid motions over the softest elastic one, before it was
-    taken off.
+    modes mass-normalised; `inertia` (6 p + m, 6 p + m) of all; `damping` (6 (p - 1) + m, 6 (p - 1) + m) of what strains (`None`: none).
+    `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are what the matrices say of a rigid motion. `error` is the
+    stiffness against rigid motions over the softest elastic one, before it was taken off.
     """
 
     stiffness: Array
     squares: Array
     inertia: Array
+    damping: Array | None
     mass: float
     centre: Array
     moments: Array
@@ -86,6 +87,7 @@ class _Split:
 
     stiffness: MatrixLike
     inertia: MatrixLike
+    lost: tuple[MatrixLike, ...]
     ports: int
     inner: MatrixLike
     basis: Array
@@ -101,10 +103,11 @@ class _Split:
         return _symmetrise(_dense(self.basis.T @ (self.inertia @ self.basis)))
 
 
-def _reduce(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> Condensed:
-    require(_shape_findings(part, stiffness, inertia))
-    require([*_entry_findings("stiffness matrix", stiffness), *_entry_findings("mass matrix", inertia)])
-    split = _split(part, _symmetrise(stiffness), _symmetrise(inertia))
+def _reduce(part: Superelement, *matrices: MatrixLike) -> Condensed:
+    named = dict(zip(("stiffness matrix", "mass matrix", "damping matrix"), matrices, strict=False))
+    require(_shape_findings(part, named))
+    require(finding for name, matrix in named.items() for finding in _entry_findings(name, matrix))
+    split = _split(part, *(_symmetrise(each) for each in matrices))
     scale, energy = _in_si(part)
     at_ports, carried = (energy * scale * each * scale[:, None] for each in (split.at_ports, split.carried))
     frames = _frames(part)
@@ -116,20 +119,39 @@ def _reduce(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> C
     squares, modes = _modes(part, split)
     whole = np.hstack([split.basis, modes])
     size = np.concatenate([scale, np.full(len(squares), 1.0 / np.sqrt(energy))])
-    reduced = energy * size * _symmetrise(_dense(whole.T @ (split.inertia @ whole))) * size[:, None]
-    return Condensed(at_ports[6:, 6:], squares, reduced, mass, centre, moments, error)
+    reduced, *lost = (
+        energy * size * _symmetrise(_dense(whole.T @ (each @ whole))) * size[:, None] for each in (split.inertia, *split.lost)
+    )
+    require(finding for each in lost for finding in _loss_findings(each, motion))
+    return Condensed(at_ports[6:, 6:], squares, reduced, lost[0][6:, 6:] if lost else None, mass, centre, moments, error)
 
 
-def _shape_findings(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> Iterator[Finding]:
+def _loss_findings(damping: Array, motion: Array) -> Iterator[Finding]:
+    """Damping that resists rigid motions, as what is in proportion to mass does, or that drives."""
+    largest = float(np.max(np.abs(damping), initial=0.0))
+    left = float(np.max(np.abs(damping[:, : len(motion)] @ motion)))
+    if left > RIGID * largest * float(np.max(np.abs(motion))):
+        what = f"it resists rigid motions ({left:.3g}, its largest entry is {largest:.3g}), as damping in proportion to mass does"
+        yield Finding(
+            "damping matrix", what, "Export what the material and joints lose; damping of the whole stage is stated by its damping"
+        )
+    elif float(np.linalg.eigvalsh(damping)[0]) < -_NEGATIVE * len(damping) * largest:
+        yield Finding("damping matrix", "it drives some motion: an eigenvalue is negative", "Export the damping of the unloaded part")
+
+
+def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> Iterator[Finding]:
     if len(part.ports) < 2:
         yield Finding("ports", f"it has {len(part.ports)}, and a superelement joins two or more", "State all its interface frames")
-    sizes = {"stiffness matrix": stiffness.shape, "mass matrix": inertia.shape}
+    moved = [name for name, port in part.ports.items() if any(np.ndim(each) for each in (*port.at, *port.along, *port.up))]
+    if moved and any(np.ptp(np.real(each)) for name in moved for port in (part.ports[name],) for each in (*port.at, *port.along, *port.up)):
+        yield Finding(f"ports.{moved[0]}", "it varies from design to design, and the file is of one place", "Keep the ports where they are")
+    sizes = {name: matrix.shape for name, matrix in matrices.items()}
     for name, shape in sizes.items():
         if len(shape) != 2 or shape[0] != shape[-1]:
             yield Finding(name, f"it is {_by(shape)}, not square", "Export the whole matrix over ports and inner coordinates")
     if len(set(sizes.values())) > 1:
-        what = f"stiffness is {_by(stiffness.shape)} and mass {_by(inertia.shape)}"
-        yield Finding("mass matrix", what, "Export both over the same coordinates")
+        what = f"it and the others are {', '.join(_by(shape) for shape in sizes.values())}"
+        yield Finding("stiffness matrix", what, "Export all over the same coordinates")
     rows = np.zeros(min(map(min, sizes.values())), dtype=int)
     for name in part.order:
         port = part.ports[name]
@@ -166,14 +188,14 @@ def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
         yield Finding(name, what, "Export the whole matrix (a triangle alone is to be mirrored), of a model without rotors or contact")
 
 
-def _split(part: Superelement, stiffness: MatrixLike, inertia: MatrixLike) -> _Split:
+def _split(part: Superelement, *matrices: MatrixLike) -> _Split:
     ports = np.concatenate([np.arange(part.ports[name].row - 1, part.ports[name].row + 5) for name in part.order])
-    order = np.concatenate([ports, np.setdiff1d(np.arange(stiffness.shape[0]), ports)])
-    stiffness, inertia = (each[order][:, order] for each in (stiffness, inertia))
+    order = np.concatenate([ports, np.setdiff1d(np.arange(matrices[0].shape[0]), ports)])
+    stiffness, inertia, *lost = (each[order][:, order] for each in matrices)
     count = len(ports)
     inner = stiffness[count:, count:]
     follow = -_solve_within(inner, _dense(stiffness[count:, :count]))
-    return _Split(stiffness, inertia, count, inner, np.vstack([np.eye(count), follow]))
+    return _Split(stiffness, inertia, tuple(lost), count, inner, np.vstack([np.eye(count), follow]))
 
 
 def _solve_within(inner: MatrixLike, force: Array) -> Array:

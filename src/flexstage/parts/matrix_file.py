@@ -29,8 +29,8 @@ _HEAD = 512
 _CHUNK = 2**20
 
 
-def read_matrices(part: Superelement) -> tuple[MatrixLike, MatrixLike]:
-    """Stiffness and mass as they stand in a superelement's files, in the files' units, real, square in nothing yet.
+def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
+    """Stiffness, mass and, where one is stated, damping as they stand in a superelement's files: real, in the files' units, of any shape.
 
     Raises `DesignError` where a file is not stated, is not there, is of another version than stated, is damaged, holds no such array or
     numbers of another kind, or is too large.
@@ -40,13 +40,12 @@ def read_matrices(part: Superelement) -> tuple[MatrixLike, MatrixLike]:
         require_regular(path)
     require(_version_findings(part))
     if not part.file:
-        return _matrix_market(Path(part.stiffness_file)), _matrix_market(Path(part.mass_file))
+        return tuple(_matrix_market(Path(each)) for each in part.files)
     path = Path(part.file)
-    names = (part.arrays.stiffness, part.arrays.mass)
+    names = tuple(name for name in (part.arrays.stiffness, part.arrays.mass, part.arrays.damping) if name)
     found = _READERS[path.suffix.lower()](path, names)
     require(_missing_findings(path, names, found))
-    first, second = (_plain(path, name, found[name]) for name in names)
-    return first, second
+    return tuple(_plain(path, name, found[name]) for name in names)
 
 
 def digest_of(paths: tuple[str, ...]) -> str:
@@ -65,9 +64,9 @@ def digest_of(paths: tuple[str, ...]) -> str:
 
 
 def _statement_findings(part: Superelement) -> Iterator[Finding]:
-    stated = [key for key in ("file", "stiffness_file", "mass_file") if getattr(part, key)]
-    if stated not in (["file"], ["stiffness_file", "mass_file"]):
-        what = f"it states {' and '.join(stated) or 'none'} of file, stiffness_file and mass_file"
+    stated = [key for key in ("file", "stiffness_file", "mass_file", "damping_file") if getattr(part, key)]
+    if stated not in (["file"], ["stiffness_file", "mass_file"], ["stiffness_file", "mass_file", "damping_file"]):
+        what = f"it states {' and '.join(stated) or 'none'} of file, stiffness_file, mass_file and damping_file"
         yield Finding("file", what, "State file (MAT or NPZ), or stiffness_file and mass_file (Matrix Market)")
     for key in stated:
         path = getattr(part, key)
@@ -88,7 +87,7 @@ def _version_findings(part: Superelement) -> Iterator[Finding]:
 
 
 def _missing_findings(path: Path, names: tuple[str, ...], found: Mapping[str, MatrixLike]) -> Iterator[Finding]:
-    for key, name in zip(("stiffness", "mass"), names, strict=True):
+    for key, name in zip(("stiffness", "mass", "damping"), names, strict=False):
         if name not in found:
             there = ", ".join(list(found)[:8]) or "no array of numbers"
             yield Finding(

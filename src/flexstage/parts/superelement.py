@@ -38,20 +38,22 @@ class Port(Description):
 
 @dataclass(frozen=True, eq=False)
 class MatrixNames(Description):
-    """What the arrays of a MAT or NPZ file are called."""
+    """What the arrays of a MAT or NPZ file are called; without a name of its own the viscous damping is none."""
 
     stiffness: str = "K"
     mass: str = "M"
+    damping: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Superelement(Elastic):
     """An elastic body known by its stiffness K and mass M over the twists of its `ports` and inner coordinates, from files in `units`.
 
-    Either `file` is a MAT or NPZ file of both (`arrays` says what they are called), or `stiffness_file` and `mass_file` are Matrix Market
-    files. All coordinates that are no port's are inner ones: freedoms of nodes or amplitudes of modes, whatever the code has. `sha256` is
-    the digest of the bytes of the file, or of both files one after the other (stiffness, mass): it says which version is meant and stands
-    for the matrices in caches. A relative path is looked for from the design file.
+    Either `file` is a MAT or NPZ file of both (`arrays` says what they are called), or `stiffness_file` and `mass_file` are Matrix
+    Market files. A matrix of viscous damping D may stand beside them (`arrays`, or `damping_file`). All coordinates that are no port's
+    are inner ones: freedoms of nodes or amplitudes of modes, whatever the code has. `sha256` is the digest of the bytes of the file, or
+    of all files one after the other (stiffness, mass, damping): it says which version is meant and stands for the matrices in caches. A
+    relative path is looked for from the design file.
 
     The inner coordinates are reduced to modes with the ports held (Craig and Bampton, AIAA J. 6, 1313, 1968), which keeps the statics and
     the mass of the whole: as many as `modes` says (0: none, the condensation of Guyan, AIAA J. 3, 380, 1965), those `below` a frequency,
@@ -66,6 +68,7 @@ class Superelement(Elastic):
     file: str = field(default="", metadata=DOCUMENT_ONLY)
     stiffness_file: str = field(default="", metadata=DOCUMENT_ONLY)
     mass_file: str = field(default="", metadata=DOCUMENT_ONLY)
+    damping_file: str = field(default="", metadata=DOCUMENT_ONLY)
     arrays: MatrixNames = field(default_factory=MatrixNames)
     modes: Annotated[int, Bound(0, 10_000)] | None = None
     below: Annotated[Number, FREQUENCY, POSITIVE] | None = None
@@ -88,7 +91,7 @@ class Superelement(Elastic):
     @property
     def files(self) -> tuple[str, ...]:
         """The files it is known by, in the order in which their bytes are digested."""
-        return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file) if each)
+        return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file, self.damping_file) if each)
 
     @property
     def order(self) -> tuple[str, ...]:
@@ -97,5 +100,5 @@ class Superelement(Elastic):
 
     def with_paths(self, change: Callable[[str], str]) -> Superelement:
         """The part with its files' paths changed."""
-        names = ("file", "stiffness_file", "mass_file")
+        names = ("file", "stiffness_file", "mass_file", "damping_file")
         return replace(self, **{name: change(path) for name in names if (path := getattr(self, name))})

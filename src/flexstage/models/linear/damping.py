@@ -54,7 +54,7 @@ def viscous_coupling(model: LinearModel, solved: Eigen) -> Array:
     """
     total: Array = np.zeros((solved.shapes.shape[-1],) * 2)
     for name, law in model.viscous.items():
-        strain = model.stiffness[name].operator[..., :6, :] @ solved.shapes
+        strain = model.stiffness[name].operator[..., : law.shape[-1], :] @ solved.shapes
         total = total + np.swapaxes(strain, -1, -2) @ law @ strain
     return total
 

@@ -135,7 +135,7 @@ def _with_dampers(model: LinearModel, chosen: Ports, frequencies: Array, damping
     resisted: Array = np.zeros((len(model.coordinates),) * 2)
     dragged: Array = np.zeros((len(model.coordinates), len(chosen.inputs)))
     for name, law in model.viscous.items():
-        rows = model.stiffness[name].operator[..., :6, :]
+        rows = model.stiffness[name].operator[..., : law.shape[-1], :]
         push = np.swapaxes(rows, -1, -2) @ law
         resisted = resisted + push @ rows
         dragged = dragged + push @ imposed_on(model, name, chosen)
@@ -155,7 +155,7 @@ def _law_matrix(model: LinearModel, damping: Damping) -> Array:
 
 
 def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
-    """What the chosen inputs impose on a link (..., 6, m).
+    """What the chosen inputs impose on a link (..., d, m): six rows, or as many as its damper has.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -165,7 +165,8 @@ def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
     [1.0, 0.0]
     """
     own = {channel.name: number for number, channel in enumerate(model.inputs)}
-    imposed = model.imposed.get(name, np.zeros((6, len(model.inputs))))[..., :6, :]
+    rows = model.viscous[name].shape[-1] if name in model.viscous else 6
+    imposed = model.imposed.get(name, np.zeros((rows, len(model.inputs))))[..., :rows, :]
     columns = [imposed[..., own[each.name]] if each.name in own else np.zeros(imposed.shape[:-1]) for each in chosen.inputs]
     return np.stack(columns, axis=-1)
 

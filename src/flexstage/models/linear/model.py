@@ -45,8 +45,8 @@ class LinearModel:
     M_u, what inputs that impose a motion accelerate (absent: none do). `unknown` names outputs that the model cannot tell: forces of locked
     freedoms. Batch axes lead, and only where something varies: an array without them holds for every design.
 
-    `viscous` are the dampers (..., 6, 6) [N s/m] that parts state, by stiffness contribution: they resist the rate of its deformation, G q
-    less what is imposed, in its first six rows, beside the damping law of the whole. Link forces are told without theirs.
+    `viscous` are the dampers (..., d, d) [N s/m] that parts state, by stiffness contribution: they resist the rate of its deformation, G q
+    less what is imposed, in its first d rows, beside the damping law of the whole. Link forces are told without theirs.
 
     `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
     neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
