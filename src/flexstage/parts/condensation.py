@@ -104,7 +104,7 @@ class _Split:
 
 
 def _reduce(part: Superelement, *matrices: MatrixLike) -> Condensed:
-    named = dict(zip(("stiffness matrix", "mass matrix", "damping matrix"), matrices, strict=False))
+    named: dict[str, MatrixLike] = dict(zip(("stiffness matrix", "mass matrix", "damping matrix"), matrices, strict=False))
     require(_shape_findings(part, named))
     require(finding for name, matrix in named.items() for finding in _entry_findings(name, matrix))
     split = _split(part, *(_symmetrise(each) for each in matrices))
