@@ -24,6 +24,7 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.condensation import condense, superelement
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.superelement import FileUnits, MatrixNames, Port, Superelement
+from flexstage.show.scene.stage import scene
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, rigid_inertia, spatial_rotation, twist_transform
 from tests.conftest import examples
 
@@ -223,6 +224,12 @@ def test_it_is_rigid_to_the_ideal_model_or_free_as_its_link_states(folder):
     assert ideal(replace(two, links={"frame": hinge})).mobility == 1
     told = check(replace(three, links={"frame": replace(three.links["frame"], free=(Freedom.RZ,))}))
     assert "3 ports" in str(told[0])
+
+
+def test_pictures_show_it_between_its_ports_and_bend_it_with_their_bodies(folder):
+    made = stage(part_of(elastic(5), folder))
+    bars = [facet for facet in scene(made).facets if facet.paint.name == "frame"]
+    assert {facet.paint.carriers for facet in bars} == {("ground", "platform"), ("ground", "top"), ("platform", "top")}
 
 
 @pytest.mark.parametrize("form", ["npz", "mat", "sparse", "mat73", "mtx", "mtx dense", "millimetres"])

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSolid, expand
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSolid, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
 from flexstage.parts.part import is_actuator
@@ -50,7 +51,7 @@ def scene(mechanism: Mechanism) -> Scene:
     """The scene of the first design of a description.
 
     Bodies without outlines are bars between their joints; where a joint lies off its body's outline a thin line joins them. Ground is shown
-    at each link that is fixed to it.
+    at each link that is fixed to it. Superelements are bars between their ports.
 
     >>> scene(Mechanism("", bodies={})).facets
     ()
@@ -62,6 +63,7 @@ def scene(mechanism: Mechanism) -> Scene:
     facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
     facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size)]
+    facets += [facet for element in assembly.superelements.values() for facet in _superelement(element, size)]
     facets += [facet for name, sight in _sights(assembly) for facet in _gauge(name, sight, size)]
     references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
     return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
@@ -132,6 +134,9 @@ def _joints(assembly: Assembly) -> dict[str, list[Array]]:
     for link in assembly.links.values():
         for body, end in zip(link.joins, _ends(link, assembly), strict=True):
             joints.setdefault(body, []).append(end)
+    for element in assembly.superelements.values():
+        for port in element.ports.values():
+            joints.setdefault(port.body, []).append(_first(port.frame.position))
     return joints
 
 
@@ -218,6 +223,16 @@ def _link(link: PlacedLink, assembly: Assembly, size: float) -> list[Facet]:
     if GROUND in link.joins:
         facets += _foot(f"{link.name} foot", ends[link.joins.index(GROUND)], frame, (*part_section(link.part), _MARKER * size))
     return facets
+
+
+def _superelement(element: PlacedSuperelement, size: float) -> list[Facet]:
+    """Bars between its ports: between all of up to four, else from the first to each; they bend with the bodies there."""
+    ports = list(element.ports.values())
+    pairs = itertools.combinations(ports, 2) if len(ports) <= 4 else ((ports[0], port) for port in ports[1:])
+    ends = [(_first(one.frame.position), _first(other.frame.position), (one.body, other.body)) for one, other in pairs]
+    return [
+        facet for first, second, bodies in ends for facet in _bar(first, second, Paint(Kind.HINGE, bodies, element.name), _MARKER * size)
+    ]
 
 
 def _foot(name: str, end: Array, frame: Frame, section: tuple[float, float, float]) -> list[Facet]:
