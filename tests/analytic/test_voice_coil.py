@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.judge import judge
 from flexstage.analysis.response import response
+from flexstage.analysis.workspace.reach import reach
 from flexstage.base.scale import X, Z, mm
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, StructuralDamping
 from flexstage.mechanism.restrict import restrict
@@ -115,3 +117,76 @@ def test_the_magnet_may_move():
     fixed = lumped(stage())
     ratio = eigen(fixed).values[0] / eigen(moving).values[0]
     assert ratio == pytest.approx((MASS + COIL.magnet_mass) / (MASS + COIL.mass), rel=1e-9)
+
+
+LIMITED = replace(
+    COIL,
+    peak_current=4.0,
+    continuous_current=1.8,
+    voltage=12.0,
+    maximum_force=40.0,
+    thermal_resistance=5.0,
+    temperature_rise=60.0,
+    duty=0.25,
+)
+
+
+def test_reach_is_the_least_limit_over_stiffness():
+    """Held for ever heat ends it at sqrt(60 K / (5 K/W 6 ohm)) = 1.414 A; a quarter of the time the voltage does, at 12 V / 6 ohm = 2 A."""
+    mechanism = stage(LIMITED)
+    model = lumped(mechanism)
+    found = reach(mechanism, ideal(mechanism), model)
+    per_ampere = static_gain(model, ("platform.x",), ("motor",)).values.item()
+    by_cause = dict(zip(found.bounds.columns, found.bounds.values[0] / per_ampere, strict=True))
+    expected = {"peak current": 4.0, "continuous current": 1.8, "heat": 2.0**0.5, "voltage": 2.0, "maximum force": 40.0 / 12.0}
+    assert by_cause == pytest.approx({f"motor {cause}": value for cause, value in expected.items()}, rel=1e-9)
+    assert found.limited_by == ("motor heat",)
+    assert found.held_briefly == pytest.approx([2.0 * per_ampere], rel=1e-9)
+    needs = [each.values.item() for each in (found.current, found.voltage, found.power, found.rise)]
+    assert needs == pytest.approx([2.0**0.5, 6.0 * 2.0**0.5, 12.0, 60.0], rel=1e-9)
+
+
+def test_travel_and_a_stress_end_the_reach_too():
+    """A coil of 0.2 mm travel goes 0.1 mm either way; where nothing is stated, nothing is known, and a requirement says so."""
+    short = stage(replace(COIL, travel=0.2 * mm))
+    found = reach(short, ideal(short), lumped(short))
+    assert (found.held.item(), found.limited_by) == (pytest.approx(0.1 * mm, rel=1e-9), ("motor travel",))
+    verdict = judge(replace(stage(), requirements={"stroke.x": "at least 50 um"}))[0]
+    assert verdict.value is None
+    assert "no limit of its actuators is stated" in verdict.reason
+
+
+def test_yield_of_the_leaves_ends_the_reach():
+    """Guided leaves without end rotation bear sigma = 3 E t d / L^2 at their ends: 0.5 mm at 240 MPa, plate action aside."""
+    mechanism = stage(replace(COIL, peak_current=1e3))
+    steel = replace(mechanism.materials["steel"], yield_stress=3.0 * YOUNG * THICKNESS * 0.5 * mm / LENGTH**2)
+    leaf = replace(mechanism.parts["leaf"].part, width=1.0 * mm)
+    free = replace(mechanism, materials={"steel": steel}, parts={**mechanism.parts, "leaf": leaf}, gravity=(0.0, 0.0, 0.0))
+    found = reach(free, ideal(free), lumped(free))
+    assert found.limited_by == ("yield stress",)
+    assert found.held.item() == pytest.approx(0.5 * mm, rel=0.05)
+
+
+def test_requirements_of_what_holding_takes():
+    """50 um by hand: i = d/(x/i), R i, k_f i, i^2 R, i^2 R R_th."""
+    lines = {"stroke.x": "at least 50 um"} | {
+        key: f"at most {limit}"
+        for key, limit in zip(
+            ("current.x", "voltage.x", "thrust.x", "power.x", "heating.x"), ("1 A", "9 V", "20 N", "9 W", "40 K"), strict=True
+        )
+    }
+    mechanism = replace(stage(LIMITED), requirements=lines)
+    held = 50e-6 / static_gain(lumped(mechanism), ("platform.x",), ("motor",)).values.item()
+    found = [verdict.value.item() for verdict in judge(mechanism)[1:]]
+    assert found == pytest.approx([held, 6.0 * held, 12.0 * held, 6.0 * held**2, 30.0 * held**2], rel=1e-9)
+
+
+def test_redundant_coils_share_by_their_limits():
+    """Two coils on one freedom: the one of thrice the current takes thrice of it, and together they reach four times as far."""
+    one, two = replace(COIL, peak_current=1.0), replace(COIL, peak_current=3.0)
+    single = stage(one)
+    links = {**single.links, "second": Link((PLATFORM, GROUND), "strong", (40 * mm, 0.0, 0.0), X)}
+    both = replace(single, parts={**single.parts, "strong": two}, links=links)
+    alone, together = (reach(each, ideal(each), lumped(each)) for each in (single, both))
+    assert together.current.values[0] == pytest.approx([1.0, 3.0], rel=1e-9)
+    assert together.held.item() == pytest.approx(4.0 * alone.held.item(), rel=1e-9)

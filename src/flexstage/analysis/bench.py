@@ -17,6 +17,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
+from flexstage.analysis.workspace.reach import Reach, input_limits, reach
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
 from flexstage.base.finding import refuse
@@ -39,6 +40,18 @@ class Bench:
         self.mechanism = mechanism
         self.command = command
         self._corrections: dict[str, Matrix] = {}
+        self._reaches: dict[str, Reach] = {}
+
+    def reach(self, point: str) -> Reach:
+        """How far forces move a point, and what limits it."""
+        if point not in self._reaches:
+            self._reaches[point] = reach(self.mechanism, self.kinematics, self.model, point=point)
+        return self._reaches[point]
+
+    @property
+    def forced(self) -> bool:
+        """Whether forces move the platform, as strokes do not determine it."""
+        return bool(self.kinematics.thrusts) and not self.kinematics.actuated
 
     def correction(self, point: str) -> Matrix:
         """Strokes per motion of a point, lost motion made up by command."""
@@ -95,8 +108,13 @@ class Bench:
 
     @cached_property
     def stress(self) -> HingeStress:
-        """Stress of hinges over all strokes, relaxed without voltage."""
-        return hinge_stress(self.mechanism, self.model, self.limits.from_zero)
+        """Stress of hinges over all strokes and forces, relaxed without voltage."""
+        return hinge_stress(self.mechanism, self.model, self._loaded)
+
+    @cached_property
+    def _loaded(self) -> StrokeLimits:
+        """Strokes from no voltage, and forces."""
+        return input_limits(self.mechanism, self.model) if self.assembly.thrusts else self.limits.from_zero
 
     @cached_property
     def drift(self) -> Drift:
@@ -106,7 +124,7 @@ class Bench:
     @cached_property
     def buckling(self) -> Buckling:
         """Columns and the whole stage over all strokes, from no voltage."""
-        return buckling(self.mechanism, lumped(self.mechanism), self.limits.from_zero)
+        return buckling(self.mechanism, lumped(self.mechanism), self._loaded)
 
     def deflection(self, point: str) -> Deflection:
         """Motion of a point under gravity and stated forces, strokes held."""

@@ -22,6 +22,8 @@ from flexstage.analysis.standing import require_standing, standing
 from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.units import UnitResult, units
 from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.reach import Reach
+from flexstage.analysis.workspace.reach import reach as reach_of
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.number import Table
@@ -68,6 +70,7 @@ class Analysis:
     units: Mapping[str, UnitResult] | None
     verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
+    reach: Reach | None = None
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
@@ -106,6 +109,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     command = required_command(mechanism)
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
     hinged = linear if model is Model.LUMPED else None
+    forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
     drifted = attempt.of_ground("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
@@ -124,6 +128,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         error_budget=attempt.of_ground("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
         verdicts=verdicts,
+        reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
         missing=Table(attempt.missing),
     )
 

@@ -14,14 +14,31 @@ from flexstage.analysis.bench import Bench
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
+from flexstage.analysis.workspace.reach import bounds_along
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import refuse, require
-from flexstage.base.number import Array, magnitude
-from flexstage.base.quantity import ANGLE, DISPLACEMENT, FORCE, FREQUENCY, LENGTH, MASS, MOMENT, RATIO, STIFFNESS, Quantity
+from flexstage.base.number import Array, magnitude, stack
+from flexstage.base.quantity import (
+    ANGLE,
+    CURRENT,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    MOMENT,
+    POWER,
+    RATIO,
+    STIFFNESS,
+    TEMPERATURE,
+    VOLTAGE,
+    Quantity,
+)
 from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.condensation import condense
+from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
@@ -98,8 +115,10 @@ class Measure:
 def stroke(bench: Bench, asked: Measure) -> Array:
     """Stroke both ways along one axis, lost motion made up by command.
 
-    How far each actuator lets the platform go, either way.
+    How far each actuator lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
     """
+    if bench.forced:
+        return bounds_along(bench.reach(asked.point), asked.name)
     mapping = bench.correction(asked.point)
     if asked.name not in mapping.columns:
         raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
@@ -206,11 +225,73 @@ def deflection(bench: Bench, asked: Measure) -> Array:
 
 @partial(MeasureKind, "force.<axis>", FORCE, about=MOMENT)
 def force(bench: Bench, asked: Measure) -> Array:
-    """Blocking force of the platform along one axis."""
+    """Blocking force of the platform along one axis.
+
+    Where forces move it: how far they do, held for ever, times its stiffness there.
+    """
+    if bench.forced:
+        bounds = np.min(bounds_along(bench.reach(PLATFORM), asked.name), axis=-1)
+        return bounds * stiffness.work(bench, asked)
     lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
     if asked.name not in lines.coordinates:
         raise refuse(f"force.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
     return lines.blocking[..., lines.coordinates.index(asked.name)]
+
+
+@partial(MeasureKind, "current.<axis>", CURRENT, extreme=Extreme.LARGEST)
+def current(bench: Bench, asked: Measure) -> Array:
+    """Largest current of a coil that holds the required stroke along one axis."""
+    return _held(bench, asked)[0]
+
+
+@partial(MeasureKind, "voltage.<axis>", VOLTAGE, extreme=Extreme.LARGEST)
+def voltage(bench: Bench, asked: Measure) -> Array:
+    """Largest voltage of a coil at rest, R i, that holds the required stroke along one axis."""
+    currents, coils = _held(bench, asked)
+    return currents * _stated(coils, "resistance")
+
+
+@partial(MeasureKind, "thrust.<axis>", FORCE, extreme=Extreme.LARGEST)
+def thrust(bench: Bench, asked: Measure) -> Array:
+    """Largest force of a coil that holds the required stroke along one axis."""
+    currents, coils = _held(bench, asked)
+    return currents * _stated(coils, "force_constant")
+
+
+@partial(MeasureKind, "power.<axis>", POWER)
+def power(bench: Bench, asked: Measure) -> Array:
+    """Heat of all coils, i^2 R, that holding the required stroke along one axis takes."""
+    currents, coils = _held(bench, asked)
+    return np.sum(currents**2 * _stated(coils, "resistance"), axis=-1)
+
+
+@partial(MeasureKind, "heating.<axis>", TEMPERATURE, extreme=Extreme.LARGEST)
+def heating(bench: Bench, asked: Measure) -> Array:
+    """Largest temperature rise of a coil that holds the required stroke along one axis for ever."""
+    currents, coils = _held(bench, asked)
+    return currents**2 * _stated(coils, "resistance") * _stated(coils, "thermal_resistance")
+
+
+def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, VoiceCoil]]:
+    """The currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
+    found = bench.reach(PLATFORM)
+    coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), VoiceCoil)}
+    if not coils or asked.name not in found.coordinates:
+        raise refuse(asked.key, "no coil moves this stage along it", f"Its ideal motions are {', '.join(found.coordinates)}")
+    if asked.name not in bench.command:
+        advice = f'Add for example "stroke.{asked.name}" = "at least 50 um"'
+        raise refuse(asked.key, "no stroke along this axis is required, so there is none to hold", advice)
+    rows = [found.per_motion.rows.index(name) for name in coils]
+    return magnitude(found.per_motion.values[..., rows, found.coordinates.index(asked.name)] * bench.command[asked.name]), coils
+
+
+def _stated(coils: dict[str, VoiceCoil], field: str) -> Array:
+    """A number (..., c) of every coil, refused where one does not state it."""
+    values = {name: getattr(coil, field) for name, coil in coils.items()}
+    missing = [name for name, value in values.items() if value is None]
+    if missing:
+        raise refuse(missing[0], f"it states no {field.replace('_', ' ')}", f"Add {field} to its part")
+    return stack(list(values.values()))
 
 
 @partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST)

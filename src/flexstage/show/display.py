@@ -79,6 +79,7 @@ _PREFERRED = {
 _FIELD_UNITS = {
     "mm": 1e3,
     "um": 1e6,
+    "mH": 1e3,
     "deg": 180.0 / math.pi,
     "MPa": 1e-6,
     "GPa": 1e-9,

@@ -72,6 +72,7 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
+        **({} if analysis.reach is None else {"reach": analysis.reach}),
         "buckling": analysis.buckling,
         "drift": analysis.drift,
         "budget": analysis.error_budget,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Annotated, Any, TypeAlias
 
@@ -16,7 +17,7 @@ from flexstage.base.number import Array, index_of_largest
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
 from flexstage.beams.stress import has_section, stress
-from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.part import Part, Restricted
@@ -88,7 +89,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     'B4/pivot'
     """
     assembly = expand(mechanism)
-    sized = {name: link for name, link in assembly.links.items() if _has_section(link)}
+    sized = sized_links(assembly)
     if not sized:
         raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
@@ -105,6 +106,17 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
         unchecked=tuple(name for name in assembly.links if name not in sized),
         provenance=model.provenance,
     )
+
+
+def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
+    """The links of which the stress is known."""
+    return {name: link for name, link in assembly.links.items() if _has_section(link)}
+
+
+def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
+    """Largest share of its yield stress (...) that a link bears under wrenches (..., L, 6); NaN where a yield stress is not stated."""
+    rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
+    return np.max(np.stack(np.broadcast_arrays(*(peak / known for _, peak, known, _ in rows)), axis=-1), axis=-1)
 
 
 def _has_section(link: PlacedLink) -> bool:

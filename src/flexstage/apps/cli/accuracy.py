@@ -14,17 +14,19 @@ from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace import workspace as study
+from flexstage.analysis.workspace.reach import reach
 from flexstage.base.quantity import TEMPERATURE
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
-from flexstage.show.command.design import open_design
+from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
+from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.strength import strength_tables
 
@@ -49,11 +51,16 @@ def workspace(
 ) -> None:
     """What the stage reaches and bears.
 
-    Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads.
+    Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads. Of a stage that forces move: how far, what
+    limits it, and the current, volts and heat of holding it there.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
     kinematics, linear = ideal(mechanism), read(mechanism, model)
+    if kinematics.thrusts and not kinematics.actuated:
+        reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
+        answer("workspace", mechanism, lambda: reached, lambda: reach_tables(reached), model=model, json=json, csv=csv)
+        return
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, linear)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)

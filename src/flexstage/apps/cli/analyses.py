@@ -180,7 +180,7 @@ def response(  # noqa: PLR0913 (its options)
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
-    found = responses.response(linear, chosen, inputs or linear.strokes, grid, damping=law)
+    found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
     shaken = random_response(linear, chosen, spectra(linear, noise), limits, damping=law) if noise else None
     answer(

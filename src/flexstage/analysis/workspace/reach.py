@@ -1,0 +1,273 @@
+"""Reach of stages that forces move: how far along each axis, what limits it, and what holding it there takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.strength import sized_links, stress_use
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, Number, first_design, magnitude
+from flexstage.base.record import VIEW
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, static_gain
+from flexstage.parts.actuator import ThrustActuator
+from flexstage.parts.voice_coil import VoiceCoil
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
+
+_STRESS_STEPS = 60
+_YIELD = "yield stress"
+_LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
+
+
+@dataclass(frozen=True, eq=False)
+class Reach(InNotebook):
+    """How far a point goes along single coordinates, either way, by the elastic model; coordinates alone where the inputs allow it.
+
+    `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
+    ones at zero, or, where `alone` says so, giving way. `bounds` (coordinates x causes) [m, rad] is the motion at which each cause ends it
+    if it is held for ever, `short` that in short use (a coil's `duty`); NaN where a limit is not stated. `current`, `voltage`, `power` and
+    `rise` (coordinates x coils) are what the held motion takes: i, R i, i^2 R and i^2 R times the thermal resistance [K].
+    """
+
+    point: str
+    coordinates: tuple[str, ...]
+    alone: tuple[bool, ...]
+    per_motion: Matrix
+    bounds: Matrix
+    short: Matrix
+    current: Matrix
+    voltage: Matrix
+    power: Matrix
+    rise: Matrix
+    provenance: str
+
+    @property
+    def held(self) -> Array:
+        """The least bound of every coordinate (..., f) [m, rad], for ever; NaN where no limit is known."""
+        return _least(self.bounds.values)
+
+    @property
+    def held_briefly(self) -> Array:
+        """The least bound of every coordinate (..., f) [m, rad] in short use."""
+        return _least(self.short.values)
+
+    @property
+    def limited_by(self) -> Annotated[tuple[str, ...], VIEW]:
+        """The cause that ends each coordinate's motion, on the first design; empty where no limit is known."""
+        first = np.nan_to_num(np.real(first_design(self.bounds.values, 2)), nan=np.inf)
+        return tuple(self.bounds.columns[int(np.argmin(row))] if np.isfinite(np.min(row, initial=np.inf)) else "" for row in first)
+
+
+def _least(bounds: Array) -> Array:
+    least = np.min(np.where(np.isnan(bounds), np.inf, bounds), axis=-1, initial=np.inf)
+    return np.where(np.isinf(least), np.nan, least)
+
+
+def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> Reach:
+    """Limit over compliance along every ideal motion, of stages with force actuators.
+
+    C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
+    limits for more. What is left of the motion ends with the first of: each coil's peak and continuous current, heat i^2 R over its
+    thermal resistance, amplifier voltage R i (at rest), largest force, magnetic travel, each stroke, and yield in a hinge under dead load.
+    Linear. Raises `DesignError` where the stage has no force actuator, or no ideal motion.
+    """
+    if not kinematics.thrusts or not kinematics.mobility:
+        raise refuse("reach", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
+    assembly = expand(mechanism)
+    inputs, names = model.actuators, kinematics.coordinates
+    gain = static_gain(model, tuple(f"{point}.{name}" for name in names), inputs).values
+    limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
+    per_motion, alone = _inverse(gain, _sizes(limits[False]))
+    others = [*_travel(assembly, model, inputs, per_motion), *_stress(mechanism, assembly, model, inputs, per_motion)]
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
+    bounds = {brief: _bounds(names, [*_by_input(inputs, known, per_motion), *others], units) for brief, known in limits.items()}
+    channels = tuple(channel.unit for channel in model.inputs if channel.name in inputs)
+    return Reach(
+        point=point,
+        coordinates=names,
+        alone=alone,
+        per_motion=Matrix(per_motion, inputs, names, ratio_units(channels, units)),
+        bounds=bounds[False],
+        short=bounds[True],
+        **_needs(assembly, inputs, names, per_motion * _least(bounds[False].values)[..., None, :]),
+        provenance=model.provenance,
+    )
+
+
+_Causes = list[tuple[str, Array]]
+
+
+def _input_limits(mechanism: Mechanism, assembly: Assembly, inputs: tuple[str, ...], *, brief: bool) -> list[list[tuple[str, Number]]]:
+    """What bounds every input either way, by name; strokes by their nearer end."""
+    strokes = stroke_limits(mechanism)
+    result: list[list[tuple[str, Number]]] = []
+    for name in inputs:
+        part = assembly.actuator(name)
+        if isinstance(part, ThrustActuator):
+            each = [(limit.name, limit.short if brief else limit.held) for limit in part.limits]
+            result.append([(cause, value) for cause, value in each if value is not None])
+        else:
+            place = strokes.actuators.index(name)
+            result.append([("stroke", np.minimum(-strokes.low[..., place], strokes.high[..., place]))])
+    return result
+
+
+def _sizes(limits: list[list[tuple[str, Number]]]) -> list[float]:
+    """Root of every input's least limit on the first design (1 where none is known): redundant inputs u_i share by least sum u_i^2/limit_i.
+
+    Two on one line then reach their limits together.
+    """
+    return [min((float(np.real(np.ravel(value)[0])) for _, value in own), default=1.0) ** 0.5 for own in limits]
+
+
+def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
+    """Inputs (..., n, f) per motion, and whether each coordinate moves alone: else the others give way."""
+    scaled = gain * np.asarray(sizes)
+    count, first = gain.shape[-2], np.real(first_design(scaled, 2))
+    weight = np.max(np.abs(first), axis=1, keepdims=True)
+    if np.linalg.matrix_rank(first / np.where(weight > 0.0, weight, 1.0), tol=1e-6) == count:
+        return np.asarray(sizes)[:, None] * _least_norm(scaled), (True,) * count
+    columns = [_least_norm(scaled[..., row : row + 1, :])[..., 0] for row in range(count)]
+    return np.asarray(sizes)[:, None] * np.stack(columns, axis=-1), (False,) * count
+
+
+def _least_norm(gain: Array) -> Array:
+    """G = C^T (C C^T)^-1, which is C^-1 of a square C; infinite where an input does not reach."""
+    transposed = np.swapaxes(gain, -1, -2)
+    if gain.shape[-1] == gain.shape[-2]:
+        return np.linalg.inv(gain)
+    return transposed @ np.linalg.inv(gain @ transposed)
+
+
+def _by_input(inputs: tuple[str, ...], limits: list[list[tuple[str, Number]]], per_motion: Array) -> Iterator[tuple[str, Array]]:
+    for place, (name, own) in enumerate(zip(inputs, limits, strict=True)):
+        for cause, value in own:
+            yield f"{name} {cause}", _over(np.asarray(value)[..., None], per_motion[..., place, :])
+
+
+def _over(limit: Array, slope: Array) -> Array:
+    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does."""
+    size = magnitude(slope)
+    return np.where(size > 0.0, limit / np.where(size > 0.0, size, 1.0), np.inf)
+
+
+def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
+    """Half the magnetic travel of every coil against how far the motion opens it."""
+    columns = model.input_index(inputs)
+    moved = displacement(model, model.input_matrix[..., columns] @ per_motion)
+    for name, link in assembly.thrusts.items():
+        part = assembly.actuator(name)
+        if isinstance(part, ThrustActuator) and part.travel is not None:
+            imposed = model.imposed.get(link)
+            opened = (model.stiffness[link].operator @ moved)[..., 0, :]
+            opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., 0, :]
+            yield f"{name} travel", _over(0.5 * np.asarray(part.travel)[..., None], opened)
+
+
+def _stress(
+    mechanism: Mechanism, assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array
+) -> Iterator[tuple[str, Array]]:
+    """The motion at which a hinge yields, dead load included: s <- s / use(s), use the largest share of yield."""
+    sized = sized_links(assembly)
+    if not sized:
+        return
+    names = tuple(f"{link}.{force}" for link in sized for force in FORCES)
+    per = static_gain(model, names, inputs).values @ per_motion
+    load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
+    dead = (model.output[..., model.output_index(names), :] @ displacement(model, load[..., None]))[..., 0]
+    found = [_yielding(sized, dead, per[..., column]) for column in range(per.shape[-1])]
+    yield _YIELD, np.stack(np.broadcast_arrays(*found), axis=-1)
+
+
+def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
+    """The least motion (...) either way at which the largest stress reaches yield; NaN where a yield stress is not stated."""
+    ways: list[Array] = []
+    for sign in (1.0, -1.0):
+        use = stress_use(sized, (sign * per).reshape(*per.shape[:-1], len(sized), len(FORCES)))
+        if not np.any(np.real(use) > 0.0):
+            ways.append(np.where(np.isnan(use), np.nan, np.inf))
+            continue
+        motion = 1.0 / np.where(use == 0.0, 1e-30, use)
+        for _ in range(_STRESS_STEPS):
+            total = dead + sign * motion[..., None] * per
+            motion = motion / stress_use(sized, total.reshape(*total.shape[:-1], len(sized), len(FORCES)))
+        ways.append(motion)
+    return np.minimum(*ways)
+
+
+def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> Matrix:
+    values = np.stack(np.broadcast_arrays(*(value for _, value in causes)), axis=-1) if causes else np.zeros((len(names), 0))
+    return Matrix(values, names, tuple(cause for cause, _ in causes), tuple((unit,) * len(causes) for unit in units))
+
+
+def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], held: Array) -> dict[str, Matrix]:
+    """What the inputs (..., n, f) of the held motions ask of every coil."""
+    coils = [name for name in inputs if isinstance(assembly.actuator(name), VoiceCoil)]
+    found: dict[str, list[Array]] = {"current": [], "voltage": [], "power": [], "rise": []}
+    for name in coils:
+        current, part = magnitude(held[..., inputs.index(name), :]), assembly.actuator(name)
+        assert isinstance(part, VoiceCoil)  # noqa: S101  coils are
+        resistance, thermal = (np.nan if value is None else value for value in (part.resistance, part.thermal_resistance))
+        resistance = np.asarray(resistance)[..., None]
+        found["current"].append(current)
+        found["voltage"].append(resistance * current)
+        found["power"].append(resistance * current**2)
+        found["rise"].append(resistance * current**2 * np.asarray(thermal)[..., None])
+    none = np.zeros((*held.shape[:-2], held.shape[-1], 0))
+    return {
+        key: Matrix(np.stack(np.broadcast_arrays(*rows), axis=-1) if rows else none, names, tuple(coils), unit)
+        for (key, rows), unit in zip(found.items(), ("A", "V", "W", "K"), strict=True)
+    }
+
+
+def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
+    """Least and largest of every input, strokes from no voltage, forces either way: the least that is stated of a coil in short use.
+
+    What opens a coil alone by more than half its travel is more than it is ever given. Raises `DesignError` for a force actuator that
+    states no limit.
+    """
+    assembly, inputs = expand(mechanism), model.actuators
+    strokes = stroke_limits(mechanism).from_zero
+    known = _input_limits(mechanism, assembly, inputs, brief=True)
+    for name, bounds in _travel(assembly, model, inputs, np.eye(len(inputs))):
+        owner = name.removesuffix(" travel")
+        known[inputs.index(owner)].append((name, bounds[..., inputs.index(owner)]))
+    require(
+        Finding(name, "it states no limit of its force, and what it may load the stage with is not known", _LIMIT)
+        for name, own in zip(inputs, known, strict=True)
+        if not own
+    )
+    low, high = [], []
+    for name, own in zip(inputs, known, strict=True):
+        if name in strokes.actuators:
+            place = strokes.actuators.index(name)
+            low.append(strokes.low[..., place])
+            high.append(strokes.high[..., place])
+        else:
+            most = np.min(np.stack(np.broadcast_arrays(*(np.asarray(value) for _, value in own))), axis=0)
+            low.append(-most)
+            high.append(most)
+    return StrokeLimits(inputs, *(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (low, high)))
+
+
+def bounds_along(found: Reach, name: str) -> Array:
+    """The bounds (..., k) of the motion along one coordinate, infinite where a limit is not stated; refused where none is."""
+    if name not in found.coordinates:
+        raise refuse(f"stroke.{name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(found.coordinates)}")
+    place = found.coordinates.index(name)
+    if np.any(np.isnan(found.held[..., place])):
+        what = "no limit of its actuators is stated"
+        raise refuse(f"reach.{name}", what, _LIMIT)
+    values = found.bounds.values[..., place, :]
+    return np.where(np.isnan(values), np.inf, values)
