@@ -37,7 +37,8 @@ HOMES = {
     "parts.body": "Body Block Cylinder Imported Inertia Payload",
     "parts.freedom": "Freedom",
     "beams.validity": "validity",
-    "mechanism.pattern": "Polar Pose Facing",
+    "mechanism.pattern": "Polar Pose Facing Normal",
+    "mechanism.mount": "mount",
     "mechanism.mechanism": "Mechanism NamedNumber Link Unit Placement Probe LinkProbe GaugeSum Force Opening "
     "ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",

@@ -89,8 +89,12 @@ from flexstage.mechanism.mechanism import (
     StructuralDamping as StructuralDamping,
     Unit as Unit,
 )
+from flexstage.mechanism.mount import (
+    mount as mount,
+)
 from flexstage.mechanism.pattern import (
     Facing as Facing,
+    Normal as Normal,
     Polar as Polar,
     Pose as Pose,
 )

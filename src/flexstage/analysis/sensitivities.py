@@ -172,7 +172,7 @@ def departure(mechanism: Mechanism, name: str) -> int:
     """
     if number := locate(mechanism, name).number:
         return 3 + depth(mechanism, number)
-    return 0 if "/" not in name else 1 if name.partition("/")[0] in mechanism.units else 2
+    return 0 if "/" not in name else 1 if name.rpartition("/")[0] in mechanism.units else 2
 
 
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:

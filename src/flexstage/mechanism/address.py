@@ -30,7 +30,7 @@ from flexstage.base.quantity import Quantity
 from flexstage.mechanism.expand import apply_changes
 from flexstage.mechanism.formulas import NUMBERS, dependents, formula_value, is_formula, scope_of
 from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.locate import Place, canonical, locate
+from flexstage.mechanism.locate import Place, canonical, link_path, locate
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.misalignment import misalignment_of
 from flexstage.mechanism.node import NumberNode
@@ -235,8 +235,10 @@ def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
 
 
 def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
-    owner, slash, name = owners[0].partition("/")
-    return mechanism.units[owner].links[name] if slash else mechanism.links[owner]
+    value: Any = mechanism
+    for step in link_path(mechanism, owners[0]):
+        value = member(value, step)
+    return value
 
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
@@ -278,8 +280,7 @@ def _origin(mechanism: Mechanism, place: Place) -> str:
     link = _link_of(mechanism, place.owners)
     if not place.in_link:
         return ".".join(("parts", link.part, *place.path))
-    owner, slash, name = place.owners[0].partition("/")
-    return ".".join((*(("units", owner, "links", name) if slash else ("links", owner)), *place.path))
+    return ".".join((*link_path(mechanism, place.owners[0]), *place.path))
 
 
 def _tag(tags: Mapping[str, str], address: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TypeAlias, cast
@@ -253,7 +253,8 @@ def _assembly(key: _Same) -> Assembly:
     }
     require(_unknown_bodies(bodies, joined, posed(mechanism.gauges)))
     ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
-    return Assembly(bodies, links, _gauges(mechanism, links), _actuators(links), dict(_points(drawn)), ground, elements)
+    drives = _actuators(links, {copy for copy, _, _ in placed})
+    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements)
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -599,11 +600,11 @@ def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> M
     return combine(masses) if len(masses) > 1 else masses[0] if masses else None
 
 
-def _actuators(links: Mapping[str, PlacedLink]) -> dict[str, str]:
+def _actuators(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[str, str]:
     """Name an input after its unit's copy where that copy has one actuator only, else after the link."""
     drives = [name for name, link in links.items() if is_actuator(link.part)]
     owners = [name.rpartition("/")[0] for name in drives]
-    return {(owner if owner and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
+    return {(owner if owner in copies and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
 
 
 def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, PlacedGauge]:

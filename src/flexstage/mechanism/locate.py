@@ -59,15 +59,22 @@ def locate(mechanism: Mechanism, address: str) -> Place:
     >>> locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").address
     'parts.wire.length'
     """
-    owner, slash, rest = address.strip().partition("/")
-    if slash:
-        return _in_unit(mechanism, address, owner.strip(), tuple(rest.strip().split(".")))
-    steps = tuple(owner.split("."))
+    steps = tuple(address.strip().split("."))
+    owner, slash, link = steps[0].rpartition("/")
+    if slash and not _is_whole(mechanism, steps[0]):
+        return _in_unit(mechanism, address, owner.strip(), (link.strip(), *steps[1:]))
     if steps[0] in _DOCUMENT:
         raise refuse(address, f'"{steps[0]}" holds no values of the stage', "Address the value itself")
     if _stands(mechanism, address, steps):
         return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
     return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
+
+
+def _is_whole(mechanism: Mechanism, name: str) -> bool:
+    """Whether something of a carried stage is called so (`fine/B1`), which is then no link of a unit or copy."""
+    return name in (*unit_of_copy(mechanism), *(each for key in mechanism.gauges for each in copy_names(key))) or bool(
+        completions(mechanism, name)
+    )
 
 
 def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
@@ -88,6 +95,16 @@ def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
     {}
     """
     return {copy: placement.unit for key, placement in mechanism.place.items() for copy in copy_names(key)}
+
+
+def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:
+    """The path of the link that an owner of departures is: one of a unit (`unit/link`), or of the stage.
+
+    >>> link_path(Mechanism(""), "strut")
+    ('links', 'strut')
+    """
+    unit, _, link = owner.rpartition("/")
+    return ("units", unit, "links", link) if unit in mechanism.units else ("links", owner)
 
 
 def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, ...]) -> Place:

@@ -43,7 +43,7 @@ def _restrict(part: Part, elastic: Freedoms, free: Freedoms) -> Part:
 
 
 def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic: Freedoms, free: Freedoms) -> Mechanism:
-    unit, _, link = address.partition("/")
+    unit, _, link = address.rpartition("/")
     known = drawn_units(original)
     if unit not in known or link not in known[unit].links:
         raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")

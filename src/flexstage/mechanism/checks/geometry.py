@@ -16,7 +16,7 @@ from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
 from flexstage.mechanism.likeness import drawn_units
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.locate import link_path, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import join
 from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
@@ -110,8 +110,8 @@ def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
     """The parts as they are after the departures, by the link or the copy that departs."""
     places = [locate(mechanism, key) for key in mechanism.changes]
     for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
-        owner, slash, name = owners[0].partition("/")
-        link = mechanism.units[owner].links[name] if slash else mechanism.links[owner]
+        section, *inside = link_path(mechanism, owners[0])
+        link = mechanism.links[inside[0]] if section == "links" else mechanism.units[inside[0]].links[inside[2]]
         yield owners[-1], apply_changes(mechanism, link, owners)[1]
 
 

@@ -84,7 +84,7 @@ def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
         tables[f"{where}.solids"], tables[f"{where}.points"] = body.solids, body.points
     for where, names in tables.items():
         for name in names:
-            if name in RESERVED or len(name) > _LONGEST or not re.fullmatch(r"\w[\w-]*", name):
+            if name in RESERVED or len(name) > _LONGEST or not re.fullmatch(r"\w[\w-]*(/\w[\w-]*)*", name):
                 yield Finding(
                     f'{where}."{name[:_LONGEST]}"', "this is no legal name", "Use letters, digits, _ and -; tags and like are reserved"
                 )
@@ -130,7 +130,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
         yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Give the body another name")
     for unit, drawn in mechanism.units.items():
         for name in drawn.bodies:
-            if name == GROUND or name in mechanism.bodies:
+            if name == GROUND or (name in mechanism.bodies and "/" not in unit):
                 yield Finding(f"units.{unit}.bodies.{name}", f'the stage itself has a body "{name}"', "Give the unit's body another name")
 
 

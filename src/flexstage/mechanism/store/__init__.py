@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,10 +13,12 @@ from flexstage.base.store import write
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mount import STAGES
 from flexstage.mechanism.store.anchor import anchor_paths, beside, outline_text
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.file import parse_toml, read_text
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.patch import patch
 from flexstage.mechanism.store.schema import schema
 from flexstage.mechanism.store.tidy import round_to_digits
@@ -46,11 +49,16 @@ def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path 
     """
     raw = parse_toml(text, where)
     try:
-        drawn = mechanism_from(raw, shipped_catalogue())
+        drawn = mechanism_from(raw, shipped_catalogue(), where if folder is None else str(folder / Path(where).name))
         mechanism = drawn if folder is None else anchor_paths(drawn, folder)
         return require_valid(mechanism) if checked else mechanism
     except DesignError as error:
-        raise DesignError(replace(finding, where=f"{where}: {finding.where}") for finding in error.findings) from None
+        carried = [finding.where.startswith(f"{STAGES}.") for finding in error.findings]
+        lines = with_lines(itertools.compress(error.findings, carried), text, where)
+        raise DesignError(
+            next(lines) if of_stage else replace(finding, where=f"{where}: {finding.where}")
+            for finding, of_stage in zip(error.findings, carried, strict=True)
+        ) from None
 
 
 def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[str, str] | None = None) -> Path:

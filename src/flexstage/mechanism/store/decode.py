@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
 from flexstage.mechanism.catalogue import Catalogue
-from flexstage.mechanism.checks import copy_findings, package_findings
+from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.formulas import NUMBERS, read_numbers
 from flexstage.mechanism.grammar import CHANGES, TAGS, node_of
 from flexstage.mechanism.locate import canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mount import STAGES, Mount, mount_all
 from flexstage.mechanism.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
+from flexstage.mechanism.store.anchor import anchor_paths
+from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
+from flexstage.mechanism.store.lines import with_lines
 
-FORMAT = "flexstage 1"
-_FILES = {FORMAT: "a design file"}
+_FORMS = {FORMAT: "a design file"}
 _Record = TypeVar("_Record")
 
 
-def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
+def mechanism_from(raw: dict[str, Any], catalogue: Catalogue, where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
     """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
+
+    Stages that stand on it are read from their files, looked for beside the file `where`; `above` are the files that are being read.
 
     >>> from flexstage.mechanism.catalogue import shipped_catalogue
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped_catalogue()).name
@@ -33,7 +40,7 @@ def mechanism_from(raw: dict[str, Any], catalogue: Catalogue) -> Mechanism:
     reader = Reader(catalogue, numbers=numbers, formulas=dict(numbers.formulas))
     mechanism: Any = None
     try:
-        mechanism = _mechanism(reader, raw)
+        mechanism = _mechanism(reader, raw, _Files(where, above))
     except EnoughError:
         reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
     require(reader.findings)
@@ -66,28 +73,73 @@ def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
     if found != form:
         what = f"found {kind(found)}" if found is not None else "the file does not say its format"
-        reader.refuse("format", what, f'The first line of {_FILES.get(form, "such a file")} is format = "{form}"')
+        reader.refuse("format", what, f'The first line of {_FORMS.get(form, "such a file")} is format = "{form}"')
 
 
-def _mechanism(reader: Reader, raw: dict[str, Any]) -> Any:
+@dataclass(frozen=True)
+class _Files:
+    """The file that is read, and those whose stages stand on this one."""
+
+    where: str
+    above: tuple[Path, ...]
+
+    def carried(self, reader: Reader, raw: Any) -> dict[str, tuple[Mount, Mechanism]]:
+        """The stages that a table names, with what their files say."""
+        if not isinstance(raw, dict):
+            reader.refuse(STAGES, f"found {kind(raw)} where a table is expected", 'Write for example fine = { file = "fine.toml" }')
+            return {}
+        mounts = {name: reader.read(node_of(Mount), item, f"{STAGES}.{name}") for name, item in raw.items() if name != TAGS}
+        found = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}
+        return {name: (item, stage) for name, (item, stage) in found.items() if stage is not None}
+
+    def read(self, reader: Reader, name: str, item: Mount) -> Mechanism | None:
+        """The stage in a file; a finding where that cannot be read, or is being read already."""
+        path, here = (Path(self.where).parent / item.file).resolve(), Path(self.where).resolve()
+        address = f"{STAGES}.{name}.file"
+        if path in (here, *self.above):
+            what = "it is this file itself" if path == here else f"{item.file} stands on this stage, and this stage on it"
+            reader.refuse(address, what, "Name the file of another stage")
+            return None
+        try:
+            text = read_text(path)
+        except DesignError as error:
+            return self._refuse(reader, address, (replace(finding, where=item.file) for finding in error.findings))
+        try:
+            tree = mechanism_from(parse_toml(text, item.file), reader.catalogue, str(path), (*self.above, here))
+            return require_valid(anchor_paths(tree, path.parent))
+        except DesignError as error:
+            told = [finding for finding in error.findings if finding.where.startswith(f"{item.file}: ")]
+            rest = [finding for finding in error.findings if finding not in told]
+            return self._refuse(reader, address, (*told, *with_lines(rest, text, item.file)))
+
+    def _refuse(self, reader: Reader, address: str, findings: Iterable[Finding]) -> None:
+        reader.note(replace(finding, where=f"{address}: {finding.where}") for finding in findings)
+
+
+def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files) -> Any:
     _check_format(reader, raw, FORMAT)
     reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
-    body = {key: value for key, value in raw.items() if key not in ("format", "change")}
+    body = {key: value for key, value in raw.items() if key not in ("format", "change", STAGES)}
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
     if faults := tuple(copy_findings(mechanism)):
         return reader.note(faults)
+    try:
+        mechanism = mount_all(mechanism, files.carried(reader, raw[STAGES]) if STAGES in raw else {})
+    except DesignError as error:
+        return reader.note(error.findings)
     changes = raw.get("change", {})
     formulas = {canonical(mechanism, where): text for where, text in reader.formulas.items()}
     reader.formulas.clear()
     values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
     sources = reader.sources | dict(mechanism.sources)
     formulas |= reader.formulas
-    return replace(mechanism, changes=values, tags=Table(reader.tags), sources=Table(sources), formulas=Table(formulas))
+    values, tags = {**mechanism.changes, **values}, {**mechanism.tags, **reader.tags}
+    return replace(mechanism, changes=values, tags=Table(tags), sources=Table(sources), formulas=Table(formulas))
 
 
 def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[str, Any]:

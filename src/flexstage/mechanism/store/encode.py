@@ -11,7 +11,7 @@ from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import Node, Writer
-from flexstage.mechanism.store.decode import FORMAT
+from flexstage.mechanism.store.file import FORMAT
 
 _FIRST = ("format", "name", "numbers")
 _LAST = ("change", "require", "sources", TAGS)

@@ -13,6 +13,8 @@ from typing import Any
 from flexstage.base.files import require_regular
 from flexstage.base.finding import DesignError, Finding, refuse, require
 
+FORMAT = "flexstage 1"
+"""What a design file says of its form."""
 LARGEST = 5_000_000
 """Bytes of the largest file that is read: a thousand times a usual design."""
 LONGEST_LINE = 4_000

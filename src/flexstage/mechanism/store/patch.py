@@ -8,12 +8,13 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.mechanism.address import set_text, set_value
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS, node_of
-from flexstage.mechanism.locate import canonical, locate
+from flexstage.mechanism.locate import Place, canonical, locate
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mount import STAGES
 from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import member, with_mirror
 from flexstage.mechanism.store.decode import mechanism_from
@@ -32,7 +33,9 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     name = "a"  # a stage
     mode_limit = "800 Hz"  # enough
     """
-    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue())
+    tree = parse_toml(text, where)
+    mechanism = mechanism_from(tree, shipped_catalogue(), where)
+    require(finding for address in values for finding in _elsewhere(locate(mechanism, address), tree))
     steps: list[_Step] = []
     for address, value in values.items():
         change = set_text if isinstance(value, str) else set_value
@@ -44,6 +47,14 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
         return _write(text, [[step] for step in steps], mechanism, where)
 
 
+def _elsewhere(place: Place, tree: dict[str, Any]) -> Iterator[Finding]:
+    """Values of a stage that another file describes; departures from them may be stated here."""
+    name = place.path[1].partition("/")[0] if len(place.path) > 1 and not place.owners and "/" in place.path[1] else ""
+    if name in tree.get(STAGES, {}):
+        what = "it stands in the file of a stage that this one carries"
+        yield Finding(place.address, what, f"Change it in {tree[STAGES][name]['file']}, or state a departure of one link")
+
+
 _Step = tuple[Mechanism, Mechanism, str]
 """The description before and after a change, and its address."""
 
@@ -52,7 +63,7 @@ def _write(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str
     """The text after all changes, read anew after each portion of them."""
     for steps in portions:
         text = _patch_steps(text, steps)
-    if mechanism_from(parse_toml(text, where), shipped_catalogue()) != wanted:
+    if mechanism_from(parse_toml(text, where), shipped_catalogue(), where) != wanted:
         raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
     return text
 

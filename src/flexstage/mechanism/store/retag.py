@@ -35,7 +35,7 @@ def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     mode_limit = "derived test"
     <BLANKLINE>
     """
-    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue())
+    mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
     together = _with_tags(text, mechanism, tags, where, beside=True)
     return _one_by_one(text, mechanism, tags, where) if together is None else together
 
@@ -60,7 +60,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
             path = (NUMBERS, place.number) if place.number else place.path
             _put(document, path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
-        now = mechanism_from(parse_toml(found, where), shipped_catalogue())
+        now = mechanism_from(parse_toml(found, where), shipped_catalogue(), where)
     except (TOMLKitError, ValueError):  # findings are ValueErrors
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())

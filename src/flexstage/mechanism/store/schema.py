@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mount import STAGES, Mount
 from flexstage.mechanism.node import Definitions
-from flexstage.mechanism.store.decode import FORMAT
+from flexstage.mechanism.store.file import FORMAT
 
 
 def schema() -> dict[str, Any]:
@@ -17,13 +20,15 @@ def schema() -> dict[str, Any]:
     >>> schema()["properties"]["mode_limit"]["examples"]
     ['4 kHz']
     """
-    return schema_of(Mechanism, FORMAT, "flexstage design", formulas=True)
+    return schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
 
 
-def schema_of(record: type, form: str, title: str, *, tagged: bool = True, formulas: bool = False) -> dict[str, Any]:
+def schema_of(
+    record: type, form: str, title: str, *, tagged: bool = True, formulas: bool = False, tables: Mapping[str, type] = MappingProxyType({})
+) -> dict[str, Any]:
     """Return the JSON Schema of a file that holds one record and says `format = form`; `tagged`: its tables may have tags.
 
-    `formulas`: its numbers may be formulas.
+    `formulas`: its numbers may be formulas. `tables` of records stand beside the record's own.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]
@@ -31,7 +36,8 @@ def schema_of(record: type, form: str, title: str, *, tagged: bool = True, formu
     """
     definitions = Definitions(shipped_catalogue(), tagged, formulas)
     root = node_of(record).definition(definitions)
-    properties = {"format": {"const": form}, **root.pop("properties")}
+    beside = {name: {"type": "object", "additionalProperties": node_of(each).schema(definitions)} for name, each in tables.items()}
+    properties = {"format": {"const": form}, **root.pop("properties"), **beside}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": title,

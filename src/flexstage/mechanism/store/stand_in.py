@@ -52,7 +52,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     >>> loads(text).parts["leaf"].stands_for, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)
     """
-    before = mechanism_from(parse_toml(text, where), shipped_catalogue())
+    before = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
     require(_clashes(before, parts))
     try:
         document = tomlkit.parse(text)
@@ -64,7 +64,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
         after = tomlkit.dumps(document)
     except (TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
-    found = require_valid(mechanism_from(parse_toml(after, where), shipped_catalogue()))
+    found = require_valid(mechanism_from(parse_toml(after, where), shipped_catalogue(), where))
     if any(found.parts.get(name) != part.given for name, part in parts.items()):
         raise refuse(where, "its tables are laid out so that parts cannot be exchanged", "Write it anew with dump")
     return after

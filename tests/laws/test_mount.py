@@ -1,0 +1,178 @@
+"""Laws of a stage on a stage: it is the one that is drawn in one piece."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.address import addresses, assign, get, tag_of
+from flexstage.mechanism.checks import check
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.mount import mount
+from flexstage.mechanism.pattern import Normal, Pose
+from flexstage.mechanism.store import dump, dumps, load, loads
+from flexstage.mechanism.store.patch import patch
+from flexstage.models.ideal import ideal
+from flexstage.spatial.frame import Frame
+from tests.conftest import examples
+from tests.laws.shared import lumped
+from tests.laws.strategies import mechanisms, moved, turns
+from tests.laws.test_structure import comparable, same
+
+
+def pose_of(turn, shift):
+    return Pose(tuple(shift.tolist()), tuple(turn[:, 0].tolist()), tuple(turn[:, 2].tolist()))
+
+
+def by_hand(lower, upper, turn, shift):
+    """Both drawn in one piece, what is of the upper one marked with a dash."""
+
+    def far(name):
+        return "carriage" if name == GROUND else name if name == PLATFORM else f"{name}-"
+
+    def low(name):
+        return "carriage" if name == PLATFORM else name
+
+    there = moved(upper, turn, shift)
+    links = {f"{name}-": replace(link, joins=tuple(map(far, link.joins)), part=f"{link.part}-") for name, link in there.links.items()}
+    parts = {f"{name}-": replace(part, material="metal-") if hasattr(part, "material") else part for name, part in upper.parts.items()}
+    return replace(
+        lower,
+        materials={**lower.materials, "metal-": upper.materials["metal"]},
+        parts={**lower.parts, **parts},
+        bodies={low(name): body for name, body in lower.bodies.items()} | {far(name): body for name, body in there.bodies.items()},
+        links={**{name: replace(link, joins=tuple(map(low, link.joins))) for name, link in lower.links.items()}, **links},
+        gauges={},
+    )
+
+
+@examples(15, 300)
+@given(mechanisms(), mechanisms(), turns())
+def test_a_stage_on_a_stage_is_both_drawn_in_one_piece(lower, upper, where):
+    both = mount(mount(Mechanism("both"), "z", lower, platform=False), "fine", upper, on="z/platform", pose=pose_of(*where))
+    assert not check(both)
+    assert loads(dumps(both)) == both
+    called = [*(f"z/{name}" for name in lower.bodies), *(name if name == PLATFORM else f"fine/{name}" for name in upper.bodies)]
+    drawn = ["carriage" if name == PLATFORM else name for name in lower.bodies]
+    drawn += [name if name == PLATFORM else f"{name}-" for name in upper.bodies]
+    assert same(comparable(lumped(both), called), comparable(lumped(by_hand(lower, upper, *where)), drawn))
+    assert set(expand(both).gauges) == {f"z/{name}" for name in lower.gauges} | {f"fine/{name}" for name in upper.gauges}
+
+
+def test_patterns_and_departures_of_a_carried_stage_go_with_it():
+    fine = replace(
+        double_triangle(), changes={"B2/front.thickness": 1.4e-3, "horizontal/back.at.y": 1e-4, "B3.shift.x": 1e-4, "S1.rotation.z": 0.01}
+    )
+    fine = replace(
+        fine,
+        place={
+            **fine.place,
+            "M1-M2": replace(fine.place["B1-B3"], pattern=replace(fine.place["B1-B3"].pattern, mirror=Normal.Y, height=0.1)),
+        },
+    )
+    turn, shift = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([0.1, 0.2, 0.3])
+    both = mount(Mechanism("bare"), "fine", fine, pose=pose_of(turn, shift))
+    found, drawn = expand(both), expand(fine)
+    assert list(found.actuators) == [f"fine/{name}" for name in drawn.actuators]
+    for name, link in drawn.links.items():
+        there = link.frame.within(Frame(turn, shift))
+        now = found.links[f"fine/{name}"]
+        np.testing.assert_allclose(now.frame.position, there.position, atol=1e-12)
+        np.testing.assert_allclose(now.frame.rotation, there.rotation, atol=1e-12)
+        assert getattr(now.part, "thickness", None) == getattr(link.part, "thickness", None)
+    for name, gauge in drawn.gauges.items():
+        there = gauge.sights[0].frame.within(Frame(turn, shift))
+        np.testing.assert_allclose(found.gauges[f"fine/{name}"].sights[0].frame.rotation, there.rotation, atol=1e-12)
+    assert not check(both)
+    moves = ideal(mount(Mechanism("bare"), "fine", double_triangle()))
+    np.testing.assert_allclose(moves.mapping.values, ideal(double_triangle()).mapping.values, atol=1e-12)
+
+
+def test_addresses_and_tags_reach_into_a_carried_stage():
+    both = mount(parallelogram(), "fine", double_triangle(), on=PLATFORM)
+    assert get(assign(both, "fine/B1/front.thickness = 1.7 mm"), "fine/B1/front.thickness") == 1.7e-3
+    assert get(assign(both, "fine/horizontal/front.at.x = 1 mm"), "units.fine/horizontal.links.front.at.x") == 1e-3
+    assert get(assign(both, "fine/B2.shift.x = 5 um"), "fine/B2.shift.x") == 5e-6
+    assert get(assign(both, "parts.fine/neck.thickness = 1.6 mm"), "fine/neck.thickness") == 1.6e-3
+    assert all(get(both, address) is not None for address in addresses(both))
+    tags = {key: tag_of(double_triangle(), key) for key in double_triangle().tags if key.startswith("parts.")}
+    assert tags
+    assert {key: tag_of(both, key.replace("parts.", "parts.fine/", 1)) for key in tags} == tags
+
+
+UPPER = """
+format = "flexstage 1"
+name = "top"
+[stages]
+fine = { file = "fine.toml", on = "coarse/platform", pose = { at = ["0 mm", "0 mm", "50 mm"] } }  # the small one
+coarse = { file = "coarse.toml" }
+[parts.wire]
+kind = "joint"
+free = ["x"]  # any
+[change]
+"fine/left.thickness" = "0.7 mm"
+"""
+
+
+def written(folder, **texts):
+    dump(parallelogram(), folder / "fine.toml")
+    dump(parallelogram(), folder / "coarse.toml")
+    (folder / "top.toml").write_text(UPPER)
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text)
+    return folder / "top.toml"
+
+
+def test_files_of_stages_are_put_together(tmp_path):
+    top = load(written(tmp_path))
+    assert [name for name in expand(top).bodies if "platform" in name] == ["coarse/platform", "platform"]
+    assert expand(top).links["fine/left"].part.thickness == 0.7e-3
+    assert loads(dumps(top)) == top
+    text = patch(UPPER, {"fine/right.thickness": "0.6 mm", "fine/B/pzt.stiffness": "20 N/um"}, where=str(tmp_path / "top.toml"))
+    assert "# the small one" in text
+    assert "# any" in text
+    changed = loads(text, folder=tmp_path)
+    assert expand(changed).links["fine/right"].part.thickness == 0.6e-3
+
+
+def test_a_value_of_another_file_is_changed_there(tmp_path):
+    written(tmp_path)
+    with pytest.raises(DesignError, match=r"parts\.fine/leaf\.thickness: it stands in the file of a stage that this one carries"):
+        patch(UPPER, {"parts.fine/leaf.thickness": "0.6 mm"}, where=str(tmp_path / "top.toml"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"fine.toml"', '"fne.toml"', "line 5: stages.fine.file: fne.toml: there is no such file"),
+        ('"fine.toml"', '"top.toml"', "line 5: stages.fine.file: it is this file itself"),
+        ('"coarse/platform"', '"coarse/platfrm"', 'stages.fine.on: there is no body "coarse/platfrm". Near to it are coarse/platform'),
+        ("fine/left", "fine/lft", 'change."fine/lft.thickness"'),
+        ("pose = {", 'pose = { mirror = "x",', "stages.fine.pose.mirror: a whole stage is not mirrored"),
+        ('on = "coarse/platform", ', "", "not one of the stages is on top of all others, but fine, coarse"),
+    ],
+)
+def test_what_cannot_be_put_together_is_told(tmp_path, old, new, said):
+    path = written(tmp_path)
+    path.write_text(UPPER.replace(old, new))
+    with pytest.raises(DesignError) as caught:
+        load(path)
+    assert said in str(caught.value)
+
+
+def test_stages_that_carry_one_another_are_told(tmp_path):
+    path = written(tmp_path)
+    fine = (tmp_path / "fine.toml").read_text()
+    (tmp_path / "fine.toml").write_text(f'{fine}\n[stages]\nagain = {{ file = "top.toml", on = "platform" }}\n')
+    with pytest.raises(DesignError, match=r"top\.toml stands on this stage, and this stage on it"):
+        load(path)
+    (tmp_path / "fine.toml").write_text(fine.replace("thickness", "thicknes", 1))
+    with pytest.raises(
+        DesignError, match=r"line 5: stages\.fine\.file: fine\.toml: line \d+: parts\.leaf\.thicknes: this key is not known"
+    ):
+        load(path)
