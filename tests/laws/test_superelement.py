@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping
+from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Unit
+from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, load
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
@@ -26,7 +27,7 @@ from flexstage.parts.condensation import condense, superelement
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.superelement import FileUnits, MatrixNames, Port, Superelement
 from flexstage.show.scene.stage import scene
-from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, rigid_inertia, spatial_rotation, twist_transform
+from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, mirror, rigid_inertia, spatial_rotation, twist_transform
 from tests.conftest import examples
 
 NAMES = ("left", "right", "top", "arm", "foot")
@@ -152,6 +153,21 @@ def test_the_frame_it_is_placed_in_turns_and_shifts_all(folder, seed):
         turn = spatial_rotation(frame.rotation)
         models.append(turn.T @ gain @ turn)
     close(models[1], models[0], 1e-8)
+
+
+@examples(15, 150)
+@given(seeds)
+def test_in_a_mirror_everything_is_mirrored(folder, seed):
+    """The reflected part, and a unit of it placed in a mirror: compliance as of a stage seen in a mirror, and its image is itself."""
+    body = elastic(seed)
+    part = part_of(body, folder, mass=MASS, centre=CENTRE, inertia=MOMENTS)
+    seen = mirror(1) @ static_gain(lumped(stage(part)), TWIST, WRENCH).values @ mirror(1)
+    close(static_gain(lumped(stage(part.mirrored)), TWIST, WRENCH).values, seen, 1e-8)
+    assert part.mirrored.mirrored == part
+    made = stage(part)
+    unit = Unit({}, made.links)
+    placed = replace(made, links={}, units={"half": unit}, place={"far": Placement("half", Pose(mirror=Normal.Y))})
+    close(static_gain(lumped(placed), TWIST, WRENCH).values, seen, 1e-8)
 
 
 @examples(15, 150)

@@ -516,9 +516,8 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
     link, part = apply_changes(mechanism, drawn.link, (*drawn.owners, name))
     frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
     if ports_of(part):
-        if frame.mirrored:
-            raise refuse(name, *NO_IMAGE)
         whole = cast("Superelement", inner(part))
+        whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
         return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
     material = material_of(part)
     first, second = ends

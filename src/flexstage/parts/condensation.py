@@ -16,7 +16,7 @@ from flexstage.base.number import Array, first_design, stack
 from flexstage.parts.mass import tensor
 from flexstage.parts.matrix_file import LARGEST_DENSE, MatrixLike, digest_of, read_matrices
 from flexstage.parts.superelement import FileUnits, Port, Superelement
-from flexstage.spatial.frame import Frame, axes, twist_transform
+from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 
 SYMMETRIC = 1e-6
 """Largest difference of an entry from its mirror image, over the largest entry."""
@@ -222,9 +222,10 @@ def _solve_within(inner: MatrixLike, force: Array) -> Array:
 
 
 def _in_si(part: Superelement, units: FileUnits | None = None) -> tuple[Array, float]:
-    """What the file's port coordinates (6 p,) are of SI ones, and its unit of energy [J]: K = energy S K_file S."""
+    """What the file's port coordinates (6 p,) are of the part's in SI, and its unit of energy [J]: K = energy S K_file S."""
     length, energy = (1.0, 1.0) if (units or part.units) is FileUnits.SI else (1e3, 1e-3)
-    return np.tile(np.repeat([length, 1.0], 3), len(part.ports)), energy
+    sides = mirror(1).diagonal() if part.reflected else np.ones(6)
+    return np.tile(np.repeat([length, 1.0], 3) * sides, len(part.ports)), energy
 
 
 def _frames(part: Superelement) -> list[Frame]:

@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Annotated, ClassVar
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.number import Number, Vector
+from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import DIRECTION, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, Bound
 from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
@@ -58,7 +58,8 @@ class Superelement(Elastic):
     The inner coordinates are reduced to modes with the ports held (Craig and Bampton, AIAA J. 6, 1313, 1968), which keeps the statics and
     the mass of the whole: as many as `modes` says (0: none, the condensation of Guyan, AIAA J. 3, 380, 1965), those `below` a frequency,
     or all. `mass`, `centre` of mass and `inertia` about it, in the part's axes, are for a check: what the matrices say must agree.
-    `loss_factor` is that of its stiffness. Linear: small motions, no buckling; how it grows with temperature is not known.
+    `loss_factor` is that of its stiffness. `reflected`: it is the mirror image of the file's part across its x-z plane, as are the ports,
+    mass, centre and inertia that are stated. Linear: small motions, no buckling; how it grows with temperature is not known.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -70,6 +71,7 @@ class Superelement(Elastic):
     mass_file: str = field(default="", metadata=DOCUMENT_ONLY)
     damping_file: str = field(default="", metadata=DOCUMENT_ONLY)
     arrays: MatrixNames = field(default_factory=MatrixNames)
+    reflected: bool = False
     modes: Annotated[int, Bound(0, 10_000)] | None = None
     below: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
@@ -89,6 +91,16 @@ class Superelement(Elastic):
         return False
 
     @property
+    def mirrored(self) -> Superelement:
+        """Its mirror image across its x-z plane: ports and what is stated of its mass stand on the other side."""
+        ports = {
+            name: replace(port, at=_across(port.at), along=_across(port.along), up=_across(port.up)) for name, port in self.ports.items()
+        }
+        centre = None if self.centre is None else _across(self.centre)
+        inertia = None if self.inertia is None else replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
+        return replace(self, ports=Table(ports), centre=centre, inertia=inertia, reflected=not self.reflected)
+
+    @property
     def files(self) -> tuple[str, ...]:
         """The files it is known by, in the order in which their bytes are digested."""
         return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file, self.damping_file) if each)
@@ -102,3 +114,7 @@ class Superelement(Elastic):
         """The part with its files' paths changed."""
         names = ("file", "stiffness_file", "mass_file", "damping_file")
         return replace(self, **{name: change(path) for name in names if (path := getattr(self, name))})
+
+
+def _across(vector: Vector) -> Vector:
+    return (vector[0], -vector[1], vector[2])
