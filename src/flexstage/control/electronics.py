@@ -11,12 +11,12 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
-from flexstage.base.quantity import FREQUENCY, TIME
+from flexstage.base.quantity import CURRENT, FREQUENCY, TIME
 from flexstage.base.record import INNER
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
-from flexstage.parts.actuator import ChargedActuator
+from flexstage.parts.actuator import ChargedActuator, ThrustActuator
 from flexstage.parts.gauge import Instrument
 
 
@@ -25,12 +25,14 @@ class AmplifierSettings(amplifier.Amplifier):
     """What a design file does not say of an amplifier; what is absent limits nothing.
 
     Besides what every amplifier has, `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before
-    its lag, `bits` of the converter before it.
+    its lag, `bits` of the converter before it. Of voice coils it drives the current: `bandwidth`, `current` and `bits` count, its noise is
+    `current_noise` [A/Hz^(1/2)].
     """
 
     slew: float | None = None
     noise_density: float | None = None
     bits: int | None = None
+    current_noise: float | None = None
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class GaugeSettings:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """One actuator's amplifier, converter and stack, all counted as free stroke from the bias.
+    """One actuator's amplifier, converter and stack, all counted as free stroke from the bias; of a force actuator in its input, A or N.
 
     `low` to `high` [m] the stroke it can command, `slew` [m/s] how fast (the lesser of current x gain / capacitance and the amplifier's own
     slew x gain, the gain being free stroke per volt), `bandwidth` [Hz] of the lag behind the hold, `noise_density` [m/Hz^(1/2)] of free
@@ -127,10 +129,13 @@ def hardware(
     >>> round(given.amplifiers["B1"].bandwidth), round(given.amplifiers["B1"].step * 1e9, 3)  # 1/(2 pi 100 ohm 0.4 uF), 150 um/2^16
     (3979, 2.289)
     """
-    piezos, placed = stacks(mechanism), {name: item for name, item in expand(mechanism).gauges.items() if not item.members}
-    powers = _by_name(amplifiers, tuple(piezos), AmplifierSettings(), "actuator")
+    assembly = expand(mechanism)
+    piezos, placed = stacks(mechanism), {name: item for name, item in assembly.gauges.items() if not item.members}
+    thrusts = {name: part for name in assembly.thrusts if isinstance(part := assembly.actuator(name), ThrustActuator)}
+    powers = _by_name(amplifiers, (*piezos, *thrusts), AmplifierSettings(), "actuator")
     limits = stroke_limits(mechanism)
-    require(finding for name, setting in powers.items() for finding in _amplifier_findings(name, setting, piezos[name]))
+    require(finding for name in piezos for finding in _amplifier_findings(name, powers[name], piezos[name]))
+    require(finding for name in thrusts for finding in _thrust_findings(name, powers[name], thrusts[name]))
     senses = _by_name(gauges, tuple(placed), GaugeSettings(), "gauge")
     return Hardware(
         rate,
@@ -140,6 +145,7 @@ def hardware(
                 name: _amplifier(powers[name], piezo, float(low), float(high))
                 for (name, piezo), low, high in zip(piezos.items(), limits.low, limits.high, strict=True)
             }
+            | {name: _thrust_amplifier(powers[name], part) for name, part in thrusts.items()}
         ),
         Table({name: _sensor(senses[name], item.gauge) for name, item in placed.items()}),
     )
@@ -166,6 +172,44 @@ def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, h
         noise_density=None if setting.noise_density is None else setting.noise_density * gain,
         step=0.0 if setting.bits is None else (high - low) / 2**setting.bits,
     )
+
+
+def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:
+    """That of a force actuator, in its input [A, N]: clipped by what cannot be passed for a moment."""
+    high = _largest_input(setting, part)
+    slew, cutoff = part.slew(high) if np.isfinite(high) else None, part.cutoff
+    return Amplifier(
+        low=-high,
+        high=high,
+        slew=np.inf if slew is None else float(slew),
+        bandwidth=min(_first_stated(setting.bandwidth, np.inf), np.inf if cutoff is None else float(cutoff)),
+        noise_density=setting.current_noise,
+        step=0.0 if setting.bits is None else 2.0 * high / 2**setting.bits,
+    )
+
+
+def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
+    ends = [limit.short for limit in part.limits if limit.clips and limit.short is not None]
+    return min((float(end) for end in (*ends, setting.current) if end is not None), default=np.inf)
+
+
+def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
+    for key in ("resistance", "slew", "noise_density"):
+        if getattr(setting, key) is not None:
+            what = f"{key} is of the volts of a stack's amplifier, and this one drives a force actuator"
+            advice = "State bandwidth, current, current_noise and bits; its slew follows from the coil's voltage and inductance"
+            yield Finding(name, what, advice)
+    for key in ("current", "current_noise"):
+        if getattr(setting, key) is not None and part.input is not CURRENT:
+            yield Finding(name, f"{key} is given, and its input is {part.input.noun}", "Leave it out, or describe it as a voice coil")
+    if setting.bits is not None and not 1 <= setting.bits <= 64:
+        yield Finding(name, f"its converter has {setting.bits} bits", "Give 1 to 64")
+    elif setting.bits is not None and np.isinf(_largest_input(setting, part)):
+        yield Finding(name, "bits divide the range of its input, which has no end", 'Add for example peak_current = "5 A" to its part')
+    for key in ("bandwidth", "current"):
+        value = getattr(setting, key)
+        if value is not None and not value > 0.0:
+            yield Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
 
 
 def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
@@ -207,6 +251,8 @@ def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedAct
     for key in ("resistance", "current"):
         if getattr(setting, key) is not None and piezo.capacitance is None:
             yield Finding(name, f"{key} needs its stack's capacitance, which is not stated", 'Add for example capacitance = "0.5 uF"')
+    if setting.current_noise is not None:
+        yield Finding(name, "current_noise is that of a voice coil's amplifier", "State the noise of a stack's amplifier in volts")
     for key in ("current", "slew", "noise_density"):
         if getattr(setting, key) is not None and np.isnan(_gain(piezo)):
             what = f"{key} needs its stack's voltage range, which is not stated"

@@ -32,8 +32,9 @@ _REPEATED = 1e-3
 class Plant:
     """A stage with amplifiers and gauges, continuous: what a hold drives and a sampler sees.
 
-    `system` has as inputs the free strokes `<actuator>` [m] that the hold gives to the amplifiers, `ground.<c>` [m, rad] and wrenches
-    `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m, rad] (its reading behind its lag and filter, before noise and rounding),
+    `system` has as inputs the free strokes [m] or currents [A] `<actuator>` that the hold gives to the amplifiers, `ground.<c>` [m, rad]
+    and wrenches `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m, rad] (its reading behind its lag and filter, before noise and
+    rounding),
     `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
     `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
     compliance is a static term; `note` says what was simplified.
@@ -88,7 +89,7 @@ def plant(
     """
     if model.stiffness_matrix.ndim != 2:
         raise refuse("loop", f"the model holds a batch of {model.stiffness_matrix.shape[:-2]} designs", "Give one design")
-    loop = coordinates(kinematics)
+    loop = coordinates(kinematics, model)
     require(_findings(model, loop, given, points))
     law = damping_law(model, damping)
     solved = eigen(model)

@@ -73,10 +73,10 @@ def diagram_of(found: LoopStudy) -> Diagram:
     analogue = (
         Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
         Box("amplifier", _bandwidth_text(power)),
-        Box("PZT", _stacks(found)),
+        Box("coils", "linear") if found.settled.kinematics.thrusts else Box("PZT", _stacks(found)),
     )
     onto = [("floor", "stage")] if found.settled.floor else []
-    closed = setup.controller.kind is not ControllerKind.NONE
+    closed = setup.controller.law is not ControllerKind.NONE
     onto += [("noise", "gauges")] if closed and any(each.noise_density for each in plant.hardware.sensors.values()) else []
     onto += [("load", "gains")] if Compensation.LOAD in setup.compensate else []
     return Diagram(
@@ -93,16 +93,17 @@ _TO_POSE = "readings\nto pose"
 
 def _digital(found: LoopStudy) -> Iterator[Box]:
     setup = found.setup
-    if setup.controller.kind is not ControllerKind.NONE:
+    if setup.controller.law is not ControllerKind.NONE:
         bandwidth = f"\n{number(found.controller.tuning.bandwidth, 3)} Hz" if found.controller.tuning is not None else ""
         notched = ", notches" if found.controller.notches else ""
-        kind = setup.controller.kind.value
+        kind = setup.controller.law.value
         yield Box(
             "controller",
             f"{kind.upper() if len(kind) < 4 else kind}{notched}\n{setup.controller.coordinates.value}{bandwidth}",
             digital=True,
         )
-    yield Box("R_a", "pose to\nstrokes", digital=True)
+    forced = bool(found.settled.kinematics.thrusts)
+    yield Box("W^-1", "pose to\nforces", digital=True) if forced else Box("R_a", "pose to\nstrokes", digital=True)
     if Compensation.LOST_MOTION in setup.compensate or Compensation.LOAD in setup.compensate:
         yield Box("gains", "lost motion", digital=True)
     if Compensation.HYSTERESIS in setup.compensate:
@@ -179,7 +180,11 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
 
 def error_section(found: LoopStudy) -> Section | None:
     """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
-    blocks: list[Block | None] = [rest_table(found.static_errors), noise_table(found), *_noise_pictures(found)]
+    blocks: list[Block | None] = [
+        None if found.static_errors is None else rest_table(found.static_errors),
+        noise_table(found),
+        *_noise_pictures(found),
+    ]
     if found.hysteresis is not None:
         drawn = to_svg(
             hysteresis_figure(_worst_loops(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse"

@@ -60,9 +60,9 @@ def count_modes(count: int) -> str:
 
 def _controller(found: LoopStudy) -> str:
     asked = found.setup.controller
-    if asked.kind is ControllerKind.NONE:
+    if asked.law is ControllerKind.NONE:
         return "none: open loop"
-    where = f"{asked.kind.value.upper() if len(asked.kind.value) < 4 else asked.kind.value} in {asked.coordinates.value} coordinates"
+    where = f"{asked.law.value.upper() if len(asked.law.value) < 4 else asked.law.value} in {asked.coordinates.value} coordinates"
     frequencies = sorted({round(each.frequency, 1) for each in found.controller.notches})
     return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
 

@@ -46,11 +46,15 @@ class Actuator(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class ForceLimit:
-    """What bounds a force actuator's input, by `name`: the largest that it may be `held` for ever, and in `short` use (None: not known)."""
+    """What bounds a force actuator's input, by `name`: the largest that it may be `held` for ever, and in `short` use (None: not known).
+
+    `clips`: it cannot be passed for a moment, as heat can.
+    """
 
     name: str
     held: Number | None
     short: Number | None
+    clips: bool = True
 
 
 class ThrustActuator(Actuator):
@@ -62,6 +66,15 @@ class ThrustActuator(Actuator):
     def thrust(self) -> Number:
         """Force along x per unit of input: N/N or N/A."""
         raise NotImplementedError
+
+    @property
+    def cutoff(self) -> Number | None:
+        """Frequency [Hz] of the lag of its input behind what its amplifier imposes; None: there is none."""
+        return None
+
+    def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
+        """How fast its input can rise from zero to a `limit`, in the mean [1/s]; None: no limit is known."""
+        return None
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

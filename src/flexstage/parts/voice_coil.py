@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
@@ -106,13 +108,34 @@ class VoiceCoil(ThrustActuator):
         yield ForceLimit("peak current", self.peak_current, self.peak_current)
         rested = self.duty**-0.5
         if self.continuous_current is not None:
-            yield ForceLimit("continuous current", self.continuous_current, self.continuous_current * rested)
+            yield ForceLimit("continuous current", self.continuous_current, self.continuous_current * rested, clips=False)
         if self.heat_current is not None:
-            yield ForceLimit("heat", self.heat_current, self.heat_current * rested)
+            yield ForceLimit("heat", self.heat_current, self.heat_current * rested, clips=False)
         if self.voltage is not None and self.resistance is not None:
             yield ForceLimit("voltage", self.voltage / self.resistance, self.voltage / self.resistance)
         if self.maximum_force is not None:
             yield ForceLimit("maximum force", self.maximum_force / self.force_constant, self.maximum_force / self.force_constant)
+
+    @property
+    def cutoff(self) -> Number | None:
+        """R / (2 pi L) of a voltage drive [Hz]; a current drive makes up for it.
+
+        >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Drive.VOLTAGE).cutoff, 1)
+        954.9
+        """
+        if self.drive is Drive.CURRENT or self.resistance is None or self.inductance is None:
+            return None
+        return self.resistance / (2.0 * np.pi * self.inductance)
+
+    def slew(self, limit: Number) -> Number | None:
+        """(V - R i) / L of the voltage that is left, in the mean from no current to a `limit` [A/s]; the induced voltage is left out.
+
+        >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
+        18000.0
+        """
+        if self.voltage is None or self.inductance is None:
+            return None
+        return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
 
     @property
     def heat_current(self) -> Number | None:

@@ -52,7 +52,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")] = None,
     controller: Annotated[
         ControllerKind | None,
-        word_option("--controller", ControllerKind, "What closes the loop; none: open loop. Default: pi.", show_default=False),
+        word_option(
+            "--controller", ControllerKind, "What closes the loop; none: open loop. Default: pi; of forces pid.", show_default=False
+        ),
     ] = None,
     coordinates: Annotated[
         Axes | None,
@@ -123,7 +125,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late.
+    With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
+    forces drive the stage, a PID controller.
     """
     exports = export or []
     if example is not None:
@@ -314,7 +317,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.margin_table(found)
     yield tables.step_table(found.runs)
     yield tables.tracking_table(found.runs)
-    yield errors.rest_table(found.static_errors)
+    yield None if found.static_errors is None else errors.rest_table(found.static_errors)
     yield errors.noise_table(found)
     if found.hysteresis is not None:
         yield errors.hysteresis_table(found.hysteresis)

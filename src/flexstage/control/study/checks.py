@@ -114,18 +114,16 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
 def _controller(found: ControllerSetup) -> Iterator[Finding]:
     tuned = [name for name in _TUNED if getattr(found, name) is not None]
     gains = [name for name in _GAINS if getattr(found, name) is not None]
-    if found.kind in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
-        yield Finding(
-            f"controller.{gains[0]}", f"a controller of kind {found.kind.value} does not have it", "Leave it out, or take kind pi"
-        )
+    if found.law in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
+        yield Finding(f"controller.{gains[0]}", f"a controller of kind {found.law.value} does not have it", "Leave it out, or take kind pi")
     elif tuned and gains:
         what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
         yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
-    if found.derivative is not None and found.kind is not ControllerKind.PID:
-        yield Finding("controller.derivative", f"a controller of kind {found.kind.value} has none", "Take kind pid, or leave it out")
-    if found.kind is ControllerKind.PID and found.derivative and found.filter is None:
+    if found.derivative is not None and found.law is not ControllerKind.PID:
+        yield Finding("controller.derivative", f"a controller of kind {found.law.value} has none", "Take kind pid, or leave it out")
+    if found.law is ControllerKind.PID and found.derivative and found.filter is None:
         yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
-    if found.kind is ControllerKind.NONE and tuned:
+    if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
 
 

@@ -103,7 +103,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     """
     asked = given.setup.controller
     forward = gains if Compensation.REFERENCE in given.setup.compensate else None
-    if asked.kind is ControllerKind.NONE:
+    if asked.law is ControllerKind.NONE:
         return Control(_open_loop(given, gains), None, None, gains)
     loops = _loops(given, gains)
     if any(value is not None for value in (asked.proportional, asked.integral, asked.derivative)):
@@ -111,11 +111,11 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
         made_of = Decentralised(loops, (_law(asked),) * len(loops.names), (notches,) * len(loops.names) if notches else (), forward)
         return Control(made_of.system(given.step), made_of, None, gains)
     task = Task(
-        kind=_KINDS[asked.kind],
+        kind=_KINDS[asked.law],
         goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
         notches=tuple(_notch(each, given) for each in asked.notches),
         automatic=asked.notching is Notching.AUTOMATIC,
-        expected=_expected_noise(given) if asked.kind is ControllerKind.LQG else None,
+        expected=_expected_noise(given) if asked.law is ControllerKind.LQG else None,
         feedforward=forward,
     )
     found = tune(given.plant, loops, task)
@@ -140,7 +140,7 @@ def _loops(given: ResolvedSetup, gains: Array) -> Loops:
 
 def _law(asked: ControllerSetup) -> PI | PID:
     proportional, integral = asked.proportional or 0.0, asked.integral or 0.0
-    if asked.kind is ControllerKind.PI:
+    if asked.law is ControllerKind.PI:
         return PI(proportional, integral)
     return PID(proportional, integral, asked.derivative or 0.0, asked.filter or _FILTER)
 

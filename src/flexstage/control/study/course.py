@@ -158,13 +158,15 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     >>> found[0].where, "leaves what the strokes reach" in found[0].what
     ('trajectory x', True)
     """
-    found = reach_findings(poses, times, reachable(gains, limits))
+    found = reach_findings(poses, times, reachable(gains, limits)) if np.all(np.isfinite(limits.full)) else []
     return [Finding(f"trajectory {course.name}", each.what, each.advice) for each in found]
 
 
-def course_cautions(course: Course, poses: Array, times: Array, gains: Matrix, slew: Array) -> list[Finding]:
+def course_cautions(
+    course: Course, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
+) -> list[Finding]:
     """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
-    found = speed_findings(poses, times, gains, slew)
+    found = speed_findings(poses, times, gains, slew, units=units)
     return [Finding(f"trajectory {course.name}: {each.where}", each.what, each.advice) for each in found]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hard
 from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.checks import setup_findings
+from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.floor import floor_spectra
 from flexstage.control.study.setup import GaugeSetup, LoopSetup
 from flexstage.mechanism.expand import expand
@@ -74,6 +75,8 @@ def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
     kinematics, model = ideal(mechanism), read(mechanism, setup.model)
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
+    require(_force_findings(kinematics, setup))
+    setup = _settle(setup, forced=bool(kinematics.thrusts))
     highest = highest_platform_mode(mechanism, model, len(kinematics.coordinates))
     rate = setup.rate if setup.rate is not None else default_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
@@ -82,6 +85,24 @@ def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
     whole = plant(model, kinematics, given)
     found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
     return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest)
+
+
+def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
+    """The usual controller where none is stated: force moves a mass above its resonance, and what is as late as that needs a lead."""
+    asked = setup.controller
+    tuned = all(value is None for value in (asked.proportional, asked.integral, asked.derivative))
+    kind = ControllerKind.PID if forced and tuned and asked.kind is None else asked.law
+    fed = tuple(each for each in setup.compensate if not forced or each is not Compensation.LOST_MOTION)
+    return replace(setup, controller=replace(asked, kind=kind), compensate=fed)
+
+
+def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Finding]:
+    """What is asked of stacks where forces drive the stage."""
+    if kinematics.thrusts and setup.hysteresis is not None:
+        yield Finding("hysteresis", f"forces drive the stage ({', '.join(kinematics.thrusts)}), and it has no stacks", "Leave it out")
+    if kinematics.thrusts and Compensation.LOAD in setup.compensate:
+        what = "what loads take of the forces is not worked out"
+        yield Finding("compensate", what, "Leave load out: the controller's integrator carries it")
 
 
 def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) -> float:
@@ -133,6 +154,7 @@ def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float)
             slew=power.slew,
             noise_density=power.noise,
             bits=power.bits,
+            current_noise=power.current_noise,
         ),
         gauges={name: _sensing(setup.gauges, item.unit) for name, item in expand(mechanism).gauges.items() if not item.members},
     )

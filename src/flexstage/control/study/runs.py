@@ -13,7 +13,7 @@ from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER, VIEW
@@ -118,8 +118,8 @@ def runs(
     asked = courses(given.setup.trajectory, loop)
     rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
     sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
-    gains = Matrix(control.gains, loop.actuators, loop.names, given.kinematics.mapping.unit)
-    known = stroke_limits(given.mechanism)
+    known, units = _ends(given), tuple(each.unit for each in loop.commands())
+    gains = Matrix(control.gains, loop.actuators, loop.names, ratio_units(units, loop.units))
     taken = np.zeros(len(known.actuators)) if offset is None else offset
     limits = StrokeLimits(known.actuators, known.low - taken, known.high - taken)
     require(
@@ -130,9 +130,18 @@ def runs(
     computed = driven_machine(given, control, stacks)
     slew = computed.amplifiers.slew
     return tuple(
-        _run(given, course, computed, tuple(course_cautions(course, poses, times, gains, slew)), poses=poses, rest=rest)
+        _run(given, course, computed, tuple(course_cautions(course, poses, times, gains, slew, units=units)), poses=poses, rest=rest)
         for course, (times, poses) in zip(asked, sampled, strict=True)
     )
+
+
+def _ends(given: ResolvedSetup) -> StrokeLimits:
+    """Strokes around the bias, or the inputs of force actuators."""
+    if not given.kinematics.thrusts:
+        return stroke_limits(given.mechanism)
+    powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
+    low, high = np.array([each.low for each in powers]), np.array([each.high for each in powers])
+    return StrokeLimits(given.plant.actuators, low, high)
 
 
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
@@ -148,7 +157,7 @@ def _electric(given: ResolvedSetup) -> Drive | None:
     """Voltages of the stacks, where all state them."""
     piezos = dict(piezo_stacks(given.mechanism))
     stated = all(each.voltage_low is not None and each.voltage_high is not None for each in piezos.values())
-    return drive(given.mechanism) if stated and tuple(piezos) == given.plant.actuators else None
+    return drive(given.mechanism) if stated and piezos and tuple(piezos) == given.plant.actuators else None
 
 
 def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simulated | None:

@@ -13,6 +13,7 @@ from flexstage.base.quantity import (
     ACCELERATION_NOISE,
     ANGLE,
     CURRENT,
+    CURRENT_NOISE,
     DISPLACEMENT,
     FREQUENCY,
     JERK,
@@ -55,7 +56,8 @@ class AmplifierSetup:
 
     `bandwidth` as stated, or that of the output `resistance`, 1/(2 pi R C). `current` is the largest they give and `slew` their fastest
     change of voltage: they limit the rate of strokes. `noise` is white at their output, `bits` those of the converter over the full
-    voltage. Voltages are turned into free strokes by each stack's range.
+    voltage. Voltages are turned into free strokes by each stack's range. Those of voice coils drive the current: `bandwidth`, `current`,
+    `current_noise` and `bits` count.
     """
 
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -64,6 +66,7 @@ class AmplifierSetup:
     slew: Annotated[float, SLEW, POSITIVE] | None = None
     noise: Annotated[float, VOLTAGE_NOISE, NOT_NEGATIVE] | None = None
     bits: int | None = None
+    current_noise: Annotated[float, CURRENT_NOISE, NOT_NEGATIVE] | None = None
 
 
 @dataclass(frozen=True)
@@ -116,12 +119,13 @@ class NotchAt:
 class ControllerSetup:
     """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
 
-    What it shall reach: `bandwidth` (where the open loop's gain passes 1; absent: the highest that `sensitivity` allows) and
-    `sensitivity`, the highest peak of S. Its numbers: `proportional` (strokes or motion per error), `integral` rate, `derivative` time and
-    its `filter` corner. `notches` besides those placed by themselves.
+    Without a kind it is PI, where forces drive the stage PID (unless numbers are given). What it shall reach: `bandwidth` (where the open
+    loop's gain passes 1; absent: the highest that `sensitivity` allows) and `sensitivity`, the highest peak of S. Its numbers:
+    `proportional` (strokes or motion per error), `integral` rate, `derivative` time and its `filter` corner. `notches` besides those
+    placed by themselves.
     """
 
-    kind: ControllerKind = ControllerKind.PI
+    kind: ControllerKind | None = None
     coordinates: Axes = Axes.PLATFORM
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
     sensitivity: Annotated[float, RATIO, _PEAK] | None = None
@@ -131,6 +135,11 @@ class ControllerSetup:
     filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
     notching: Notching = Notching.AUTOMATIC
     notches: tuple[NotchAt, ...] = ()
+
+    @property
+    def law(self) -> ControllerKind:
+        """Its kind, PI where none is stated."""
+        return self.kind or ControllerKind.PI
 
 
 @dataclass(frozen=True)
@@ -224,7 +233,7 @@ class LoopSetup:
     how many are kept, lowest first (absent: those that the loop feels), the others' compliance stays. The simulation lasts `seconds`
     (absent: as long as the trajectory, and until the loop has settled), its random numbers are those of `seed`.
 
-    >>> LoopSetup().controller.kind.value
+    >>> LoopSetup().controller.law.value
     'pi'
     """
 

@@ -37,6 +37,7 @@ from flexstage.mechanism.mechanism import Mechanism
 _Found = TypeVar("_Found")
 _LOWEST = 0.1
 _NO_LOOP = "the stage is commanded in open loop"
+_NO_STROKES = "forces drive the stage: no stroke is lost, and it stands where its stiffness lets it"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ class LoopStudy(InNotebook):
     """
 
     settled: Annotated[ResolvedSetup, INNER]
-    lost: Annotated[LostMotion, INNER]
+    lost: Annotated[LostMotion | None, INNER]
     controller: Control
     closed: Annotated[Loop, INNER]
     stability: Verdict
@@ -63,7 +64,7 @@ class LoopStudy(InNotebook):
     curves: Annotated[Curves | None, INNER]
     crosstalk: Matrix
     disk_margin: DiskMargin | None
-    static_errors: RestErrors
+    static_errors: RestErrors | None
     noise: NoiseBudget
     still: Annotated[Simulated | None, INNER]
     resting: Annotated[RestRms | None, INNER]
@@ -114,15 +115,15 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     """
     said = _Steps(tell)
     given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup()))
-    lost = lost_motion(given.kinematics, given.model)
+    lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
     control = said.of(0.05, "tuning", lambda: make_controller(given, _gains(given, lost)))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
-    rest = rest_errors(given, lost)
-    carried = rest.load_strokes if Compensation.LOAD in given.setup.compensate else None
+    rest = None if lost is None else rest_errors(given, lost)
+    carried = rest.load_strokes if rest is not None and Compensation.LOAD in given.setup.compensate else None
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
-    is_closed = setup is None or setup.controller.kind is not ControllerKind.NONE
+    is_closed = setup is None or setup.controller.law is not ControllerKind.NONE
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
     still = simulate_rest(given, control, closed)
@@ -148,8 +149,13 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
         hysteresis=None if stacks is None else sweep_stacks(stacks),
         runs=tested,
         cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
-        reasons=Table({} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves"), _NO_LOOP)),
+        reasons=Table(_reasons(is_closed=is_closed, forced=lost is None)),
     )
+
+
+def _reasons(*, is_closed: bool, forced: bool) -> dict[str, str]:
+    open_loop = {} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves"), _NO_LOOP)
+    return open_loop | ({"static_errors": _NO_STROKES} if forced else {})
 
 
 def _relative_motions(given: ResolvedSetup) -> tuple[str, ...]:
@@ -170,9 +176,9 @@ class _Steps:
         return action()
 
 
-def _gains(given: ResolvedSetup, lost: LostMotion) -> Array:
-    """Strokes (n, f) by which poses are commanded."""
-    if Compensation.LOST_MOTION in given.setup.compensate:
+def _gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
+    """Strokes (n, f) by which poses are commanded; the inputs of forces are those of the elastic model, and lose nothing."""
+    if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes
 

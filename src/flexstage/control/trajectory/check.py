@@ -52,8 +52,10 @@ def _show(value: float, coordinate: str) -> str:
     return f"{1e6 * value:.4g} u{TWIST_UNITS[COMPONENTS.index(coordinate)]}"
 
 
-def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array) -> list[Finding]:
-    """Actuators that sampled poses (n, f) ask for more speed than `slew` (m,) [m/s] allows: R_a times the poses' differences.
+def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, units: tuple[str, ...] = ()) -> list[Finding]:
+    """Actuators that sampled poses (n, f) ask for more speed than `slew` (m,) allows: R_a times the poses' differences.
+
+    `units` are those of the actuators' inputs (absent: m).
 
     A finding, not a refusal: behind a step an amplifier runs at its limit, and the simulation shows how. Columns of `mapping` (R_a) are
     the coordinates of the poses.
@@ -65,10 +67,10 @@ def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array) -> 
     """
     rates = np.abs(np.diff(poses, axis=0) @ np.asarray(mapping.values).T) / np.diff(times)[:, None]
     found = []
-    for actuator, column, most in zip(mapping.rows, rates.T, slew, strict=True):
+    for actuator, unit, column, most in zip(mapping.rows, units or ("m",) * len(slew), rates.T, slew, strict=True):
         worst = int(np.argmax(column))
         if column[worst] > most * (1.0 + 1e-9):
-            asked = f"the trajectory asks for {1e6 * column[worst]:.4g} um/s at {times[worst + 1]:g} s"
-            what = f"{asked}, the amplifier gives {1e6 * most:.4g} um/s"
+            wanted, given = (f"{1e6 * value:.4g} um/s" if unit == "m" else f"{value:.4g} {unit}/s" for value in (column[worst], most))
+            what = f"the trajectory asks for {wanted} at {times[worst + 1]:g} s, the amplifier gives {given}"
             found.append(Finding(actuator, what, f"Slow it down to {most / column[worst]:.3g} of its speed"))
     return found

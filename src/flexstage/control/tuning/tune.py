@@ -18,6 +18,8 @@ from flexstage.control.tuning.view import View, view
 
 _SLOWEST = 0.002
 _FASTEST = 5.0
+_FASTEST_BY_FORCE = 100.0
+"""A force moves a mass above its resonance as if nothing held it: a low resonance bounds nothing."""
 _OF_RATE = 0.2
 _FINE = 0.05
 _STEPS = {Kind.PI: (1.3, 2.0), Kind.PID: (1.3, 2.0), Kind.RESONANT: (1.3, 2.0), Kind.LQG: (1.6, 4.0)}
@@ -84,7 +86,8 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     >>> round(highest_bandwidth(seen, Task(Kind.PI, Goal(), automatic=False))[0])
     56
     """
-    top: float = _FASTEST * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+    fastest = _FASTEST_BY_FORCE if seen.loops.coordinates.forced else _FASTEST
+    top: float = fastest * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
     top = top if seen.step is None else min(top, _OF_RATE / seen.step)
     slowest = min(_SLOWEST * float(seen.modes[0]), 0.5 * top)
     finer, coarser = _STEPS[task.kind]
