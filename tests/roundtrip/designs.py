@@ -27,6 +27,7 @@ from flexstage.mechanism.node import (
     RowNode,
     TextNode,
     VectorNode,
+    WholeNode,
 )
 from flexstage.spatial.frame import COMPONENTS
 
@@ -85,8 +86,8 @@ def values(node: Node) -> st.SearchStrategy[Any]:
         return DIRECTIONS
     if isinstance(node, MatrixNode):
         return st.tuples(*(st.tuples(*(values(RowNode(row).child(None, name)) for name in COMPONENTS)) for row in range(6)))
-    if isinstance(node, (TextNode, FlagNode)):
-        return TEXTS if isinstance(node, TextNode) else st.booleans()
+    if isinstance(node, (TextNode, FlagNode, WholeNode)):
+        return {TextNode: TEXTS, FlagNode: st.booleans(), WholeNode: st.integers(1, 20)}[type(node)]
     if isinstance(node, ChoiceNode):
         return st.sampled_from(list(node.choices))
     if isinstance(node, ListNode):

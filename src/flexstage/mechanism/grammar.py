@@ -455,6 +455,10 @@ class UnionNode(Node):
         """That of the alternative."""
         return self.option(value).key(value, name)
 
+    def field_called(self, value: Any, key: str) -> str:
+        """That of the alternative."""
+        return self.option(value).field_called(value, key)
+
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
