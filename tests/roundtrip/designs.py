@@ -15,7 +15,7 @@ from flexstage.mechanism.address import addresses, quantity_of, set_text
 from flexstage.mechanism.formulas import spelling_findings
 from flexstage.mechanism.grammar import RESERVED, ListNode, RecordNode, TableNode, UnionNode
 from flexstage.mechanism.locate import locate
-from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber, Placement, Unit
+from flexstage.mechanism.mechanism import GaugeSum, Link, Mechanism, NamedNumber, Placement, Unit
 from flexstage.mechanism.node import (
     ChoiceNode,
     DirectionNode,
@@ -115,7 +115,10 @@ def records(node: RecordNode) -> st.SearchStrategy[Any]:
 def mechanisms(draw: st.DrawFn) -> Mechanism:
     """Any description whose addresses are sound; it need not make sense."""
     stage = draw(values(RecordNode(Mechanism)))
-    stage = dataclasses.replace(stage, changes={}, tags={}, place={}, packages=())  # a package that is named has to be installed
+    gauges = {name: gauge for name, gauge in stage.gauges.items() if gauge != GaugeSum({})}  # a sum of nothing says nothing in a file
+    stage = dataclasses.replace(
+        stage, gauges=gauges, changes={}, tags={}, place={}, packages=()
+    )  # a package that is named has to be installed
     if stage.parts:
         stage = _with_departures(draw, stage)
     numbers = addresses(stage)

@@ -28,10 +28,10 @@ from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Number, Table, freeze
 from flexstage.base.quantity import Quantity
 from flexstage.mechanism.expand import apply_changes
-from flexstage.mechanism.formulas import NUMBERS, dependents, formula_value, is_formula, scope_of
+from flexstage.mechanism.formulas import NUMBERS, amount_of, dependents, formula_value, is_formula, scope_of, shown_unit
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import Place, canonical, link_path, locate
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
 from flexstage.mechanism.misalignment import misalignment_of
 from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.path import member, replace_member, with_mirror
@@ -90,7 +90,6 @@ def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
 
     Of a ratio, a percentage is the value itself.
 
-    >>> from flexstage.mechanism.mechanism import NamedNumber
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
     >>> stage = set_text(set_text(stage, "wire.length", "2*arm"), "numbers.arm", "+100 %")
@@ -134,6 +133,9 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
         what = f'"{text}" is worked out of {", ".join(sorted(circle))}, and so of {place.number} itself'
         raise refuse(where, what, "Give it a number, or a formula of others")
     changed = set_value(mechanism, where, value)
+    if place.number:
+        own_unit = NamedNumber(value, shown_unit(amount_of(mechanism.numbers[place.number])))
+        changed = replace(changed, numbers=Table({**changed.numbers, place.number: own_unit}))
     own = {replace(place, path=path).address: text for path in with_mirror(place.path)}
     return replace(changed, formulas=Table({**changed.formulas, **own}))
 

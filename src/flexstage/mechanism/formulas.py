@@ -159,7 +159,8 @@ def _evaluate(
     found = dict(values)
     for name in _order(expressions):
         try:
-            found[name] = _named(evaluate(expressions[name], _scope(table, found)))
+            amount = evaluate(expressions[name], _scope(table, found))
+            found[name] = NamedNumber(amount.value, shown_unit(amount))
         except ExpressionError as error:
             findings.append(Finding(_PREFIX + name, error.what, error.advice))
         except UnknownAmountError:
@@ -167,11 +168,16 @@ def _evaluate(
     return found, findings
 
 
-def _named(amount: Amount) -> NamedNumber:
+def shown_unit(amount: Amount) -> str:
+    """The unit that a named number is shown in whose value a formula gives; raises `ExpressionError` if none can be written.
+
+    >>> shown_unit(amount_of(NamedNumber(0.026, "um")))
+    'mm'
+    """
     unit = quantity_of_dimension(amount.dimension).shown
     if not is_unit(unit) and unit != "1":
         raise ExpressionError(f"its unit would be {unit}, which nobody can write", "Write the root where it is used")
-    return NamedNumber(amount.value, unit)
+    return unit
 
 
 def _order(expressions: Mapping[str, Expression]) -> list[str]:
@@ -285,6 +291,9 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
         except DesignError as error:
             yield from error.findings
             continue
+        number = mechanism.numbers.get(address.removeprefix(_PREFIX)) if address.startswith(_PREFIX) else None
+        if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
+            yield Finding(address, f"its formula gives it in {unit}, and its unit is {number.unit}", f"Write {unit}")
         if found is None or not np.allclose(found, wanted, rtol=_ALIKE, atol=0.0):
             what = f'its formula "{mechanism.formulas[address]}" gives {_si(wanted)}, and its value is {_si(found)} (SI)'
             yield Finding(address, what, "Set the value by the formula, or take the formula out")
