@@ -24,7 +24,7 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
-from flexstage.parts.voice_coil import Drive, VoiceCoil
+from flexstage.parts.voice_coil import Supply, VoiceCoil
 
 YOUNG, LENGTH, THICKNESS, WIDTH = 200e9, 50 * mm, 0.4 * mm, 20 * mm
 COIL = VoiceCoil(force_constant=12.0, resistance=6.0, mass=0.1, magnet_mass=0.4, damping=0.5)
@@ -85,7 +85,7 @@ def test_bode_plot_current_drive():
 
 def test_bode_plot_voltage_drive():
     """Back-EMF adds k_f^2/R = 24 N s/m to the 0.5 N s/m of the coil, and the ratio c / (2 sqrt(k m)) is that of the mode."""
-    coil = replace(COIL, drive=Drive.VOLTAGE)
+    coil = replace(COIL, drive=Supply.VOLTAGE)
     assert coil.viscous_damping == 24.5
     model = lumped(stage(coil))
     grid = np.array([0.1, 3.0, 7.0, 20.0, 300.0])

@@ -1,6 +1,7 @@
 """Compliance and mass of parts by beam theory."""
 
 from flexstage.base.register import Register
+from flexstage.beams.amplified import AMPLIFIED, STEPPER
 from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
@@ -10,8 +11,10 @@ from flexstage.beams.notch import NOTCH
 from flexstage.beams.piezo import PIEZO
 from flexstage.beams.reinforced_leaf import REINFORCED_LEAF
 from flexstage.beams.rod import ROD
+from flexstage.beams.shear_piezo import SHEAR_PIEZO
 from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
+from flexstage.parts.amplified import Amplified, Stepper
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -20,10 +23,12 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
+from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
-_OWN = {**_HINGES, Piezo: PIEZO, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
+_STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, Stepper: STEPPER}
+_OWN = {**_HINGES, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""

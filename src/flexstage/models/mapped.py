@@ -25,7 +25,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Joint
-from flexstage.parts.part import Restricted
+from flexstage.parts.part import Restricted, actuator_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _COLLINEAR = 1e-6
@@ -152,6 +152,8 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
     >>> round(float(computed_stiffness(expand(double_triangle()), "B4/pzt")) / 1e6, 2)
     30.28
     """
+    if np.any(np.real(actuator_of(assembly.links[drive].part).free_deformation)[..., 1:]):
+        raise refuse(drive, "its stroke is not along its axis, as the springs in series that this model knows would have it", "")
     ways = _ways(assembly, drive)
     levers = [body for body, links in ways.items() if len(links) > 2 and body not in (GROUND, PLATFORM)]
     if levers:

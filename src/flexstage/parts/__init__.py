@@ -1,6 +1,7 @@
 """What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
 
 from flexstage.base.register import Register
+from flexstage.parts.amplified import Amplified, Stepper
 from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.encoder import Encoder
@@ -15,6 +16,7 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Elastic
+from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.strain_gauge import StrainGauge
 from flexstage.parts.superelement import Superelement
@@ -23,7 +25,7 @@ from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
-_ACTUATORS = (Piezo, ForceActuator, VoiceCoil)
+_ACTUATORS = (Piezo, ShearPiezo, Amplified, Stepper, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )

@@ -36,7 +36,7 @@ from flexstage.parts.shape import Order
 _DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
-class Drive(Enum):
+class Supply(Enum):
     """What the amplifier imposes: the current, or the voltage, of which the coil's motion takes k_f v."""
 
     CURRENT = "current"
@@ -77,7 +77,7 @@ class VoiceCoil(ThrustActuator):
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     coil: Side = Side.SECOND
-    drive: Drive = Drive.CURRENT
+    drive: Supply = Supply.CURRENT
     stiffness: Annotated[Number, STIFFNESS] = 0.0
     damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
     travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
@@ -95,10 +95,10 @@ class VoiceCoil(ThrustActuator):
     def viscous_damping(self) -> Number:
         """Its own damping along x and, under a voltage drive, that of the induced voltage, k_f^2 / R [N s/m].
 
-        >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Drive.VOLTAGE).viscous_damping
+        >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
         """
-        if self.drive is Drive.CURRENT or self.resistance is None:
+        if self.drive is Supply.CURRENT or self.resistance is None:
             return self.damping
         return self.damping + self.force_constant**2 / self.resistance
 
@@ -157,7 +157,7 @@ class VoiceCoil(ThrustActuator):
     @property
     def faults(self) -> Iterator[Finding]:
         """A voltage drive damps by the coil's resistance, and a limit of volts bounds the current by it."""
-        for name, asked in (("drive", self.drive is Drive.VOLTAGE), ("voltage", self.voltage is not None)):
+        for name, asked in (("drive", self.drive is Supply.VOLTAGE), ("voltage", self.voltage is not None)):
             if asked and self.resistance is None:
                 what = "it states no resistance, and the current that a voltage drives follows from it"
                 yield Finding(name, what, 'Add for example resistance = "5 ohm"')

@@ -82,9 +82,10 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     assembly = expand(mechanism)
     links = tuple(assembly.strokes.values())
     names = tuple(assembly.strokes)
-    forces = static_gain(model, tuple(f"{link}.fx" for link in links), names).values
-    slope = -np.diagonal(forces, axis1=-2, axis2=-1)
-    own = np.stack(np.broadcast_arrays(*(model.stiffness[link].law[..., 0, 0] for link in links)), axis=-1)
+    strokes = [assembly.actuator(name).free_deformation for name in names]
+    slope = -_joined([_along(model, link, name, free) for (name, link), free in zip(assembly.strokes.items(), strokes, strict=True)])
+    laws = [model.stiffness[link].law[..., :6, :6] for link in links]
+    own = _joined([np.sum((law @ along[..., None])[..., 0] * along, axis=-1) for law, along in zip(laws, strokes, strict=True)])
     free = stack([part.stroke for part in stroke_actuators(mechanism).values()])
     against = slope * own / (own - slope)
     return StackLine(
@@ -97,6 +98,17 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
         force=free * slope,
         provenance=model.provenance,
     )
+
+
+def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
+    """The link's force (...) along its own free deformation per unit of its stroke."""
+    places = np.flatnonzero(np.any(np.reshape(free, (-1, 6)), axis=0))
+    forces = static_gain(model, tuple(f"{link}.{FORCES[place]}" for place in places), (name,)).values[..., 0]
+    return np.sum(forces * free[..., places], axis=-1)
+
+
+def _joined(values: list[Array]) -> Array:
+    return np.stack(np.broadcast_arrays(*values), axis=-1) if values else np.zeros(0)
 
 
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:

@@ -1,0 +1,176 @@
+"""Actuators known by what stands between their two faces: a 6x6 and a free deformation. Amplified piezos, drives that step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar, TypeAlias
+
+import numpy as np
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number, stack
+from flexstage.base.quantity import (
+    ANGLE,
+    CAPACITANCE,
+    COMPLIANCE_MATRIX,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    MASS,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATIO,
+    ROTATIONAL_STIFFNESS,
+    STIFFNESS,
+    STIFFNESS_MATRIX,
+    VOLTAGE,
+)
+from flexstage.parts.actuator import ChargedActuator, StrokeActuator
+from flexstage.parts.body import Inertia
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.stated import is_even, symmetry_findings, turns_into_itself
+
+_Along: TypeAlias = Annotated[Number, STIFFNESS, POSITIVE]
+_About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS, POSITIVE]
+_Diagonal: TypeAlias = tuple[_Along, _Along, _Along, _About, _About, _About]
+_Matrix: TypeAlias = tuple[tuple[Number, ...], ...]
+_Shift: TypeAlias = Annotated[Number, DISPLACEMENT]
+_Turn: TypeAlias = Annotated[Number, ANGLE]
+_Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
+
+
+class BetweenFaces(StrokeActuator):
+    """A stroke actuator whose force is f = k (dx - s u): a stated 6x6 k about its centre and a free deformation s per unit of stroke."""
+
+    diagonal: _Diagonal | None
+    matrix: _Matrix | None
+    compliance: _Matrix | None
+    free: tuple[Freedom, ...]
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """The freedoms that it is stated to leave free."""
+        return self.free
+
+    @property
+    def between(self) -> Array:
+        """The stiffness k (..., 6, 6) about its centre, second face against first, SI."""
+        if self.diagonal is not None:
+            return stack(self.diagonal)[..., None] * np.eye(6)
+        return np.linalg.inv(stack(self.compliance)) if self.matrix is None else stack(self.matrix)
+
+    @property
+    def blocking_force(self) -> Number:
+        """Force along x of the fully driven actuator, its faces held: (k s)_x times its stroke [N]."""
+        return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
+
+    @property
+    def is_round(self) -> bool:
+        """Whether stiffness, free deformation and freedoms are alike across its axis."""
+        across = np.real(self.free_deformation)[..., [1, 2, 4, 5]]
+        return is_even(self.free) and not np.any(across) and turns_into_itself(self.between)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """It states one of the three, and that is symmetric and positive definite."""
+        stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
+        if len(stated) != 1:
+            found = f"it states {' and '.join(stated)}" if stated else "it states no stiffness across its axis"
+            yield Finding("", found, "State one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
+            return
+        own = stack(getattr(self, stated[0]))
+        if own.ndim > 1 and stated[0] != "diagonal":
+            asymmetric = list(symmetry_findings(stated[0], own))
+            yield from asymmetric
+            if not asymmetric and np.any(np.linalg.eigvalsh(_scaled(own)) <= 0.0):
+                yield Finding(stated[0], "it is not positive definite", "Check signs and units of its entries")
+
+
+def _scaled(matrix: Array) -> Array:
+    real = np.real(matrix)
+    size = np.sqrt(np.abs(np.diagonal(real, axis1=-2, axis2=-1)))
+    size = np.where(size > 0.0, size, 1.0)
+    return real / size[..., :, None] / size[..., None, :]
+
+
+@dataclass(frozen=True, eq=False)
+class Amplified(BetweenFaces, ChargedActuator):
+    """An amplified piezo actuator between its two faces: f = k (dx - s u).
+
+    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation of the second face against the first at
+    the full stroke (x, y, z, rx, ry, rz), for one that contracts, or that also shifts and turns; absent, the stroke along x. One of
+    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre with the volts held. `mass` counts half at each
+    face, and so does `inertia`, about the centre. `free` are the freedoms that the ideal model takes as free. `resonance` (blocked at one
+    face, free at the other) is stated only: inner modes are not modelled.
+    """
+
+    kind: ClassVar[str] = "amplified"
+    stroke: Annotated[Number, DISPLACEMENT, POSITIVE]
+    deformation: _Deformation | None = None
+    diagonal: _Diagonal | None = None
+    matrix: Annotated[_Matrix, STIFFNESS_MATRIX] | None = None
+    compliance: Annotated[_Matrix, COMPLIANCE_MATRIX] | None = None
+    free: tuple[Freedom, ...] = ()
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    inertia: Inertia | None = None
+    maximum_load: Annotated[Number, FORCE, POSITIVE] | None = None
+    tensile_limit: Annotated[Number, FORCE, NOT_NEGATIVE] | None = None
+    preload: Annotated[Number, FORCE, NOT_NEGATIVE] | None = None
+    resonance: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    voltage_low: Annotated[Number, VOLTAGE] | None = None
+    voltage_high: Annotated[Number, VOLTAGE] | None = None
+    bias: Annotated[Number, VOLTAGE] | None = None
+    capacitance: Annotated[Number, CAPACITANCE, POSITIVE] | None = None
+    loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def free_deformation(self) -> Array:
+        """The deformation over the stroke; along x where none is stated."""
+        if self.deformation is None:
+            return np.eye(6)[0]
+        return stack(self.deformation) / np.asarray(self.stroke)[..., None]
+
+
+@dataclass(frozen=True, eq=False)
+class Stepper(BetweenFaces):
+    """A drive that moves in steps and holds at rest without power: inertia drive, inchworm, screw.
+
+    Its stroke is its whole `travel` along x, half of it to either side, in steps of `resolution`. One of `diagonal` (x, y, z, rx, ry, rz),
+    `matrix` and `compliance` is its 6x6 about its centre as it holds. `holding_force` is what slips it along x; both ways it bounds its
+    load. `mass` counts half at each face. Linear: neither backlash nor the pull of its steps.
+    """
+
+    kind: ClassVar[str] = "stepper"
+    travel: Annotated[Number, DISPLACEMENT, POSITIVE]
+    resolution: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
+    diagonal: _Diagonal | None = None
+    matrix: Annotated[_Matrix, STIFFNESS_MATRIX] | None = None
+    compliance: Annotated[_Matrix, COMPLIANCE_MATRIX] | None = None
+    free: tuple[Freedom, ...] = ()
+    holding_force: Annotated[Number, FORCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def stroke(self) -> Number:  # type: ignore[override]
+        """Its travel [m]."""
+        return self.travel
+
+    @property
+    def maximum_load(self) -> Number | None:  # type: ignore[override]
+        """What slips it [N]."""
+        return self.holding_force
+
+    @property
+    def tensile_limit(self) -> Number | None:  # type: ignore[override]
+        """What slips it [N]."""
+        return self.holding_force
+
+    @property
+    def below_zero(self) -> Number:
+        """As it is drawn, it stands in the middle of its travel."""
+        return 0.5

@@ -1,0 +1,89 @@
+"""Shear piezo actuators: stacks of plates along x whose faces slide past one another along y."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.digest import DOCUMENT_ONLY
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
+from flexstage.base.quantity import (
+    CAPACITANCE,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATIO,
+    STIFFNESS,
+    VOLTAGE,
+)
+from flexstage.parts.actuator import ChargedActuator
+
+
+@dataclass(frozen=True, eq=False)
+class ShearPiezo(ChargedActuator):
+    """A shear piezo: a block of plates glued along x, whose second face slides along y by the stroke u against the first.
+
+    `length` along x, `width` along y, `depth` along z. `stiffness` is that along y with both faces kept parallel, `axial_stiffness` that
+    along x: modulus E = k_a L / A and shear compliance 1/k - L^3 / (12 E I_z) follow, and with them the other freedoms, as of a uniform
+    block. Blocking force = stroke x stiffness. `mass` counts half at each face.
+    """
+
+    kind: ClassVar[str] = "shear_piezo"
+    stroke: Annotated[Number, DISPLACEMENT, POSITIVE]
+    stiffness: Annotated[Number, STIFFNESS, POSITIVE]
+    axial_stiffness: Annotated[Number, STIFFNESS, POSITIVE]
+    length: Annotated[Number, LENGTH, POSITIVE]
+    width: Annotated[Number, LENGTH, POSITIVE]
+    depth: Annotated[Number, LENGTH, POSITIVE]
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    maximum_load: Annotated[Number, FORCE, POSITIVE] | None = None
+    tensile_limit: Annotated[Number, FORCE, NOT_NEGATIVE] | None = None
+    preload: Annotated[Number, FORCE, NOT_NEGATIVE] | None = None
+    resonance: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    voltage_low: Annotated[Number, VOLTAGE] | None = None
+    voltage_high: Annotated[Number, VOLTAGE] | None = None
+    bias: Annotated[Number, VOLTAGE] | None = None
+    capacitance: Annotated[Number, CAPACITANCE, POSITIVE] | None = None
+    loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def free_deformation(self) -> Array:
+        """Along y."""
+        return np.eye(6)[1]
+
+    @property
+    def blocking_force(self) -> Number:
+        """Along y, its faces held: stroke x stiffness [N]."""
+        return self.stroke * self.stiffness
+
+    @property
+    def is_round(self) -> bool:
+        """Its stroke has a direction across its axis."""
+        return False
+
+    @property
+    def bending(self) -> tuple[Number, Number]:
+        """E I about y and about z [N m^2], with E = k_a L / A."""
+        rigidity = self.axial_stiffness * self.length / 12.0
+        return rigidity * self.depth**2, rigidity * self.width**2
+
+    @property
+    def shear_compliance(self) -> Number:
+        """What shear alone gives way along y [m/N]: the whole less the bending between parallel faces."""
+        return 1.0 / self.stiffness - self.length**3 / (12.0 * self.bending[1])
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """Bending alone gives way less than the whole."""
+        if np.any(np.real(self.shear_compliance) <= 0.0):
+            what = "a block of these dimensions and axial stiffness is softer than that along y by its bending alone"
+            yield Finding("stiffness", what, "Check length, width and both stiffnesses")
