@@ -105,10 +105,11 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     fitted = _fit_misfits(thermal.assembly, misfits)
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     size = len(model.coordinates)
-    load = sum((_transpose(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
+    whole = {name: _without_modes(strains[name], part.law.shape[-1] - 6) for name, part in model.stiffness.items()}
+    load = sum((_transpose(part.operator) @ (part.law @ whole[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
     motion = displacement(model, -load)
     twists = {body: _twist(model, body, motion) + fitted.twists.get(body, 0.0) for body in thermal.assembly.bodies}
-    forces = {name: part.law @ (part.operator @ motion + strains[name]) for name, part in model.stiffness.items()}
+    forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in model.stiffness.items()}
     return Drift(
         motion=_motions(thermal, twists),
         gauges=_gauges(thermal, twists),
@@ -132,6 +133,11 @@ def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
     moved = drifted.of(PLATFORM)
     readings = drifted.gauges.part(gauge_inverse.columns, FIELDS)
     return Matrix(moved.values - gauge_inverse.values @ readings.values, moved.rows, moved.columns, moved.unit)
+
+
+def _without_modes(strain: Array, inner: int) -> Array:
+    """The misfit (..., 6, k) of a link of that many inner modes, which do not grow."""
+    return np.concatenate([strain, np.zeros((*strain.shape[:-2], inner, strain.shape[-1]))], axis=-2) if inner else strain
 
 
 def _growth(arm: Array, origin: Array) -> Array:

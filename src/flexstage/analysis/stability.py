@@ -285,7 +285,7 @@ def _weights(mechanism: Mechanism) -> _Loads:
     for link in assembly.links.values():
         back = _transposed(link.frame.rotation)
         fall = (back @ gravity[..., None])[..., 0]
-        pulled = mass(link.part, link.material) @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
+        pulled = mass(link.part, link.material)[..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
         for place, body in enumerate(link.joins):
             if body != GROUND:
                 wrench = (spatial_rotation(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]

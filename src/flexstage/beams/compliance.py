@@ -16,6 +16,7 @@ from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array, first_design
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
+from flexstage.beams.held import Held, join
 from flexstage.beams.law import PartLaw
 from flexstage.parts.freedom import ALL, Freedom, others
 from flexstage.parts.given import Joint
@@ -87,7 +88,8 @@ def law(part: Part, material: Material | None) -> Law:
     if isinstance(part, Joint):
         return Law(np.zeros((6, 6)), locked_freedoms(part))
     if not isinstance(part, Restricted):
-        return Law(stiffness(part, material))
+        held = held_modes(part, material)
+        return Law(stiffness(part, material), inner=join(mode.squares for mode in held) if held else None)
     full = stiffness(part.part, material)
     kept, freed = _indices(part.elastic), _stiff_among(_indices(part.free), full)
     block = full[..., kept[:, None], kept]
@@ -114,6 +116,22 @@ def viscous_damping(part: Part) -> Array | None:
     kept: Array = np.array([freedom in part.elastic for freedom in ALL]) if isinstance(part, Restricted) else np.ones(6, dtype=bool)
     own = np.where(kept[:, None] & kept, known.damping(inner(part)), 0.0)
     return own if np.any(own) else None
+
+
+@lru_cache(maxsize=32)
+def held_modes(part: Elastic, material: Material | None) -> tuple[Held, ...]:
+    """The modes of a part while its ends are held, as many as it asks for (`inner_modes`), at the stations of its beam.
+
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> from flexstage.parts.leaf import Leaf
+    >>> [mode.axis for mode in held_modes(Leaf("steel", length=0.1, thickness=0.001, width=0.01, inner_modes=2), steel)]  # y, about x
+    [1, 3]
+    """
+    known = law_of(part)
+    if part.inner_modes == 0 or known is None or known.held is None:
+        return ()
+    half = first_design(np.real(beam_of(part, material).points.position), 1)
+    return known.held(part, _required_material(part, material), np.concatenate([-half, half]) / half[-1])
 
 
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:

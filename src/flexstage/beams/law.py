@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam
+from flexstage.beams.held import Held
 from flexstage.parts.material import Material
 
 _CALIBRATE = 'State a measured or computed 6x6 (kind = "given"), or count on a larger error than the one stated'
@@ -59,7 +60,8 @@ class PartLaw:
     where that may be singular or negative in some freedoms (then its compliance need not exist), and `mass` (..., 12, 12), all about its
     centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that states it, about its centre too. `concentration` is the factor
     of its notches on the nominal stress; without it, or where it is `None`, its stress is unknown. `ranges` are those in which the law
-    was compared with elasticity, `family` names the fitted laws that tell its error.
+    was compared with elasticity, `family` names the fitted laws that tell its error. `held` are the modes it has while its ends are held,
+    as many as it asks for, at stations of its half length from -1 to 1.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None
@@ -71,4 +73,5 @@ class PartLaw:
     concentration: Callable[[Any], Number | None] | None = None
     ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
     family: Callable[[Any], str | None] = _no_family
+    held: Callable[[Any, Material, Array], tuple[Held, ...]] | None = None
     needs_material: bool = True

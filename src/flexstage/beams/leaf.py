@@ -6,6 +6,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.held import Bending, Held, Plate, Torsion, held_bending, held_twist
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
@@ -92,6 +93,25 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
     return Twisting(free * (1.0 - (near + far) / whole), -free * warping * wavenumber * (near - far) / whole)
 
 
+def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]:
+    """Bending along y and twist of the leaf while its ends are held: as a plate that cannot warp there, or as its `section` has it.
+
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> bending, _ = leaf_held(Leaf("steel", length=0.1, thickness=0.0002, width=0.01, inner_modes=1), steel, np.zeros(1))
+    >>> round(float(bending.squares[0] ** 0.5 / (22.3733 * (200e9 * 0.0002**2 / 12.0 / 7750.0 / 0.1**4) ** 0.5)), 4)  # over a beam's
+    1.0133
+    """
+    section = rectangle(part.thickness, part.width, cowper_rectangle(material.poisson))
+    density, is_plate = material.density, part.section is LeafSection.PLATE
+    rigidity, shear = material.young * section.inertia_z, material.shear * section.area / section.shear
+    plate = Plate(part.width, material.poisson) if is_plate else None
+    bending = Bending(part.length, rigidity, shear, density * section.area, density * section.inertia_z, plate)
+    warped = section.area * section.area * section.area / 144.0
+    warping = material.young * warped / (1.0 - material.poisson * material.poisson) if is_plate else None
+    torsion = Torsion(part.length, material.shear * section.torsion, density * section.polar, warping, density * warped)
+    return held_bending(1, bending, part.inner_modes, places), held_twist(torsion, part.inner_modes, places)
+
+
 def _ranges(part: Leaf) -> tuple[Range, ...]:
     thin = Range("thickness over width", ratio(part.thickness, part.width), high=0.2)
     return thin, Range("length over thickness", ratio(part.length, part.thickness), low=10.0)
@@ -101,4 +121,4 @@ def _family(part: Leaf) -> str | None:
     return None if part.section is LeafSection.BEAM else "leaf"
 
 
-LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=_family)
+LEAF = PartLaw(leaf_beam, leaf_diagonal, concentration=lambda _: 1.0, ranges=_ranges, family=_family, held=leaf_held)

@@ -9,10 +9,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
-from flexstage.beams.compliance import Law, beam_of, law, law_of
+from flexstage.beams.compliance import Law, beam_of, held_modes, law, law_of
+from flexstage.beams.held import Held, join
 from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted
+from flexstage.parts.part import Elastic, Part, Restricted, inner
 
 
 def mass(part: Part, material: Material | None) -> Array:
@@ -21,7 +22,8 @@ def mass(part: Part, material: Material | None) -> Array:
     The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K: S the compliance accumulated from the first end to
     x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
     It holds the material between the arc ends and gives a rigid motion the inertia of the solid exactly. A `Given`
-    part has half its mass at each end; `Joint` and `Restricted` parts have none.
+    part has half its mass at each end; `Joint` and `Restricted` parts have none. A part with m modes of its own has (..., 12 + m, 12 + m):
+    their unit masses, and what they share with the motion of its ends.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -34,7 +36,8 @@ def mass(part: Part, material: Material | None) -> Array:
     known = law_of(part)
     if known is not None and known.mass is not None:
         return known.mass(part)
-    return consistent_mass(beam_of(part, material))
+    beam = beam_of(part, material)
+    return _with_modes(beam, consistent_mass(beam), held_modes(part, material))
 
 
 def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
@@ -47,10 +50,15 @@ def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     True
     """
     known = law_of(part)
-    if known is None or known.beam is None or known.diagonal is not None or isinstance(part, Restricted):
+    if known is None or known.beam is None or known.diagonal is not None or isinstance(part, Restricted) or _asks_for_modes(part):
         return law(part, material), mass(part, material)
     beam = beam_of(part, material)
     return Law((1.0 / beam.diagonal())[..., None] * np.eye(6)), consistent_mass(beam)
+
+
+def _asks_for_modes(part: Part) -> bool:
+    own = inner(part)
+    return isinstance(own, Elastic) and own.inner_modes > 0
 
 
 def consistent_mass(beam: Beam) -> Array:
@@ -65,14 +73,46 @@ def consistent_mass(beam: Beam) -> Array:
     >>> consistent_mass(bar)[[0, 0, 6], [0, 6, 6]].round(9).tolist()
     [2.0, 1.0, 2.0]
     """
-    weight = (beam.points.rule.weights * beam.points.rate)[..., None, :] * np.swapaxes(beam.inertia, -1, -2)
-    weight = np.concatenate([weight, weight], axis=-1)
+    weight = _weights(beam)
     blocks = [(columns, _total([_product(rows[row], weight[..., row, :]) for row in rows])) for columns, rows in _motions(beam)]
     batch = np.broadcast_shapes(*(block.shape[:-2] for _, block in blocks))
     result = np.zeros((*batch, 12, 12), dtype=np.result_type(*(block for _, block in blocks)))
     for columns, block in blocks:
         both = np.concatenate([columns, columns + 6])
         result[..., both[:, None], both] = block
+    return result
+
+
+def _weights(beam: Beam) -> Array:
+    """Inertia (..., 6, s) of what stands for each station -x and x."""
+    weight = (beam.points.rule.weights * beam.points.rate)[..., None, :] * np.swapaxes(beam.inertia, -1, -2)
+    return np.concatenate([weight, weight], axis=-1)
+
+
+def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
+    """The mass (..., 12 + m, 12 + m) of the ends and of the modes that a part has while they are held, of unit mass each."""
+    if not held:
+        return ends
+    between = join(_shared(beam, mode) for mode in held)
+    size = 12 + between.shape[-1]
+    batch = np.broadcast_shapes(ends.shape[:-2], between.shape[:-2])
+    result = np.zeros((*batch, size, size), dtype=np.result_type(ends, between))
+    result[..., :12, :12], result[..., :12, 12:], result[..., 12:, :12] = ends, between, np.swapaxes(between, -1, -2)
+    result[..., range(12, size), range(12, size)] = 1.0
+    return result
+
+
+def _shared(beam: Beam, held: Held) -> Array:
+    """Mass (..., 12, n) that modes share with the motion of the ends: integral of N^T w phi dx, phi (v, dv/dx), of the ends' motion N."""
+    weight = _weights(beam)
+    columns, rows = next((columns, rows) for columns, rows in _motions(beam) if held.axis in columns)
+    turning = int(columns[-1])
+    block = (weight[..., held.axis, None, :] * _shape(rows[held.axis])) @ np.swapaxes(held.moved, -1, -2)
+    if held.turned is not None:
+        sign = 1.0 if held.axis == 1 else -1.0  # a slope of w along z turns about -y
+        block = block + sign * (weight[..., turning, None, :] * _shape(rows[turning])) @ np.swapaxes(held.turned, -1, -2)
+    result = np.zeros((*block.shape[:-2], 12, block.shape[-1]), dtype=block.dtype)
+    result[..., np.concatenate([columns, columns + 6]), :] = block
     return result
 
 
@@ -86,10 +126,15 @@ def _total(items: list[Array]) -> Array:
 
 
 def _product(entries: list[tuple[Array, Array]], weight: Array) -> Array:
-    """Integral of N^T w N over the stations for one row of N = [X - second, second]."""
-    rows = [carry - second for carry, second in entries] + [second for _, second in entries]
-    shape = np.stack(np.broadcast_arrays(*rows), axis=-2)
+    """Integral of N^T w N over the stations for one row of N."""
+    shape = _shape(entries)
     return (weight[..., None, :] * shape) @ np.swapaxes(shape, -1, -2)
+
+
+def _shape(entries: list[tuple[Array, Array]]) -> Array:
+    """One row of N = [X - second, second] at the stations."""
+    rows = [carry - second for carry, second in entries] + [second for _, second in entries]
+    return np.stack(np.broadcast_arrays(*rows), axis=-2)
 
 
 def _motions(beam: Beam) -> Iterator[tuple[Array, _Rows]]:

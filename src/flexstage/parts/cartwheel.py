@@ -14,7 +14,7 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member, radial_leaf
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf, LeafSection
-from flexstage.parts.shape import Order
+from flexstage.parts.shape import INNER_MODES, Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,7 @@ class Cartwheel(Compound):
     hub_diameter: Annotated[Number, LENGTH, NOT_NEGATIVE] = 0.0
     hub_mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
     section: LeafSection = LeafSection.PLATE
+    inner_modes: Annotated[int, INNER_MODES] = 0
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -46,7 +47,7 @@ class Cartwheel(Compound):
         """`first_left`, `first_right`, `second_left`, `second_right` (y is left) and the `hub`."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = 0.5 * (self.hub_diameter + self.length)
-        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
 
         def spoke(side: float) -> Member:
             return radial_leaf(leaf, ("hub", SECOND), (along, side * across), centre=centre)

@@ -13,7 +13,7 @@ from flexstage.base.quantity import ANGLE, LENGTH, POSITIVE, RATIO
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member, radial_leaf
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf, LeafSection
-from flexstage.parts.shape import Order
+from flexstage.parts.shape import INNER_MODES, Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,7 @@ class CrossHinge(Compound):
     crossing: Annotated[Number, RATIO] = 0.5
     middle_width: Annotated[Number, LENGTH, POSITIVE] | None = None
     section: LeafSection = LeafSection.PLATE
+    inner_modes: Annotated[int, INNER_MODES] = 0
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -46,14 +47,14 @@ class CrossHinge(Compound):
         """`left` and `right`, which run to the left and to the right of x; of three, `left_low`, `left_high` and `right` between them."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = (0.5 - self.crossing) * self.length
-        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+        leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
 
         def member(part: Leaf, side: float, height: Number) -> Member:
             return radial_leaf(part, (FIRST, SECOND), (along, side * across), centre=centre, height=height)
 
         if self.middle_width is None:
             return Composition({"left": member(leaf, 1.0, -0.5 * self.spacing), "right": member(leaf, -1.0, 0.5 * self.spacing)})
-        middle = Leaf(self.material, self.length, self.thickness, self.middle_width, self.section)
+        middle = Leaf(self.material, self.length, self.thickness, self.middle_width, self.section, self.inner_modes)
         outer = {"left_low": member(leaf, 1.0, -self.spacing), "left_high": member(leaf, 1.0, self.spacing)}
         return Composition({**outer, "right": member(middle, -1.0, 0.0)})
 

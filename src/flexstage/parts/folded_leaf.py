@@ -12,7 +12,7 @@ from flexstage.parts.body import Block, Body
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, radial_leaf
 from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.leaf import Leaf, LeafSection
-from flexstage.parts.shape import Order
+from flexstage.parts.shape import INNER_MODES, Order
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +32,7 @@ class FoldedLeaf(Compound):
     second_length: Annotated[Number, LENGTH, POSITIVE] | None = None
     corner: Annotated[Number, LENGTH, POSITIVE] | None = None
     section: LeafSection = LeafSection.PLATE
+    inner_modes: Annotated[int, INNER_MODES] = 0
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -41,7 +42,7 @@ class FoldedLeaf(Compound):
     @property
     def composition(self) -> Composition:
         """`inner` from the first body to the `fold`, `outer` from there to the second."""
-        first = Leaf(self.material, self.length, self.thickness, self.width, self.section)
+        first = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
         second = first if self.second_length is None else replace(first, length=self.second_length)
         half = 0.0 if self.corner is None else 0.5 * self.corner
         inner = radial_leaf(first, (FIRST, "fold"), (1.0, 0.0), centre=-half - 0.5 * first.length)

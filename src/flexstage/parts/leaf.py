@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.shape import Order, Section, Shaped
+from flexstage.parts.shape import INNER_MODES, Order, Section, Shaped
 
 
 class LeafSection(Enum):
@@ -25,7 +25,7 @@ class Leaf(Shaped):
     """A leaf spring: `length` along x, `thickness` along y, `width` along z.
 
     Intended freedoms: translation along y, bending about z, twist about x. With `section` beam its law leaves plate action out, and its
-    ends are free to warp.
+    ends are free to warp. `inner_modes` is how many of its own bending modes, and of its twist, the lumped model counts.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -35,6 +35,7 @@ class Leaf(Shaped):
     thickness: Annotated[Number, LENGTH, POSITIVE]
     width: Annotated[Number, LENGTH, POSITIVE]
     section: LeafSection = LeafSection.PLATE
+    inner_modes: Annotated[int, INNER_MODES] = 0
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

@@ -17,7 +17,7 @@ import numpy as np
 from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, RATIO, Quantity
+from flexstage.base.quantity import LENGTH, RATIO, Bound, Quantity
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.profile import (
     Circular,
@@ -79,10 +79,16 @@ class Order:
     strict: bool = True
 
 
+INNER_MODES = Bound(0.0, 20.0)
+"""How many modes of its own a part may have in each freedom."""
+
+
 class Elastic(Description):
     """A part with a stiffness of its own, of a `kind` by which files know it. `parts.PARTS` lists the kinds."""
 
     kind: ClassVar[str]
+    inner_modes: int = 0
+    """Modes that it has while its ends are held, in each freedom along or about which it is meant to give way: how many count."""
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

@@ -170,4 +170,4 @@ def _mass(hinge: SolidHinge) -> float:
     """Mass of the drawn hinge [kg]: that of a unit translation of both of its ends."""
     both = np.zeros(12)
     both[[0, 6]] = 1.0
-    return float(both @ np.real(mass(hinge.form.part, hinge.form.material)) @ both)
+    return float(both @ np.real(mass(hinge.form.part, hinge.form.material))[:12, :12] @ both)

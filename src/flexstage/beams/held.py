@@ -1,0 +1,223 @@
+"""Modes of prismatic parts while both ends are held: bending across the part, and twist.
+
+Ritz's method with polynomials that vanish at both ends, as many more than modes are asked for that the lowest are right to 1e-4 or
+better. Bending is Timoshenko's: deflection w, rotation psi of the section. The section of a plate also curves the other way, by
+w(x, z) = w + kappa (z^2 - b^2/12), which its clamped ends forbid (kappa = kappa' = 0 there):
+
+    2 U = integral of D b (psi'^2 + 4 nu psi' kappa + 4 kappa^2) + D (b^5/180) kappa''^2 + 2 (1 - nu) D (b^3/3) kappa'^2
+          + S (w' - psi)^2 dx,    D = E t^3 / (12 (1 - nu^2)), S the shear stiffness.
+
+A narrow one bends with E I, a short wide one with E I / (1 - nu^2). Twist: 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0
+at ends that cannot warp.
+
+A complex step in any number passes through the modes to first order, as they are simple.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from flexstage.base.number import Array, Number
+
+_MORE = 14
+"""Polynomials a field, beside as many as modes are asked for."""
+_FIRST_LOBE = -0.9
+"""Where a mode's first lobe is positive, of half the length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """What a leaf has beside a beam: its `width` b and Poisson's ratio; a beam of rigidity E I has D b = E I / (1 - nu^2)."""
+
+    width: Number
+    poisson: Number
+
+
+@dataclass(frozen=True, eq=False)
+class Bending:
+    """A part of `length` in a plane: rigidity E I, `shear` stiffness, mass and rotary inertia per length."""
+
+    length: Number
+    rigidity: Number
+    shear: Number
+    mass: Number
+    rotary: Number
+    plate: Plate | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Torsion:
+    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: its ends may warp), inertia and rho C_w per length."""
+
+    length: Number
+    rigidity: Number
+    inertia: Number
+    warping: Number | None = None
+    warping_inertia: Number = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Modes of unit modal mass: `squares` (..., n) of their angular frequencies [1/s^2], motion and rotation of sections (..., n, s).
+
+    `axis` tells what moves: 1 and 2 along y and z, with the rotation dw/dx of the section; 3 about x, without.
+    """
+
+    axis: int
+    squares: Array
+    moved: Array
+    turned: Array | None = None
+
+
+def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
+    """The first `count` modes of a part that bends along y or z (`axis` 1, 2), at stations (s,) of its half length, from -1 to 1.
+
+    Against Euler's beam, clamped at both ends, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
+
+    >>> slender = Bending(length=1.0, rigidity=1.0, shear=1e9, mass=1.0, rotary=0.0)
+    >>> (held_bending(1, slender, 3, np.zeros(1)).squares ** 0.5).round(3).tolist()
+    [22.373, 61.673, 120.903]
+    """
+    size = count + _MORE
+    plain, clamped = _basis(size, 1), _basis(size, 2)
+    half = 0.5 * part.length
+    one, slope, mixed = plain.product(0, 0), plain.product(1, 1), plain.product(1, 0)
+    stiff = {(0, 0): (part.shear / half, slope), (0, 1): (-part.shear, mixed)}
+    heavy = {(0, 0): (part.mass * half, one), (1, 1): (part.rotary * half, one)}
+    bending = part.rigidity
+    blocks = [stiff, {(1, 1): (part.shear * half, one)}]
+    if part.plate is not None:
+        width, poisson = part.plate.width, part.plate.poisson
+        bending = part.rigidity / (1.0 - poisson * poisson)
+        square = width * width
+        own = clamped.product(0, 0)
+        blocks += [
+            {(1, 2): (2.0 * poisson * bending, plain.product(1, 0, clamped)), (2, 2): (4.0 * bending * half, own)},
+            {(2, 2): (bending * square * square / 180.0 / half**3, clamped.product(2, 2))},
+            {(2, 2): (2.0 * (1.0 - poisson) * bending * square / 3.0 / half, clamped.product(1, 1))},
+        ]
+        heavy[2, 2] = (part.mass * square * square / 180.0 * half, own)
+    blocks.append({(1, 1): (bending / half, slope)})
+    fields = 2 if part.plate is None else 3
+    squares, vectors = _modes(_matrix(blocks, fields, size), _matrix([heavy], fields, size), count)
+    deflection, rotation = (_transpose(vectors[..., field * size : (field + 1) * size, :]) @ plain.at(stations) for field in (0, 1))
+    return _signed(axis, squares, deflection, rotation, _transpose(vectors[..., :size, :]) @ plain.at(np.array([_FIRST_LOBE])))
+
+
+def held_twist(part: Torsion, count: int, stations: Array) -> Held:
+    """The first `count` modes of a part that twists, at stations (s,) of its half length, from -1 to 1.
+
+    >>> rod = Torsion(length=1.0, rigidity=1.0, inertia=1.0)
+    >>> (held_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()
+    [1.0, 2.0, 3.0]
+    """
+    size = count + _MORE
+    basis = _basis(size, 1 if part.warping is None else 2)
+    half = 0.5 * part.length
+    slope = basis.product(1, 1)
+    stiff, heavy = [{(0, 0): (part.rigidity / half, slope)}], [{(0, 0): (part.inertia * half, basis.product(0, 0))}]
+    if part.warping is not None:
+        stiff.append({(0, 0): (part.warping / half**3, basis.product(2, 2))})
+        heavy.append({(0, 0): (part.warping_inertia / half, slope)})
+    squares, vectors = _modes(_matrix(stiff, 1, size), _matrix(heavy, 1, size), count)
+    first, moved = (_transpose(vectors) @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
+    return _signed(3, squares, moved, None, first)
+
+
+def join(arrays: Iterable[Array]) -> Array:
+    """Arrays one after another along their last axis, the others broadcast.
+
+    >>> join([np.ones((2, 1)), np.zeros(2)]).tolist()
+    [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    """
+    found = tuple(arrays)
+    batch = np.broadcast_shapes(*(each.shape[:-1] for each in found))
+    return np.concatenate([np.broadcast_to(each, (*batch, each.shape[-1])) for each in found], axis=-1)
+
+
+def _signed(axis: int, squares: Array, moved: Array, turned: Array | None, first: Array) -> Held:
+    sign = np.where(np.real(first) < 0.0, -1.0, 1.0)
+    return Held(axis, squares, sign * moved, None if turned is None else sign * turned)
+
+
+@dataclass(frozen=True, eq=False)
+class _Basis:
+    """Polynomials (series, number) in Legendre's on [-1, 1], and their derivatives."""
+
+    series: tuple[Array, ...]
+
+    def at(self, places: Array, order: int = 0) -> Array:
+        """Values (n, s) of a derivative."""
+        return legendre.legval(places, self.series[order], tensor=True)
+
+    def product(self, order: int, other_order: int, other: _Basis | None = None) -> Array:
+        """Integrals (n, n) of the product of derivatives."""
+        places, weights = _gauss(len(self.series[0]) + 4)
+        return (self.at(places, order) * weights) @ (other or self).at(places, other_order).T
+
+
+@functools.cache
+def _basis(size: int, folds: int) -> _Basis:
+    """Integrals of Legendre polynomials, `folds` times, that vanish at both ends with all derivatives below."""
+    series = np.eye(size, k=0)
+    series = np.vstack([np.zeros((folds, size)), series])
+    for _ in range(folds):
+        series = legendre.legint(series, lbnd=-1.0, axis=0)
+    return _Basis(tuple(legendre.legder(series, order, axis=0) if order else series for order in range(3)))
+
+
+@functools.cache
+def _gauss(count: int) -> tuple[Array, Array]:
+    return legendre.leggauss(count)
+
+
+def _matrix(blocks: list[dict[tuple[int, int], tuple[Number, Array]]], fields: int, size: int) -> Array:
+    """The symmetric matrix of blocks (field, field), each a number (...) times a matrix; several of one place add up."""
+    entries = [(place, np.asarray(number)[..., None, None] * matrix) for block in blocks for place, (number, matrix) in block.items()]
+    batch = np.broadcast_shapes(*(matrix.shape[:-2] for _, matrix in entries))
+    result = np.zeros((*batch, fields * size, fields * size), dtype=np.result_type(*(matrix for _, matrix in entries)))
+    for (row, column), matrix in entries:
+        rows, columns = slice(row * size, (row + 1) * size), slice(column * size, (column + 1) * size)
+        result[..., rows, columns] += matrix
+        if row != column:
+            result[..., columns, rows] += _transpose(matrix)
+    return result
+
+
+def _modes(stiffness: Array, inertia: Array, count: int) -> tuple[Array, Array]:
+    """The lowest eigenvalues (..., n) and vectors (..., N, n) of unit modal mass; imaginary parts to first order."""
+    scale = 1.0 / np.sqrt(np.real(np.diagonal(stiffness, axis1=-2, axis2=-1)))
+    stiff, heavy = (matrix * scale[..., None] * scale[..., None, :] for matrix in np.broadcast_arrays(stiffness, inertia))
+    lower = np.linalg.cholesky(np.real(stiff))
+    inner = np.linalg.solve(lower, _transpose(np.linalg.solve(lower, np.real(heavy))))
+    values, vectors = np.linalg.eigh(0.5 * (inner + _transpose(inner)))
+    values = values[..., : -count - 1 : -1]
+    vectors = np.linalg.solve(_transpose(lower), vectors[..., ::-1][..., :count])
+    if np.iscomplexobj(stiff) or np.iscomplexobj(heavy):
+        values, vectors = _stepped(stiff, heavy, values, vectors)
+    return 1.0 / values, scale[..., None] * vectors / np.sqrt(values)[..., None, :]
+
+
+def _stepped(stiff: Array, heavy: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
+    """M v = mu K v with v^T K v = 1, with the imaginary parts that those of K and M make: by the bordered system of each simple mode."""
+    steps, turns = [], []
+    for number in range(values.shape[-1]):
+        value, vector = values[..., number, None, None], vectors[..., number : number + 1]
+        row = _transpose(vector)
+        lag = np.imag(heavy) - value * np.imag(stiff)
+        step = row @ lag @ vector
+        border = np.real(stiff) @ vector
+        system = np.block([[np.real(heavy) / value - np.real(stiff), border], [_transpose(border), np.zeros_like(value)]])
+        right = np.concatenate([-(lag @ vector) / value + step / value * border, -0.5 * row @ np.imag(stiff) @ vector], axis=-2)
+        turns.append(np.linalg.solve(system, right)[..., :-1, 0])
+        steps.append(step[..., 0, 0])
+    return values + 1j * np.stack(steps, axis=-1), vectors + 1j * np.stack(turns, axis=-1)
+
+
+def _transpose(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
