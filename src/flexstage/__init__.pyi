@@ -32,6 +32,12 @@ from flexstage.analysis.sensitivities import (
 from flexstage.analysis.statics import (
     statics as statics,
 )
+from flexstage.analysis.inner_stage import (
+    amplified as amplified,
+)
+from flexstage.analysis.workspace.reach import (
+    reach as reach,
+)
 from flexstage.analysis.workspace.workspace import (
     workspace as workspace,
 )
@@ -169,6 +175,21 @@ from flexstage.parts.notch import (
 )
 from flexstage.parts.piezo import (
     Piezo as Piezo,
+)
+from flexstage.parts.shear_piezo import (
+    ShearPiezo as ShearPiezo,
+)
+from flexstage.parts.voice_coil import (
+    CoilSide as CoilSide,
+    Supply as Supply,
+    VoiceCoil as VoiceCoil,
+)
+from flexstage.parts.amplified import (
+    Amplified as Amplified,
+    SteppingDrive as SteppingDrive,
+)
+from flexstage.parts.force_actuator import (
+    ForceActuator as ForceActuator,
 )
 from flexstage.parts.profile import (
     Circular as Circular,

@@ -28,7 +28,7 @@ from flexstage.parts.encoder import Encoder
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
-from flexstage.parts.voice_coil import Drive, VoiceCoil
+from flexstage.parts.voice_coil import Supply, VoiceCoil
 
 COIL = VoiceCoil(
     force_constant=12.0, peak_current=5.0, continuous_current=2.0, voltage=24.0, resistance=3.0, inductance=1.5e-3, mass=0.1, damping=0.5
@@ -117,7 +117,7 @@ def test_a_current_amplifier_clips_at_the_peak_and_rises_by_the_volts_that_are_l
     assert (found.low, found.high, found.noise_density) == (-5.0, 5.0, 3e-6)
     assert found.slew == pytest.approx((24.0 - 0.5 * 3.0 * 5.0) / 1.5e-3)
     assert found.step == pytest.approx(10.0 / 2**12)
-    slow = stage(motor=replace(COIL, drive=Drive.VOLTAGE, resistance=6.0))
+    slow = stage(motor=replace(COIL, drive=Supply.VOLTAGE, resistance=6.0))
     voltage = hardware(slow).amplifiers["motor"]
     assert (voltage.high, voltage.bandwidth) == (pytest.approx(4.0), pytest.approx(6.0 / (2.0 * np.pi * 1.5e-3)))
     assert [limit.name for limit in COIL.limits if isinstance(limit, ForceLimit) and not limit.clips] == ["continuous current"]

@@ -25,7 +25,7 @@ from flexstage.models.finite import forward_kinematics
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.lumped import lumped
-from flexstage.parts.amplified import Amplified, Stepper
+from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.freedom import ALL
 from flexstage.parts.shear_piezo import ShearPiezo
@@ -36,7 +36,7 @@ from tests.laws.test_mechanisms import METRE, TWIST, WRENCH, near, rounding
 FEW = settings(max_examples=15)
 SHEAR = ShearPiezo(stroke=3e-6, stiffness=2e8, axial_stiffness=6e8, length=10 * mm, width=10 * mm, depth=10 * mm, mass=0.01)
 STIFF = (2e7, 1e7, 1e7, 3e3, 2e3, 2e3)
-STEPS = Stepper(travel=1e-3, resolution=1e-8, diagonal=STIFF, holding_force=5.0, mass=0.05)
+STEPS = SteppingDrive(travel=1e-3, resolution=1e-8, diagonal=STIFF, holding_force=5.0, mass=0.05)
 
 
 @st.composite

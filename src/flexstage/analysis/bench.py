@@ -17,7 +17,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
-from flexstage.analysis.workspace.reach import Reach, input_limits, reach
+from flexstage.analysis.workspace.reach import ForceReach, input_limits, reach
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
 from flexstage.base.finding import refuse
@@ -40,9 +40,9 @@ class Bench:
         self.mechanism = mechanism
         self.command = command
         self._corrections: dict[str, Matrix] = {}
-        self._reaches: dict[str, Reach] = {}
+        self._reaches: dict[str, ForceReach] = {}
 
-    def reach(self, point: str) -> Reach:
+    def reach(self, point: str) -> ForceReach:
         """How far forces move a point, and what limits it."""
         if point not in self._reaches:
             self._reaches[point] = reach(self.mechanism, self.kinematics, self.model, point=point)

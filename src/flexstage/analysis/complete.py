@@ -22,7 +22,7 @@ from flexstage.analysis.standing import require_standing, standing
 from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.units import UnitResult, units
 from flexstage.analysis.workspace.buckling import Buckling, buckling
-from flexstage.analysis.workspace.reach import Reach
+from flexstage.analysis.workspace.reach import ForceReach
 from flexstage.analysis.workspace.reach import reach as reach_of
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
@@ -70,7 +70,7 @@ class Analysis:
     units: Mapping[str, UnitResult] | None
     verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
-    reach: Reach | None = None
+    reach: ForceReach | None = None
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:

@@ -14,7 +14,7 @@ from flexstage.beams.rod import ROD
 from flexstage.beams.shear_piezo import SHEAR_PIEZO
 from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
-from flexstage.parts.amplified import Amplified, Stepper
+from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -28,7 +28,7 @@ from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
-_STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, Stepper: STEPPER}
+_STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""

@@ -7,7 +7,7 @@ import numpy as np
 from flexstage.base.number import Array, Number
 from flexstage.beams.force_actuator import point_masses
 from flexstage.beams.law import PartLaw
-from flexstage.parts.voice_coil import Side, VoiceCoil
+from flexstage.parts.voice_coil import CoilSide, VoiceCoil
 
 _AXIAL: Array = np.diag(np.eye(6)[0])
 
@@ -19,7 +19,7 @@ def _axial(value: Number) -> Array:
 
 def _mass(part: VoiceCoil) -> Array:
     sides = (part.mass, part.magnet_mass)
-    return point_masses(*(sides if part.coil is Side.FIRST else sides[::-1]))
+    return point_masses(*(sides if part.coil is CoilSide.FIRST else sides[::-1]))
 
 
 VOICE_COIL = PartLaw(

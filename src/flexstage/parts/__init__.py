@@ -1,7 +1,7 @@
 """What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
 
 from flexstage.base.register import Register
-from flexstage.parts.amplified import Amplified, Stepper
+from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.encoder import Encoder
@@ -25,7 +25,7 @@ from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
-_ACTUATORS = (Piezo, ShearPiezo, Amplified, Stepper, ForceActuator, VoiceCoil)
+_ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )

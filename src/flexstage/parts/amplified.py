@@ -135,7 +135,7 @@ class Amplified(BetweenFaces, ChargedActuator):
 
 
 @dataclass(frozen=True, eq=False)
-class Stepper(BetweenFaces):
+class SteppingDrive(BetweenFaces):
     """A drive that moves in steps and holds at rest without power: inertia drive, inchworm, screw.
 
     Its stroke is its whole `travel` along x, half of it to either side, in steps of `resolution`. One of `diagonal` (x, y, z, rx, ry, rz),

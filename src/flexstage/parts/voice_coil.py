@@ -43,7 +43,7 @@ class Supply(Enum):
     VOLTAGE = "voltage"
 
 
-class Side(Enum):
+class CoilSide(Enum):
     """One of the two bodies that a link joins, in the order of its `joins`."""
 
     FIRST = "first"
@@ -76,7 +76,7 @@ class VoiceCoil(ThrustActuator):
     inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
-    coil: Side = Side.SECOND
+    coil: CoilSide = CoilSide.SECOND
     drive: Supply = Supply.CURRENT
     stiffness: Annotated[Number, STIFFNESS] = 0.0
     damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
@@ -120,10 +120,10 @@ class VoiceCoil(ThrustActuator):
     def cutoff(self) -> Number | None:
         """R / (2 pi L) of a voltage drive [Hz]; a current drive makes up for it.
 
-        >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Drive.VOLTAGE).cutoff, 1)
+        >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Supply.VOLTAGE).cutoff, 1)
         954.9
         """
-        if self.drive is Drive.CURRENT or self.resistance is None or self.inductance is None:
+        if self.drive is Supply.CURRENT or self.resistance is None or self.inductance is None:
             return None
         return self.resistance / (2.0 * np.pi * self.inductance)
 

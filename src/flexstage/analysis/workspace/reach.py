@@ -18,6 +18,7 @@ from flexstage.base.number import Array, Number, first_design, magnitude
 from flexstage.base.record import VIEW
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, static_gain
@@ -31,7 +32,7 @@ _LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" 
 
 
 @dataclass(frozen=True, eq=False)
-class Reach(InNotebook):
+class ForceReach(InNotebook):
     """How far a point goes along single coordinates, either way, by the elastic model; coordinates alone where the inputs allow it.
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
@@ -74,7 +75,8 @@ def _least(bounds: Array) -> Array:
     return np.where(np.isinf(least), np.nan, least)
 
 
-def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> Reach:
+@takes_models
+def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceReach:
     """Limit over compliance along every ideal motion, of stages with force actuators.
 
     C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
@@ -93,7 +95,7 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
     bounds = {brief: _bounds(names, [*_by_input(inputs, known, per_motion), *others], units) for brief, known in limits.items()}
     channels = tuple(channel.unit for channel in model.inputs if channel.name in inputs)
-    return Reach(
+    return ForceReach(
         point=point,
         coordinates=names,
         alone=alone,
@@ -261,7 +263,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
     return StrokeLimits(inputs, *(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (low, high)))
 
 
-def bounds_along(found: Reach, name: str) -> Array:
+def bounds_along(found: ForceReach, name: str) -> Array:
     """The bounds (..., k) of the motion along one coordinate, infinite where a limit is not stated; refused where none is."""
     if name not in found.coordinates:
         raise refuse(f"stroke.{name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(found.coordinates)}")
