@@ -20,11 +20,14 @@ def sections() -> list[Section]:
     return [_pivot(), _bridge()]
 
 
-def cross_axis_pivot(crossing: float, angle: float = 45 * fs.deg) -> float:
-    """Rotational stiffness in units of E I/L of two leaves that cross at `crossing` of their length, each `angle` off the symmetry axis."""
-    length, width = 1.0, 1e-3
+def cross_axis_pivot(crossing: float, angle: float = 45 * fs.deg, width: float = 1e-3, poisson: float = 0.0) -> float:
+    """Rotational stiffness in units of E I/L of two leaves that cross at `crossing` of their length, each `angle` off the symmetry axis.
+
+    They are beams without plate action.
+    """
+    length = 1.0
     thickness = _SLENDER * length
-    leaf = fs.Leaf("soft", length, thickness, width)
+    leaf = fs.Leaf("soft", length, thickness, width, fs.LeafSection.BEAM)
     directions = {"left": (math.cos(angle), math.sin(angle), 0.0), "right": (math.cos(angle), -math.sin(angle), 0.0)}
     arm = (0.5 - crossing) * length
     links = {
@@ -33,7 +36,7 @@ def cross_axis_pivot(crossing: float, angle: float = 45 * fs.deg) -> float:
     }
     pivot = fs.Mechanism(
         "pivot",
-        materials={"soft": fs.Material(young=1e12, poisson=0.0, density=1.0)},
+        materials={"soft": fs.Material(young=1e12, poisson=poisson, density=1.0)},
         parts={"leaf": leaf},
         bodies={"platform": fs.Body(mass=1.0, reference=(0.0, 0.0, 0.0))},
         links=links,
@@ -45,11 +48,14 @@ def cross_axis_pivot(crossing: float, angle: float = 45 * fs.deg) -> float:
 def _pivot() -> Section:
     closed = {part: f"{8.0 * (3.0 * part * part - 3.0 * part + 1.0):.6g}" for part in (0.0, 0.12732, 0.25, 0.5, 1.0)}
     rows = tuple(
-        Row(f"crossing at {part}", "Wittrick 1951", value, cross_axis_pivot(part), "EI/L", relative(1e-6)) for part, value in closed.items()
+        Row(f"crossing at {part}{what}", "Wittrick 1951", value, cross_axis_pivot(part, **sizes), "EI/L", relative(1e-6))
+        for part, value in closed.items()
+        for what, sizes in (("", {}), (", b = L, nu = 0.3", {"width": 1.0, "poisson": 0.3}))
     )
     text = (
         "Rotational stiffness of a cross-axis pivot without load, K = 8 (EI/L)(3 lambda^2 - 3 lambda + 1), from two leaves and the "
-        "lumped model (t/L = 1e-4, nu = 0). The load term and the shift of the centre are nonlinear: no model here knows them."
+        'lumped model (t/L = 1e-4, section = "beam": as plates wide leaves are stiffer). The load term and the shift of the centre are '
+        "nonlinear: no model here knows them."
     )
     return Section("Cross-axis pivot", text, rows)
 

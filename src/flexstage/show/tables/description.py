@@ -62,7 +62,7 @@ def kind_name(part: Part) -> str:
     'joint'
     """
     inner = part.part if isinstance(part, Restricted) else part
-    return type(inner).__name__.lower() if inner is part else f"restricted {type(inner).__name__.lower()}"
+    return inner.kind if inner is part else f"restricted {inner.kind}"
 
 
 def link_table(mechanism: Mechanism) -> Table:

@@ -178,7 +178,20 @@ def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list
     held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
     # A wall of a block around the end of a hinge has its centre on the hinge.
     whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]
-    return [size for size, centred, all_of_it in zip(sizes, held, whole, strict=True) if centred and all_of_it]
+    return [
+        size * _thicker(piece, centre)
+        for piece, size, centred, all_of_it in zip(pieces, sizes, held, whole, strict=True)
+        if centred and all_of_it
+    ]
+
+
+def _thicker(piece: Piece, centre: Array) -> float:
+    """How many times thicker than at its throat a leaf in pieces is at a point (1, 3) [m]; 1 for all that is thick over a length no more."""
+    if not isinstance(piece.form, Shaped) or piece.form.is_prismatic or not piece.form.slender:
+        return 1.0
+    stations, sections = zip(*piece.form.silhouette, strict=True)
+    place = float(((centre - piece.frame.position) @ piece.frame.rotation)[0, 0])
+    return float(np.interp(place, stations, [min(section.height, section.width) for section in sections])) / thinnest(piece.form)
 
 
 def _size(piece: Piece, fineness: Fineness) -> float:

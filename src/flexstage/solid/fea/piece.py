@@ -107,9 +107,7 @@ def form_of(link: PlacedLink | PlacedSuperelement) -> Form | Finding:
         )
     if isinstance(part, Shaped):
         return part
-    return Finding(
-        link.name, f"a part of kind {type(part).__name__.lower()} has no shape", "Give it a form that can be drawn, or join rigid bodies"
-    )
+    return Finding(link.name, f"a part of kind {part.kind} has no shape", "Give it a form that can be drawn, or join rigid bodies")
 
 
 def form_digest(form: Form) -> str:
