@@ -186,7 +186,7 @@ def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list
 
 
 def _thicker(piece: Piece, centre: Array) -> float:
-    """How many times thicker than at its throat a leaf in pieces is at a point (1, 3) [m]; 1 for all that is thick over a length no more."""
+    """How many times thicker than at its throat a leaf in pieces is at a point (1, 3) [m]; 1 for what is thick at its ends alone."""
     if not isinstance(piece.form, Shaped) or piece.form.is_prismatic or not piece.form.slender:
         return 1.0
     stations, sections = zip(*piece.form.silhouette, strict=True)
