@@ -10,7 +10,10 @@ import scipy
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flexstage.analysis.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
+from flexstage.beams.compliance import law
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Unit
 from flexstage.mechanism.pattern import Normal, Pose
@@ -27,7 +30,7 @@ from flexstage.parts.condensation import condense, superelement
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.superelement import FileUnits, MatrixNames, Port, Superelement
 from flexstage.show.scene.stage import scene
-from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, mirror, rigid_inertia, spatial_rotation, twist_transform
+from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, mirror, rigid_inertia, spatial_rotation, transport, twist_transform
 from tests.conftest import examples
 
 NAMES = ("left", "right", "top", "arm", "foot")
@@ -241,6 +244,27 @@ def test_it_is_rigid_to_the_ideal_model_or_free_as_its_link_states(folder):
     assert ideal(replace(two, links={"frame": hinge})).mobility == 1
     told = check(replace(three, links={"frame": replace(three.links["frame"], free=(Freedom.RZ,))}))
     assert "3 ports" in str(told[0])
+
+
+def test_a_hinge_by_its_matrices_loses_what_the_drawn_one_loses(tmp_path):
+    """A leaf as a superelement between its ends: lost motion and its budget are those of the leaf, as its link states its freedoms."""
+    drawn = parallelogram()
+    leaf, half = drawn.parts["leaf"], 0.5 * drawn.parts["leaf"].length
+    ends = np.hstack([-transport(np.array([half, 0.0, 0.0])), transport(np.array([-half, 0.0, 0.0]))])
+    stiffness = ends.T @ law(leaf, drawn.materials[leaf.material]).stiffness @ ends
+    ports = {"near": Port(1, at=(-half, 0.0, 0.0)), "far": Port(7, at=(half, 0.0, 0.0))}
+    part = part_of(Elastic(stiffness, np.zeros((12, 12)), ports), tmp_path)
+    left = drawn.links["left"]
+    joins = dict(zip(("near", "far"), left.joins, strict=True))
+    made = replace(
+        drawn,
+        parts={**drawn.parts, "known": part},
+        links={**drawn.links, "left": replace(left, joins=joins, part="known", free=leaf.intended)},
+    )
+    wanted, found = (lost_motion(ideal(each), lumped(each)) for each in (drawn, made))
+    close(found.loss.values, wanted.loss.values, 1e-6)
+    close(sum(each.values for each in found.budget.values()), found.loss.values, 1e-6)
+    close(found.gain.values, wanted.gain.values)
 
 
 def test_pictures_show_it_between_its_ports_and_bend_it_with_their_bodies(folder):

@@ -17,6 +17,7 @@ from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, part_deformation, static_gain
+from flexstage.parts.freedom import ALL
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -146,7 +147,7 @@ def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[st
         if link in kinematics.strains:
             force = model.stiffness[link].law @ strain
             ideal = kinematics.strains[link] @ inverse
-            shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free[link]}
+            shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free.get(link, ALL)}
     if kinematics.mobility < len(names):
         shares[INTERNAL] = _internal(kinematics, model, sense, strains)
     return {name: Matrix(share, names, names, "1") for name, share in shares.items()}

@@ -9,7 +9,7 @@ virtual work.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design
 from flexstage.beams.compliance import law
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.incidence import Layout, deformation, free_deformations, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.blockage import Blockage, blockage
@@ -45,6 +45,7 @@ class _Graph:
     names: tuple[str, ...]
     scale: Array
     length: float
+    elements: Mapping[str, PlacedSuperelement]
 
 
 def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
@@ -89,7 +90,7 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         motion=bodies[..., :6, :],
         body_coordinates=graph.order.coordinates,
         bodies=bodies,
-        strains=dict(zip(graph.assembly.links, _by_link(graph.strain @ bodies), strict=True)),
+        strains=dict(zip(graph.assembly.links, _by_link(graph.strain @ bodies), strict=True)) | _element_strains(graph, bodies),
         free={name: free_freedoms(link) for name, link in graph.assembly.links.items()},
         idle=_idle(graph, idle[:size]),
         redundant=_redundant(graph),
@@ -100,6 +101,21 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         thrust=_thrust(graph, sensed),
     )
     return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
+
+
+def _hinges(graph: _Graph) -> dict[str, PlacedSuperelement]:
+    """The superelements whose links state freedoms."""
+    return {name: item for name, item in graph.elements.items() if item.link.free}
+
+
+def _element_strains(graph: _Graph, bodies: Array) -> dict[str, Array]:
+    """The twists (..., 6, f) of their second ports against the bodies of the first ones, where elastic models take their stiffness."""
+    found: dict[str, Array] = {}
+    for name, item in _hinges(graph).items():
+        first, second = item.ports.values()
+        ends = [twist_at(graph.assembly, graph.order, port.body, second.frame) for port in (first, second)]
+        found[name] = (ends[1] - ends[0]) @ bodies
+    return found
 
 
 def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
@@ -129,7 +145,8 @@ def _comparable(graph: _Graph) -> Array:
 
 
 def _graph(mechanism: Mechanism) -> _Graph:
-    assembly = expand(mechanism).welded
+    whole = expand(mechanism)
+    assembly = whole.welded
     require_room(assembly, _MATRICES)
     order = layout(assembly)
     operators = [deformation(assembly, order, link) for link in assembly.links.values()]
@@ -140,7 +157,7 @@ def _graph(mechanism: Mechanism) -> _Graph:
     length = _length(assembly)
     scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.strokes))])
     constraints, names = _constraints(assembly, strain)
-    return _Graph(assembly, order, strain, constraints, names, scale, length)
+    return _Graph(assembly, order, strain, constraints, names, scale, length, whole.superelements)
 
 
 def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
@@ -230,6 +247,10 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
     strained = np.max(np.abs(_by_link(np.real(first_design(graph.strain, 2)) @ idle)), axis=(1, 2)) > _NEGLIGIBLE
     for number, (name, link) in enumerate(graph.assembly.links.items()):
         if strained[number]:
+            element = next((each for each, item in _hinges(graph).items() if name in {weld.name for weld in item.welds()}), None)
+            if element is not None:
+                what = f"it sees an idle motion in the freedoms that {element} states, and this model does not know its stiffness"
+                raise refuse(", ".join(watching), what, "Move the gauge to the platform, or leave the freedoms out")
             try:
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:

@@ -103,7 +103,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
         peak=peak,
         yield_stress=known,
         strokes=np.stack(np.broadcast_arrays(*(row[3] for row in rows)), axis=-2),
-        unchecked=tuple(name for name in assembly.links if name not in sized),
+        unchecked=tuple(name for name in (*assembly.links, *assembly.superelements) if name not in sized),
         provenance=model.provenance,
     )
 
