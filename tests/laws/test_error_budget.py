@@ -158,3 +158,17 @@ def test_evidence_may_be_given_piece_by_piece():
     )
     found = error_budget(evidence, command, temperature=1.0)
     np.testing.assert_allclose(found.ideal.values, budget(stage, command, temperature=1.0).ideal.values, rtol=1e-9, atol=1e-18)
+
+
+def test_what_states_no_expansion_leaves_drift_out_with_its_reason():
+    """Where no temperature is asked for; all other columns stand as they are. Asked for, it is refused as before."""
+    stage = case("double-triangle")
+    cold = replace(stage, materials={name: replace(material, expansion=None) for name, material in stage.materials.items()})
+    whole, left = (budget(each, {"z": 10e-6}, temperature=None) for each in (stage, cold))
+    np.testing.assert_array_equal(left.ideal.values[:, :-1], whole.ideal.values[:, :-1])
+    assert np.all(np.isnan(left.ideal.part(left.ideal.rows, ("drift",)).values))
+    assert "drift" in left.missing
+    assert "materials.steel states no thermal expansion" in left.reasons["drift"]
+    assert float(whole.temperature) == 1.0
+    with pytest.raises(fs.DesignError, match="states no thermal expansion"):
+        budget(cold, {"z": 10e-6}, temperature=0.1)

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget, Evidence, command_strokes, error_budget
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
-from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.number import Number
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.finite import design_shape
 from flexstage.models.ideal import ideal
+from flexstage.models.linear.model import LinearModel
 
 
 def budget(
@@ -23,13 +26,15 @@ def budget(
     command: Mapping[str, Number],
     *,
     at: str = PLATFORM,
-    temperature: Number = 0.0,
+    temperature: Number | None = 0.0,
     drifted: Drift | None = None,
     coverage: float = 3.0,
 ) -> ErrorBudget:
     """Error budget at a point of the platform over a box of commands (half widths by coordinate [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes held) by the lumped model. `drifted` absent: the ground as the description has it (`ground_of`).
+    Lost motion and drift (strokes held) by the lumped model. `drifted` absent: the ground as the description has it (`ground_of`). No
+    change of temperature (0, or `None`: 1 K where drift is known) asks for no drift: what states no expansion then leaves it out, and
+    `reasons` say so.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)
@@ -43,15 +48,27 @@ def budget(
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
     kinematics, model = ideal(mechanism), standing(mechanism)
-    warmed = drift(mechanism, model) if drifted is None else drifted
+    warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
     corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
     evidence = Evidence(
         kinematics=kinematics,
         lost_motion=lost_motion(kinematics, model),
         map_error=map_error_at(mechanism, kinematics, corners),
         resolution=pose_resolution(mechanism, kinematics),
-        drift=warmed.of(at),
+        drift=None if warmed is None else warmed.of(at),
         arm=point - assembly.bodies[PLATFORM].reference,
-        ground=warmed.ground,
+        ground=None if warmed is None else warmed.ground,
+        reasons=reasons,
     )
-    return error_budget(evidence, command, temperature=temperature, coverage=coverage)
+    usual = 0.0 if warmed is None else 1.0
+    return error_budget(evidence, command, temperature=usual if temperature is None else temperature, coverage=coverage)
+
+
+def _drift(mechanism: Mechanism, model: LinearModel, *, asked: bool) -> tuple[Drift | None, dict[str, str]]:
+    """Drift, or why it is not known where no temperature asks for it."""
+    try:
+        return drift(mechanism, model), {}
+    except DesignError as error:
+        if asked:
+            raise
+        return None, {"drift": "; ".join(f"{finding.where} {finding.what}" for finding in error.findings)}

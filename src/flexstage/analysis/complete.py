@@ -40,7 +40,6 @@ __all__ = ["Analysis", "Model", "analyse", "platform_modes", "read", "required_c
 
 _RIGID = "the ideal model has no elasticity"
 _UNLUMPED = "this needs the lumped model"
-_DRIFTLESS = "the error budget needs the drift"
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +124,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         transmissibility=attempt.of_ground("transmissibility", linear, _RIGID, transmissibility),
         workspace=reach,
         drift=drifted,
-        error_budget=attempt.of_ground("error_budget", drifted, _DRIFTLESS, lambda known: _errors(mechanism, command, reach, known)),
+        error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
         verdicts=verdicts,
         reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
@@ -138,9 +137,9 @@ def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None)
     return buckling(mechanism, model, stroke_limits(mechanism).from_zero) if known is None else known
 
 
-def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift) -> ErrorBudget:
+def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Workspace | None, drifted: Drift | None) -> ErrorBudget:
     asked = command if command is not None or reach is None else reach.command
-    return budget(mechanism, asked or {}, temperature=1.0, drifted=drifted)
+    return budget(mechanism, asked or {}, temperature=None, drifted=drifted)
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:

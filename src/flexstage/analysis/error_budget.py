@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -29,16 +29,18 @@ class Evidence:
     """The results an error budget is drawn from.
 
     `map_error` holds the corners of the command (see `command_strokes`); `drift` (6 x fields) is the motion of the point of interest per
-    field, of `Drift.of` (strokes held) or `held_by_gauges`; `arm` (..., 3) [m] leads from the platform's reference to that point.
+    field, of `Drift.of` (strokes held) or `held_by_gauges` (`None`: not known, as `reasons` say by source); `arm` (..., 3) [m] leads from
+    the platform's reference to that point.
     """
 
     kinematics: Kinematics
     lost_motion: LostMotion
     map_error: MapError
     resolution: PoseResolution
-    drift: Matrix
+    drift: Matrix | None
     arm: Array
     ground: Ground | None = None
+    reasons: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +48,7 @@ class ErrorBudget(InNotebook):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
     `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift
-    took it to be of; `coverage` how many standard deviations of gauge noise count.
+    took it to be of; `coverage` how many standard deviations of gauge noise count. `reasons` say why a source is not known.
     """
 
     ideal: Matrix
@@ -57,6 +59,7 @@ class ErrorBudget(InNotebook):
     provenance: str
     ground: Ground | None = None
     coverage: float = 3.0
+    reasons: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:
@@ -89,7 +92,7 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     loss, cross, left = _command_errors(evidence, columns, carry)
     bent = np.max(np.abs((carry @ evidence.map_error.errors[..., None])[..., 0]), axis=0)
     noise, step = coverage * _random(evidence.resolution, carry), _resolution_errors(evidence.resolution, carry)
-    warmed = np.abs(evidence.drift.values[..., :, 0]) * np.abs(temperature)
+    warmed = np.full(6, np.nan) if evidence.drift is None else np.abs(evidence.drift.values[..., :, 0]) * np.abs(temperature)
     common = (bent, noise, step, warmed)
     rows = {
         False: (_largest(loss, half), _largest(cross, half), *common),
@@ -98,7 +101,9 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     found = {key: _table(values) for key, values in rows.items()}
     missing = tuple(name for index, name in enumerate(SOURCES) if np.any(np.isnan(found[False].values[..., index])))
     provenance = f"{evidence.lost_motion.provenance}; {evidence.map_error.provenance}"
-    return ErrorBudget(found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground, coverage)
+    return ErrorBudget(
+        found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground, coverage, evidence.reasons
+    )
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:

@@ -145,7 +145,9 @@ def budget(
     design: Design,
     *,
     command: Commands = None,
-    temperature: Annotated[str, typer.Option(metavar="VALUE", help="Uniform change of temperature.")] = "1 K",
+    temperature: Annotated[
+        str | None, text_option("--temperature", "VALUE", "Uniform change of temperature. Default: 1 K, where drift is known.")
+    ] = None,
     at: Annotated[str, typer.Option(metavar="POINT", help="Point of the platform: platform, or a named point.")] = "platform",
     changes: Changes = None,
     json: Json = None,
@@ -158,5 +160,6 @@ def budget(
     mechanism = open_design(design, changes, [("--json", json)])
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
-    found = budgeting.budget(mechanism, asked, at=at, temperature=parse(temperature, TEMPERATURE, where="--temperature"))
+    warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
+    found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
     answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json, csv=csv)

@@ -79,11 +79,14 @@ def _budget_table(title: str, matrix: Matrix, sums: np.ndarray, budget: ErrorBud
     ]
     heads = ["along", *(Column(name) for name in matrix.columns), Column("linear sum"), Column("root sum square")]
     warm = number(float(np.real(np.ravel(budget.temperature)[0])))
-    notes = [f"Largest errors over {command_text(budget.command)}, all at once, and {warm} K of uniform temperature change."]
+    warmed = "" if "drift" in budget.reasons else f", and {warm} K of uniform temperature change"
+    notes = [f"Largest errors over {command_text(budget.command)}, all at once{warmed}."]
     if not np.all(np.isnan(first_design(matrix.values, 2)[:, matrix.columns.index("gauge noise")])):
         notes += [f"Gauge noise: {budget.coverage:g} standard deviations. Quantisation: half a step of every gauge, signs at their worst."]
     notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
-    notes += [f"Not stated, so not counted: {', '.join(budget.missing)}."] if budget.missing else []
+    missing = [name for name in budget.missing if name not in budget.reasons]
+    notes += [f"Not stated, so not counted: {', '.join(missing)}."] if missing else []
+    notes += [f"Not known, so not counted: {name}, for {reason}." for name, reason in budget.reasons.items()]
     return make_table(title, heads, rows, notes=notes, provenance=budget.provenance)
 
 
