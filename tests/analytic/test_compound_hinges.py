@@ -18,7 +18,7 @@ from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
-from flexstage.mechanism.pattern import Facing, Polar
+from flexstage.mechanism.pattern import Facing, Normal, Polar, Pose
 from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
@@ -32,7 +32,7 @@ from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.part import Restricted
 from flexstage.solid.calibration import calibrate
-from flexstage.spatial.frame import Frame, axes, spatial_rotation, transport
+from flexstage.spatial.frame import Frame, axes, mirror, spatial_rotation, transport
 from flexstage.studies.tolerances.reach import reach
 
 STEEL = Material(young=200e9, poisson=0.3, density=7800.0, expansion=12e-6)
@@ -182,6 +182,26 @@ def three_legs(part):
     return Mechanism("legs", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, place=place, gravity=(0.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("part", ALL, ids=lambda part: part.kind)
+def test_mirrored_copies_are_mirror_images(part):
+    """Members and inner bodies of a copy beyond a plane move as those before it do in a mirror."""
+    leg = Unit({}, {"pivot": Link((GROUND, PLATFORM), "hinge", (0.02, 0.03, 0.0), (1.0, 0.4, 0.0), Z)})
+    body = Body(reference=(0.0, 0.0, 0.0))
+    here, there = (
+        statics(
+            lumped(
+                Mechanism(
+                    "leg", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, place={"B": Placement("leg", pose)}
+                )
+            )
+        ).stiffness.values
+        for pose in (Pose(), Pose(mirror=Normal.X))
+    )
+    root = np.sqrt(np.diag(here))
+    image = mirror(0) @ here @ mirror(0)
+    np.testing.assert_allclose(there / root / root[:, None], image / root / root[:, None], atol=1e-8)
+
+
 def test_names_addresses_and_departures():
     """A compound's numbers are those of its part; a departure of one copy reaches its members alone."""
     whole = three_legs(CROSS)
@@ -222,6 +242,8 @@ def test_what_a_compound_cannot_be_is_told():
         lumped(restrict(stage(CROSS), {"hinge": ((Freedom.RZ,), ())}))
     link = replace(stage(CROSS).links["pivot"], free=(Freedom.RZ,))
     assert "links.pivot.free" in str(check(replace(stage(CROSS), links={"pivot": link}))[0])
+    ended = Link((GROUND, PLATFORM), "hinge", start=(-0.01, 0.0, 0.0), end=(0.01, 0.0, 0.0), bends=Z)
+    assert "links.pivot.from" in str(check(replace(stage(CROSS), links={"pivot": ended}))[0])
     sideless = replace(stage(CROSS).links["pivot"], bends=None)
     assert "is not round" in str(check(replace(stage(CROSS), links={"pivot": sideless}))[0])
     crowded = replace(stage(CROSS), parts={"hinge": replace(CROSS, spacing=4 * mm)})

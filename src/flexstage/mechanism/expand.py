@@ -443,7 +443,7 @@ def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLi
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Restrictions of compounds, and links that state the freedoms of one: their members are what has freedoms.
+    """Restrictions of compounds, and links that state the freedoms of one, or two ends: their members are what has these.
 
     >>> list(compound_findings(Mechanism("")))
     []
@@ -458,6 +458,9 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for where, link in drawn:
         if link.free is not None and link.part in compounds:
             yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
+        if (link.start is not None or link.end is not None) and link.part in compounds:
+            place = "Give its origin, at, and its direction, along"
+            yield Finding(f"{where}.from", f"part {link.part} consists of several, each with ends of its own", place)
 
 
 def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:
