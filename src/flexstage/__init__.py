@@ -38,7 +38,7 @@ HOMES = {
     "parts.tilt": "Tilt",
     "parts.encoder": "Encoder",
     "parts.strain_gauge": "StrainGauge",
-    "parts.body": "Body Block Cylinder Imported Inertia Payload",
+    "parts.body": "Body Block Cylinder Extrusion Imported Inertia Payload Sphere",
     "parts.freedom": "Freedom",
     "beams.validity": "validity",
     "mechanism.pattern": "Polar Pose Facing Normal",

@@ -130,9 +130,11 @@ from flexstage.parts.body import (
     Block as Block,
     Body as Body,
     Cylinder as Cylinder,
+    Extrusion as Extrusion,
     Imported as Imported,
     Inertia as Inertia,
     Payload as Payload,
+    Sphere as Sphere,
 )
 from flexstage.parts.cartwheel import (
     Cartwheel as Cartwheel,

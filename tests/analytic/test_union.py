@@ -13,7 +13,7 @@ from netgen import occ
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
-from flexstage.parts.body import Block, Body, Cylinder, Inertia, Solid
+from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Inertia, Solid, Sphere
 from flexstage.parts.mass import MassProperties, mass_properties
 from flexstage.parts.material import Material
 from flexstage.solid.fea.draw import draw_form, move_solid
@@ -96,6 +96,65 @@ def test_unions_weigh_as_their_parts_do(overlapping: tuple[Solid, ...], apart: t
     assert same(weighed(*reversed(overlapping)), weighed(*apart))
 
 
+HOLED = replace(FRAME, hole=None)
+CORNER = Extrusion("steel", ((0.0, 0.0), (0.03, 0.0), (0.03, 0.01), (0.01, 0.01), (0.01, 0.04), (0.0, 0.04)), 0.02, (0.0, 0.0, 0.01))
+SOLID_TUBE, REAMER = replace(TUBE, bore=None), Cylinder("steel", 0.01, 0.05, removes=True)
+
+
+@pytest.mark.parametrize(
+    ("drawn", "apart"),
+    [
+        ((CORNER,), L_PARTS),
+        ((replace(CORNER, outline=CORNER.outline[::-1]),), L_PARTS),
+        ((CORNER, L_SHAPE[0]), L_PARTS),
+        ((HOLED, block((-0.015, -0.015, -1.0), (0.015, 0.015, 1.0), removes=True)), (FRAME,)),
+        ((SOLID_TUBE, REAMER), (TUBE,)),
+        ((SOLID_TUBE, REAMER, replace(REAMER, length=0.04), replace(REAMER, diameter=0.004)), (TUBE,)),
+        ((TUBE, replace(REAMER, diameter=0.008)), (TUBE,)),
+        ((SOLID_TUBE, replace(REAMER, material="lead")), (SOLID_TUBE,)),
+        ((SOLID_TUBE, REAMER, Cylinder("lead", 0.01, 0.03)), (TUBE, Cylinder("lead", 0.01, 0.03))),
+    ],
+    ids=["polygon", "the other way round", "with a block", "square hole", "bore", "the same thrice", "in the bore", "of lead", "filled"],
+)
+def test_polygons_and_holes_weigh_as_what_is_left_does(drawn: tuple[Solid, ...], apart: tuple[Solid, ...]) -> None:
+    assert same(weighed(*drawn), weighed(*apart))
+    assert same(weighed(*reversed(drawn)), weighed(*apart))
+
+
+def test_a_ball_and_its_seat_have_their_closed_forms() -> None:
+    """A cap of height h of a ball of radius r: pi h^2 (3 r - h) / 3, its centre 3 (2 r - h)^2 / (4 (3 r - h)) from the ball's."""
+    radius, depth = 0.006, 0.002
+    ball = weighed(Sphere("steel", 2.0 * radius))
+    assert np.isclose(ball.mass, DENSITY * 4.0 / 3.0 * np.pi * radius**3, rtol=ROUND_OFF)
+    assert np.allclose(ball.inertia, 0.4 * float(ball.mass) * radius**2 * np.eye(3), rtol=ROUND_OFF)
+    cap = DENSITY * np.pi * depth**2 * (3.0 * radius - depth) / 3.0
+    arm = 0.75 * (2.0 * radius - depth) ** 2 / (3.0 * radius - depth)
+    for plate in (PLATE, Extrusion("steel", ((-0.02, -0.02), (0.02, -0.02), (0.02, 0.02), (-0.02, 0.02)), 0.01, (0.0, 0.0, 0.005))):
+        bare, at = weighed(plate), (0.003, -0.002, 0.01 + radius - depth)
+        on = weighed(plate, Sphere("steel", 2.0 * radius, at))
+        seat = weighed(plate, Sphere("steel", 2.0 * radius, at, removes=True))
+        assert np.isclose(on.mass - bare.mass, ball.mass - cap, rtol=1e-11)
+        assert np.isclose(bare.mass - seat.mass, cap, rtol=1e-9)
+        moment = bare.mass * bare.centre[2] - seat.mass * seat.centre[2]
+        assert np.isclose(moment, cap * (at[2] - arm), rtol=1e-9)
+    assert same(weighed(PLATE, Sphere("steel", 0.008, (0.0, 0.0, 0.005))), weighed(PLATE))
+
+
+def test_derivatives_pass_through_polygons_holes_and_balls() -> None:
+    def mass_at(x: Any) -> MassProperties:
+        outline = ((-0.02, -0.02), (0.02 + x, -0.02), (0.02, 0.5 * x), (0.01, 0.02), (-0.02, 0.015))
+        hole = Cylinder("steel", 0.004 + 0.2 * x, 0.03, (0.005 + x, -0.005, 0.0), removes=True)
+        return weighed(Extrusion("steel", outline, 0.008 + x), hole, Sphere("steel", 0.006, (-0.01, -0.01 + x, 0.005)))
+
+    step, at = 1e-6, 0.003
+    exact, low, high = mass_at(at + 1e-30j), mass_at(at - step), mass_at(at + step)
+    for name in ("mass", "centre", "inertia"):
+        slope = np.imag(getattr(exact, name)) / 1e-30
+        assert np.allclose(slope, (getattr(high, name) - getattr(low, name)) / (2.0 * step), rtol=1e-6, atol=1e-6 * np.max(np.abs(slope)))
+    batch = mass_at(np.array([at, 2.0 * at]))
+    assert np.allclose(batch.inertia[1], mass_at(2.0 * at).inertia, rtol=0.0, atol=ROUND_OFF * np.max(np.abs(batch.inertia)))
+
+
 def test_two_cubes_turned_by_an_eighth_share_an_octagon() -> None:
     found = weighed(Block("steel", (0.01, 0.01, 0.01)), Block("steel", (0.01, 0.01, 0.01), along=(1.0, 1.0, 0.0)))
     assert np.isclose(found.mass, DENSITY * 1e-6 * (2.0 - 2.0 * (np.sqrt(2.0) - 1.0)), rtol=ROUND_OFF)
@@ -131,7 +190,26 @@ def _upright(seed: int) -> list[Solid]:
     return solids
 
 
-@pytest.mark.parametrize("throw", [_thrown, _upright])
+def _star(chance: np.random.Generator) -> tuple[tuple[float, float], ...]:
+    """Corners of a polygon round the origin, neither convex nor regular."""
+    angles = 2.0 * np.pi * (np.arange(7) + 0.8 * chance.random(7)) / 7.0
+    radii = chance.uniform(0.005, 0.02, size=7)
+    return tuple((float(r * np.cos(a)), float(r * np.sin(a))) for r, a in zip(radii, angles, strict=True))
+
+
+def _drilled(seed: int) -> list[Solid]:
+    """An extrusion, a block and a tube, upright, with holes through them: round, square, of any outline."""
+    chance = np.random.default_rng([seed, 13])
+    made, cuts = _upright(seed)[:2], _upright(seed + 100)
+    holes = [replace(cuts[0], hole=None, removes=True), replace(cuts[1], bore=None, diameter=0.006, removes=True)]  # type: ignore[call-arg]
+    outline = _star(chance)
+    pocket = tuple((0.3 * x, 0.3 * y) for x, y in _star(chance))
+    upright = {"along": (1.0, 0.5, 0.0), "up": (0.0, 0.0, 1.0)}
+    deep = Extrusion("steel", pocket, 0.02, (0.002, 0.001, 0.01), removes=True)
+    return [Extrusion("steel", outline, 0.012, (0.001, 0.0, 0.002), **upright), *made, *holes, deep]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("throw", [_thrown, _upright, _drilled])
 @pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.full) for seed in range(3, 40))])
 def test_unions_have_the_volume_and_centre_that_cad_gives_them(throw: Callable[[int], Sequence[Solid]], seed: int) -> None:
     solids = throw(seed)

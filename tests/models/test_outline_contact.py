@@ -13,7 +13,7 @@ from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
 from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.pieces import SAGITTA, pieces
-from flexstage.parts.body import Block, Body, Cylinder, Solid
+from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Solid, Sphere
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.given import Joint
 from flexstage.parts.leaf import Leaf
@@ -76,6 +76,22 @@ def random_stage(seed: int) -> Mechanism:
     return Mechanism("thrown", materials={"steel": STEEL}, parts=PARTS, bodies=bodies, links=links)
 
 
+def drilled_stage(seed: int) -> Mechanism:
+    """An angle with a hole, a ball and a pin that may stand in the hole, and links of random parts between them."""
+    chance = np.random.default_rng([seed, 41])
+    along = _direction(chance)
+    angle = ((-0.015, -0.015), (0.02, -0.015), (0.02, -0.002), (0.0, 0.0), (0.0, 0.02), (-0.015, 0.02))
+    hole = Cylinder("steel", 0.009, 0.02, (-0.007, -0.007, 0.0), removes=True)
+    x, y, z = (float(value) for value in chance.uniform(-0.02, 0.02, size=3))
+    u, v, w = (float(value) for value in chance.uniform(-0.003, 0.003, size=3))
+    bodies = {
+        "platform": Body(solids={"s": Extrusion("steel", angle, 0.01), "hole": hole}),
+        "a": Body(solids={"s": Sphere("steel", 0.012, (x, y, z))}),
+        "b": Body(solids={"s": Cylinder("steel", 0.004, 0.03, (u - 0.007, v - 0.007, w), along=(0.1 * along[0], 0.1 * along[1], 1.0))}),
+    }
+    return replace(random_stage(seed), bodies=bodies)
+
+
 def clashes(mechanism: Mechanism) -> dict[frozenset[str], float]:
     """Pairs of drawn solids that overlap and belong to nothing in common, with the thickness of their common volume [mm]."""
     stage = stage_pieces(mechanism)
@@ -117,11 +133,22 @@ def _agrees(mechanism: Mechanism) -> int:
 
 def test_random_clashes_are_those_of_cad() -> None:
     assert sum(_agrees(random_stage(seed)) for seed in range(8)) > 8
+    assert sum(_agrees(drilled_stage(seed)) for seed in range(6)) > 6
+
+
+def test_a_pin_that_clears_its_hole_clashes_with_nothing() -> None:
+    plate, pin = Block("steel", (0.06, 0.06, 0.01)), Cylinder("steel", 0.004, 0.04, (0.01, 0.0, 0.0))
+    hole = Cylinder("steel", 0.006, 0.02, (0.01, 0.0, 0.0), removes=True)
+    for holes, clears in (({}, False), ({"hole": hole}, True), ({"hole": replace(hole, length=0.004)}, False)):
+        drawn = replace(random_stage(0), links={}, bodies={"platform": Body(solids={"s": plate, **holes}), "a": Body(solids={"s": pin})})
+        assert told(drawn) == (set() if clears else {frozenset(("platform.s", "a.s"))})
+        assert bool(clashes(drawn)) is not clears
 
 
 @pytest.mark.full
 def test_two_hundred_random_stages_clash_as_cad_says() -> None:
     assert sum(_agrees(random_stage(seed)) for seed in range(200)) > 200
+    assert sum(_agrees(drilled_stage(seed)) for seed in range(100)) > 100
 
 
 QUICK = ("parallelogram", "bridge")

@@ -53,6 +53,12 @@ def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
     assert [line.split(": ")[1] for line in lines] == ["materials.steel.like", "materials.steel.young"]
 
 
+def polygon(*corners: str) -> str:
+    """An extrusion of these corners [mm]."""
+    outline = ", ".join('["{} mm", "{} mm"]'.format(*corner.split()) for corner in corners)
+    return f'solids.s = {{ shape = "extrusion", material = "steel", height = "1 mm", outline = [{outline}] }}'
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -128,6 +134,11 @@ def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
         ("[place]", "x = " + "[" * 1500 + "]" * 1500 + "\n[place]", ["nests too deeply"]),
         ("[place]", "x = " + "9" * 3990 + "\n[place]", ["links.x", "more than 64 bits"]),
         ("[place]", "[links]\na.b.c.d = 1\n[place]", ["links.a", "not known"]),
+        # outlines
+        ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "2 corners", "three"]),
+        ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "meet"]),
+        ('mass = "1 kg"', polygon("0 0", "2 0", "0 0", "0 1"), ["bodies.platform.solids.s.outline", "meet"]),
+        ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "meet"]),
     ],
 )
 def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:

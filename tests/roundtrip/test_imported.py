@@ -13,14 +13,14 @@ from flexstage.analysis.statics import statics
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Link, Mechanism
-from flexstage.mechanism.store import dump, load, loads
+from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Block, Body, Imported, Inertia
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
-from flexstage.solid.exchange.step import stage_parts
+from flexstage.solid.exchange.step import stage_parts, step
 from flexstage.solid.fea.contact import contact_findings
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.fea.imported import import_findings, measure, with_properties
@@ -67,6 +67,26 @@ def test_an_imported_block_is_the_drawn_one(part: Path) -> None:
     shapes = [next(item for item in stage_parts(stage_pieces(each)) if item.name == "platform").shape for each in (ours, drawn)]
     assert (shapes[0] * shapes[1]).mass == pytest.approx(shapes[1].mass, rel=1e-6)
     assert contact_findings(ours) == ()
+
+
+def test_a_solid_of_an_assembly_is_chosen_by_its_name_or_place(tmp_path: Path) -> None:
+    solids = {"plate": Block("steel", (0.04, 0.04, 0.005)), "post": Block("steel", (0.01, 0.01, 0.02), at=(0.0, 0.0, 0.0125))}
+    apart = replace(stage(BLOCK), links={}, bodies={name: Body(solids={"s": solid}) for name, solid in solids.items()})
+    path = tmp_path / "assembly.step"
+    path.write_bytes(step(apart))
+    for number, name in enumerate(solids, start=1):
+        for called in (name, f"#{number}"):
+            found = measure(path, called)
+            np.testing.assert_allclose(found.size, solids[name].size, rtol=1e-9)
+            assert found.volume == pytest.approx(float(np.prod(solids[name].size)), rel=1e-9)
+    for called, words in ((None, "2 solids: plate, post"), ("plat", 'called "plat"'), ("#3", "none"), ("#0", "none")):
+        with pytest.raises(DesignError) as refused:
+            measure(path, called)
+        assert words in refused.value.findings[0].what
+    chosen = with_properties(measure(path, "post"), str(path), "steel", STEEL.density, "post")
+    ours = replace(stage(BLOCK), bodies={"platform": Body(solids={"post": chosen})})
+    assert loads(dumps(ours)) == ours
+    assert import_findings(ours) == ()
 
 
 def test_rigid_readings_need_no_file(part: Path) -> None:

@@ -22,9 +22,8 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
 from flexstage.mechanism.outline import Outline, outlines
 from flexstage.mechanism.pieces import SAGITTA, Form, form_of, is_flat, pieces
-from flexstage.parts.body import Block, Cylinder, Imported
-from flexstage.parts.profile import single
-from flexstage.spatial.convex import Convex, distance, separation
+from flexstage.parts.body import Imported, Pierced, Solid
+from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
 from flexstage.spatial.frame import Frame
 
 TOUCHING = 1e-6
@@ -42,6 +41,18 @@ _MARGIN = (5e-5, 0.05)
 
 
 @dataclass(frozen=True, eq=False)
+class _Hole:
+    """A hole where it stands: the `frame` of its centre."""
+
+    solid: Solid
+    frame: Frame
+
+    def contains(self, points: Array) -> Array:
+        """Which points (n, 3) lie in it, or no farther beside than round faces are followed."""
+        return self.solid.contains((points - self.frame.position) @ self.frame.rotation, SAGITTA)
+
+
+@dataclass(frozen=True, eq=False)
 class _Thing:
     """A body's solid or a link's part where it stands; `bodies` it belongs to, or joins."""
 
@@ -55,6 +66,12 @@ class _Thing:
     @cached_property
     def pieces(self) -> tuple[Convex, ...]:
         return tuple(piece.within(self.frame) for piece in pieces(self.form))
+
+    @cached_property
+    def holes(self) -> tuple[_Hole, ...]:
+        """The holes that others of its body leave in it."""
+        own = self.form.holes if isinstance(self.form, Pierced) else ()
+        return tuple(_Hole(hole, _first(hole.frame).within(self.frame)) for hole in own)
 
     def trim(self, margin: float) -> tuple[Convex, ...]:
         return tuple(piece.within(self.frame) for piece in pieces(self.form, margin))
@@ -237,16 +254,9 @@ def _rim(link: _Thing, side: float) -> Array:
 def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
     """Which points (n, 3) lie in a solid, or within `slack` [m] of it."""
     own = (points - thing.frame.position) @ thing.frame.rotation
-    size = 0.5 * first_design(np.real(thing.outline.size), 1)
-    if isinstance(thing.form, Cylinder):
-        radii = np.hypot(own[:, 1], own[:, 2])
-        bore = 0.0 if thing.form.bore is None else 0.5 * single(thing.form.bore)
-        return (np.abs(own[:, 0]) <= size[0] + slack) & (radii <= size[1] + slack) & (radii >= bore - slack)
-    within = np.all(np.abs(own) <= size + slack, axis=1)
-    if isinstance(thing.form, Block) and thing.form.hole is not None:
-        hole = 0.5 * np.array([single(value) for value in thing.form.hole])
-        within &= np.any(np.abs(own[:, :2]) >= hole - slack, axis=1)
-    return within
+    if isinstance(thing.form, Solid):
+        return thing.form.contains(own, slack)
+    return np.all(np.abs(own) <= 0.5 * first_design(np.real(thing.outline.size), 1) + slack, axis=1)
 
 
 def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> float:
@@ -287,7 +297,7 @@ def _side_findings(link: _Thing, body: str, met: Sequence[_Thing]) -> Iterator[F
     size = first_design(np.real(link.outline.size), 1) - np.array([2.0 * margin, 0.0, 0.0])
     short = Outline(link.name, link.frame, size, is_round=link.outline.is_round)
     near = [met[other - 1] for one, other in near_pairs([short, *(each.outline for each in met)], 0.0) if one == 0]
-    deep = max((_overlap(link.trim(margin), each.pieces)[0] for each in near), default=0.0)
+    deep = max((_overlap(link.trim(margin), each.pieces, each.holes)[0] for each in near), default=0.0)
     if deep > TOUCHING:
         what = f"it meets {body} beside its end face too, {_text(deep)} deep"
         yield Finding(link.name, what, f"Trim the outline of {body} beside the link")
@@ -346,7 +356,7 @@ def _clash_findings(things: Mapping[str, _Thing]) -> Iterator[Finding]:
         first, second = seen[one], seen[other]
         if _belong(first, second):
             continue
-        deep, around = _overlap(first.pieces, second.pieces)
+        deep, around = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])
         if deep > TOUCHING:
             place = ", ".join(f"{round(1e3 * float(value), 2) + 0.0:g}" for value in around)
             yield Finding(first.name, f"it overlaps {second.name} by {_text(deep)} around ({place}) mm", _advice(first, second))
@@ -366,17 +376,31 @@ def _meet_in_a_point(first: _Thing, second: _Thing, drawn_bodies: set[str]) -> b
     return first.is_link and second.is_link and bool((set(first.bodies) & set(second.bodies)) - drawn_bodies)
 
 
-def _overlap(first: Sequence[Convex], second: Sequence[Convex]) -> tuple[float, Array]:
-    """How deep two sets of pieces overlap [m] (negative: how far they are apart at least), and the middle of that place."""
+def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[_Hole] = ()) -> tuple[float, Array]:
+    """How deep two sets of pieces overlap [m] (negative: how far they are apart at least), and the middle of that place.
+
+    What lies in one of the `holes` as a whole is no overlap.
+    """
     deepest, around = -np.inf, np.zeros(3)
     for count, (one, other) in enumerate(_close(first, second)):
         if count > _ENOUGH and deepest > TOUCHING:
             break
         gap, _, _ = separation(one, other)
-        if -gap > deepest:
+        if -gap > deepest and not (holes and -gap > -TOUCHING and _is_hollow(one, other, holes)):
             low, high = np.maximum(one.box[0], other.box[0]), np.minimum(one.box[1], other.box[1])
             deepest, around = -gap, 0.5 * (low + high)
     return deepest, around
+
+
+def _is_hollow(one: Convex, other: Convex, holes: Sequence[_Hole]) -> bool:
+    """Whether what two pieces have in common, grown by twice what touches, lies in a hole."""
+    sides, offsets = [], []
+    for piece in (one, other):
+        for normals in (piece.normals, -piece.normals):
+            sides.append(normals)
+            offsets.append(np.max(piece.points @ normals.T, axis=0) + 2.0 * TOUCHING)
+    corners = polytope_corners(np.concatenate(sides), np.concatenate(offsets))
+    return len(corners) > 0 and any(np.all(hole.contains(corners)) for hole in holes)
 
 
 def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[Convex, Convex]]:

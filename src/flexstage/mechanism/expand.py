@@ -19,7 +19,7 @@ from flexstage.mechanism.path import complete, has_member, replace_member
 from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
 from flexstage.mechanism.sight import PlacedGauge, gauge_findings, link_names, place_sum, sight, sight_of_link
 from flexstage.parts.actuator import Actuator
-from flexstage.parts.body import Body, Solid, owner_of, solid_frame
+from flexstage.parts.body import Body, Solid, owner_of, pierce
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
@@ -62,7 +62,7 @@ class PlacedBody:
     @cached_property
     def solids(self) -> Mapping[str, PlacedSolid]:
         """The outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`)."""
-        return dict(solid for item in self.drawn for solid in item.solids())
+        return _placed_solids(self.drawn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,7 +252,7 @@ def _assembly(key: _Same) -> Assembly:
         item.name: _placed_body((item, *lent.get(item.name, ())), joined, mechanism.materials) for item in drawn if item.body.of is None
     }
     require(_unknown_bodies(bodies, joined, posed(mechanism.gauges)))
-    ground = {address: solid for item in lent.get(GROUND, ()) for address, solid in item.solids()}
+    ground = _placed_solids(lent.get(GROUND, ()))
     drives = _actuators(links, {copy for copy, _, _ in placed})
     return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements)
 
@@ -382,10 +382,17 @@ class _DrawnBody:
         """The mass properties in the stage's frame."""
         return None if self.own is None else within(self.own, self.frame)
 
-    def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
-        """The outlines by address, in the stage's frame."""
+    def solids(self) -> Iterator[tuple[str, tuple[Solid, Frame]]]:
+        """The outlines by address, and the frames of their centres in the stage's frame."""
         for name, solid in self.body.solids.items():
-            yield f"{self.name}.{name}", PlacedSolid(solid, solid_frame(solid).within(self.frame).right_handed)
+            frame = solid.frame.within(self.frame)
+            yield f"{self.name}.{name}", (solid.mirrored if frame.mirrored else solid, frame.right_handed)
+
+
+def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
+    """The outlines of a body, without those that are holes in the others."""
+    found = pierce(dict(solid for item in drawn for solid in item.solids()))
+    return {address: PlacedSolid(solid, frame) for address, (solid, frame) in found.items()}
 
 
 @dataclass(frozen=True, eq=False)

@@ -644,4 +644,4 @@ def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
     if numbers:
         return NumbersNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
-    return ListNode(_named_node(items[0]), None if Ellipsis in items else len(items))
+    return ListNode(nodes[0], None if Ellipsis in items else len(items))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, stack
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid
-from flexstage.parts.body import Block, Imported
+from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, Sphere
 from flexstage.parts.part import inner
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
@@ -20,7 +20,8 @@ class Outline:
     """A box (`size` along the axes of `frame`, (..., 3) [m]) or, with `is_round`, a cylinder of size (length, diameter, diameter) along x.
 
     `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular hole along z;
-    `bore`: diameter of a cylinder's hole along x.
+    `bore`: diameter of a cylinder's hole along x. `corners` (..., n, 3) are those of an outline that does not fill its box; a ball is as
+    long as it is thick, `is_ball`.
     """
 
     name: str
@@ -29,6 +30,8 @@ class Outline:
     is_round: bool = False
     hole: Array | None = None
     bore: Array | None = None
+    corners: Array | None = None
+    is_ball: bool = False
 
     def reach(self, direction: Array) -> Array:
         """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage; holes do not count.
@@ -38,6 +41,11 @@ class Outline:
         2.0
         """
         middle = np.sum(self.frame.position * direction, axis=-1)
+        if self.is_ball:
+            return middle + 0.5 * self.size[..., 0]
+        if self.corners is not None:
+            across = (np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0]
+            return middle + np.max(np.sum(self.corners * across[..., None, :], axis=-1), axis=-1)
         own = np.abs((np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0])
         if not self.is_round:
             return middle + 0.5 * np.sum(self.size * own, axis=-1)
@@ -59,13 +67,13 @@ def outlines(assembly: Assembly) -> tuple[Outline, ...]:
 
 
 def _solid(name: str, placed: PlacedSolid) -> Outline:
-    solid = placed.solid
-    if isinstance(solid, Block):
-        return Outline(name, placed.frame, stack(solid.size), hole=None if solid.hole is None else stack(solid.hole))
-    if isinstance(solid, Imported):
-        return Outline(name, placed.frame, stack(solid.size))
-    bore = None if solid.bore is None else np.asarray(solid.bore)
-    return Outline(name, placed.frame, _cylinder(solid.length, solid.diameter), is_round=True, bore=bore)
+    solid = placed.solid.solid if isinstance(placed.solid, Pierced) else placed.solid
+    if isinstance(solid, Cylinder):
+        return Outline(name, placed.frame, solid.sides, is_round=True, bore=None if solid.bore is None else np.asarray(solid.bore))
+    if isinstance(solid, Extrusion):
+        return Outline(name, placed.frame, solid.sides, corners=_prism(solid.corners, np.asarray(solid.height)))
+    hole = None if not isinstance(solid, Block) or solid.hole is None else stack(solid.hole)
+    return Outline(name, placed.frame, solid.sides, hole=hole, is_ball=isinstance(solid, Sphere))
 
 
 def _part(link: PlacedLink) -> Iterator[Outline]:
@@ -75,5 +83,9 @@ def _part(link: PlacedLink) -> Iterator[Outline]:
         yield Outline(link.name, link.frame, stack((part.span, end.height, end.width)), is_round=end.is_round)
 
 
-def _cylinder(length_: Number, diameter: Number) -> Array:
-    return stack((length_, diameter, diameter))
+def _prism(corners: Array, height: Array) -> Array:
+    """Corners (..., 2 n, 3) of a prism over others (..., n, 2)."""
+    flat = np.concatenate([corners, corners], axis=-2)
+    level = 0.5 * height[..., None] * np.repeat([-1.0, 1.0], corners.shape[-2])
+    shape = np.broadcast_shapes(flat.shape[:-1], level.shape)
+    return np.concatenate([np.broadcast_to(flat, (*shape, 2)), np.broadcast_to(level, shape)[..., None]], axis=-1)

@@ -5,14 +5,14 @@ Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise, product
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from flexstage.base.number import Array
-from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.base.number import Array, first_design
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
 from flexstage.parts.part import Part, inner
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length, single
 from flexstage.parts.shape import Profiled, Shaped
@@ -22,7 +22,7 @@ SAGITTA = 2e-5
 """How far a piece stays inside a round face at most [m]."""
 _MOST = 96
 
-Form: TypeAlias = Shaped | Block | Cylinder | Imported
+Form: TypeAlias = Shaped | Solid
 
 
 def form_of(part: Part) -> Form | None:
@@ -42,21 +42,19 @@ def is_flat(form: Form) -> bool:
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
     True
     """
-    return isinstance(form, Block) or (isinstance(form, Shaped) and form.is_prismatic and not form.throat.is_round)
+    return form.is_flat if isinstance(form, Solid) else form.is_prismatic and not form.throat.is_round
 
 
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
     """The convex pieces of a form in its own frame; a link's `trim` [m] is cut off at both of its ends. An imported shape has none.
 
+    The holes that others of its body leave in a solid count as filled.
+
     >>> len(pieces(Block("steel", (0.1, 0.1, 0.1)))), len(pieces(Block("steel", (0.1, 0.1, 0.1), hole=(0.05, 0.05))))
     (1, 4)
     """
-    if isinstance(form, Imported):
-        return ()
-    if isinstance(form, Block):
-        return tuple(_frame(form))
-    if isinstance(form, Cylinder):
-        return tuple(_tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)))
+    if isinstance(form, Solid):
+        return tuple(_SOLIDS[type(form)](form))
     if isinstance(form, Profiled):
         return tuple(_hinge(form, trim))
     return tuple(_bar(form, trim) if form.is_prismatic else _loft(form, trim))
@@ -105,6 +103,23 @@ def _frame(form: Block) -> Iterator[Convex]:
         yield cuboid((-inner, low, -z), (inner, high, z))
 
 
+def _wedges(form: Extrusion) -> Iterator[Convex]:
+    corners, half = first_design(np.real(form.corners), 2), 0.5 * single(form.height)
+    for trio in triangles(corners):
+        upright = frustum(-half, half, corners[list(trio)], corners[list(trio)])
+        yield Convex(*(np.roll(each, -1, axis=1) for each in (upright.points, upright.normals, upright.edges)))
+
+
+def _ball(form: Sphere) -> Iterator[Convex]:
+    """Slabs between rings, from pole to pole."""
+    radius = 0.5 * single(form.diameter)
+    count = _corners(radius) // 4 * 2
+    angles = np.linspace(0.0, np.pi, count // 2 + 1)
+    rims = [_circle(radius * np.sin(angle), count) for angle in angles]
+    for here, there in pairwise(range(len(angles))):
+        yield frustum(-radius * np.cos(angles[here]), -radius * np.cos(angles[there]), rims[here], rims[there])
+
+
 def _corners(radius: float) -> int:
     """Sides of the polygon that stays within `SAGITTA` of a circle."""
     half = np.arccos(max(0.0, 1.0 - SAGITTA / radius))
@@ -127,6 +142,16 @@ def _tube(size: float, diameter: float, bore: float) -> Iterator[Convex]:
     for here, there in pairwise([*range(count), 0]):
         sector = np.array([rim[here], rim[there], inner[there], inner[here]])
         yield frustum(-half, half, sector, sector)
+
+
+_SOLIDS: Mapping[type[Solid], Callable[[Any], Iterable[Convex]]] = {
+    Block: _frame,
+    Cylinder: lambda form: _tube(single(form.length), single(form.diameter), 0.0 if form.bore is None else single(form.bore)),
+    Extrusion: _wedges,
+    Sphere: _ball,
+    Imported: lambda _: (),
+    Pierced: lambda form: pieces(form.solid),
+}
 
 
 def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array, Number, stack
-from flexstage.parts.body import Block, Body, Cylinder, Imported, Inertia, Solid, solid_frame
+from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Imported, Inertia, Pierced, Solid, Sphere
 from flexstage.parts.material import Material
-from flexstage.parts.union import Drawn, Moments, common_moments
+from flexstage.parts.union import Drawn, Moments, common_moments, polygon_moments
 from flexstage.spatial.frame import Frame, identity
 
 
@@ -70,12 +71,16 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
     2.0
     """
-    own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids]
-    return combine([*own, *(_of_moments(density, moments) for density, moments in common_moments(meant or solids))])
+    own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids if not each.solid.removes]
+    return combine([*own, *(of_moments(density, moments) for density, moments in common_moments(meant or solids))])
 
 
-def _of_moments(density: Number, moments: Moments) -> MassProperties:
-    """Mass properties of a region from its volume and moments: J = rho (tr S I - S) about its centre."""
+def of_moments(density: Number, moments: Moments) -> MassProperties:
+    """Mass properties of a region of a density [kg/m^3] from its volume and moments: J = rho (tr S I - S) about its centre.
+
+    >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
+    [6.0, 6.0, 6.0]
+    """
     safe = np.where(np.real(moments.volume) == 0.0, 1.0, moments.volume)
     centre = moments.first / safe[..., None]
     central = moments.second - moments.first[..., :, None] * centre[..., None, :]
@@ -121,12 +126,16 @@ def solid_properties(solid: Solid, density: Number) -> MassProperties:
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359
     """
+    if isinstance(solid, Pierced):
+        return union_properties([Drawn("", each, density, frame) for each, frame in solid.drawn])
     if isinstance(solid, Imported):
-        stated = MassProperties(np.asarray(solid.mass), stack(solid.centre) - stack(solid.middle), tensor(solid.inertia))
-        return within(stated, solid_frame(solid))
-    mass, diagonal = _block(solid, density) if isinstance(solid, Block) else _cylinder(solid, density)
-    own = MassProperties(mass, np.zeros(3), diagonal[..., None] * np.eye(3))
-    return within(own, solid_frame(solid))
+        own = MassProperties(np.asarray(solid.mass), stack(solid.centre) - stack(solid.middle), tensor(solid.inertia))
+    elif isinstance(solid, Extrusion):
+        own = of_moments(density, polygon_moments(solid.corners, np.asarray(solid.height)))
+    else:
+        mass, diagonal = _DIAGONALS[type(solid)](solid, density)
+        own = MassProperties(mass, np.zeros(3), diagonal[..., None] * np.eye(3))
+    return within(own, solid.frame)
 
 
 def within(properties: MassProperties, frame: Frame) -> MassProperties:
@@ -166,6 +175,15 @@ def _cylinder(solid: Cylinder, density: Number) -> tuple[Array, Array]:
         less, less_along, less_across = _round(density, solid.bore, solid.length)
         mass, along, across = mass - less, along - less_along, across - less_across
     return np.asarray(mass), stack((along, across, across))
+
+
+def _sphere(solid: Sphere, density: Number) -> tuple[Array, Array]:
+    mass = np.asarray(density * np.pi / 6.0 * solid.diameter**3)
+    moment = mass * solid.diameter**2 / 10.0
+    return mass, stack((moment, moment, moment))
+
+
+_DIAGONALS: Mapping[type[Solid], Callable[[Any, Number], tuple[Array, Array]]] = {Block: _block, Cylinder: _cylinder, Sphere: _sphere}
 
 
 def _round(density: Number, diameter: Number, length: Number) -> tuple[Number, Number, Number]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.parts.body import Block, Body, Cylinder, Payload
+from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Payload, Solid
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
@@ -91,10 +91,10 @@ def _noise_steps(gauge: Gauge) -> Any:
     return np.divide(noise, step, out=np.zeros(noise.shape), where=step > 0.0)
 
 
-def _slenderness(solid: Block | Cylinder) -> Any:
+def _slenderness(solid: Solid) -> Any:
     """The shortest over the longest side."""
-    sides = np.stack(np.broadcast_arrays(*(solid.size if isinstance(solid, Block) else (solid.diameter, solid.length))))
-    return np.min(np.real(sides), axis=0) / np.max(np.real(sides), axis=0)
+    sides = np.real(solid.sides)
+    return np.min(sides, axis=-1) / np.max(sides, axis=-1)
 
 
 def _least_density(each: Body | Payload) -> Any:
@@ -179,7 +179,7 @@ RULES: Mapping[type, tuple[Rule, ...]] = {
             _within(10.0, "7.3e3", "1.3e4"),
         ),
     ),
-    **dict.fromkeys((Block, Cylinder), (Rule("size", _slenderness, 1.0 / 250.0, 1.0, "of its longest side", _RIGID),)),
+    **dict.fromkeys((Block, Cylinder, Extrusion), (Rule("size", _slenderness, 1.0 / 250.0, 1.0, "of its longest side", _RIGID),)),
     **dict.fromkeys((Body, Payload), (Rule("inertia", _least_density, 0.0, 22.6e3, "kg/m^3 at least", _BALL),)),
     Gauge: (
         Rule("range", lambda each: each.range, 1e-6, 0.05, "m", _within(100.0, "100 um", "500 um")),

@@ -18,7 +18,7 @@ import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
-from flexstage.parts.body import Cylinder, Imported, Solid, solid_frame
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, Sphere, triangles, within_polygon
 from flexstage.spatial.convex import Boxes, separations
 from flexstage.spatial.frame import Frame, axes
 
@@ -57,19 +57,30 @@ class _Round:
 
 
 @dataclass(frozen=True, eq=False)
+class _Ball:
+    """All within `radius` of `point`."""
+
+    point: Array
+    radius: Array
+
+
+@dataclass(frozen=True, eq=False)
 class _Cell:
-    """A convex region: all r with `normals` (..., k, 3) r <= `offsets` (..., k), within all `rounds`."""
+    """A convex region: all r with `normals` (..., k, 3) r <= `offsets` (..., k), within all `rounds` and `balls`."""
 
     normals: Array
     offsets: Array
     rounds: tuple[_Round, ...] = ()
+    balls: tuple[_Ball, ...] = ()
 
     def common(self, other: _Cell) -> _Cell:
         """The region of both."""
         shape = np.broadcast_shapes(self.offsets.shape[:-1], other.offsets.shape[:-1])
         normals = [np.broadcast_to(cell.normals, (*shape, *cell.normals.shape[-2:])) for cell in (self, other)]
         offsets = [np.broadcast_to(cell.offsets, (*shape, cell.offsets.shape[-1])) for cell in (self, other)]
-        return _Cell(np.concatenate(normals, axis=-2), np.concatenate(offsets, axis=-1), self.rounds + other.rounds)
+        return _Cell(
+            np.concatenate(normals, axis=-2), np.concatenate(offsets, axis=-1), self.rounds + other.rounds, self.balls + other.balls
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +107,9 @@ class _InexactError(Exception):
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """What solids of a body have in common and would weigh more than once: densities, and the moments to add (most are negative).
 
-    Raises `DesignError` where the common volume cannot be weighed: of several materials, or of forms that cross with round faces.
+    Solids that remove weigh nothing themselves: what they have in common with others of their material is taken away, P less H being the
+    union of both less H. Raises `DesignError` where the common volume cannot be weighed: of several materials, or of forms that cross with
+    round faces.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
@@ -106,27 +119,62 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     -0.5
     """
     seen = [drawn for drawn in solids if not isinstance(drawn.solid, Imported)]
+    yield from _common(seen)
+    for density, moments in _common([drawn for drawn in seen if drawn.solid.removes]):
+        yield density, Moments(-moments.volume, -moments.first, -moments.second)
+
+
+def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
+    """The moments that make the union of solids, of every material by itself, of the sum of them."""
     near = _near(seen) if len(seen) > 1 else {}
     if not near:
         return
     cells = {number: _cells(seen[number]) for pair in near for number in pair}
-    scale = max(float(np.max(np.abs(_first(drawn.frame.position, 1)) + np.max(_first(_size(drawn.solid), 1)))) for drawn in seen)
+    scale = max(float(np.max(np.abs(_first(drawn.frame.position, 1)) + np.max(_first(drawn.solid.sides, 1)))) for drawn in seen)
     problems: list[Finding] = []
     groups: list[_Group] = []
     for pair, where in near.items():
+        if _is_apart(seen[pair[0]], seen[pair[1]]):
+            continue
         try:
-            found = _product(cells[pair[0]], cells[pair[1]], where, scale)
+            found = _product(*_beside(seen, cells, pair), where, scale)
         except _InexactError as crossing:
             problems += _refusals(seen, pair, crossing.volume)
             continue
         if found and _differ(seen[pair[0]], seen[pair[1]]):
-            problems += _mixtures(
-                seen[pair[0]], seen[pair[1]], sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in found)
-            )
+            volume = _volume_of(found) - sum(_volume_of(rest) for rest in _removed(seen, cells, pair, found, scale))
+            problems += _mixtures(seen[pair[0]], seen[pair[1]], volume) if volume > _FLUSH * scale**3 else ()
         elif found:
             groups.append((pair, found))
     require(problems)
     yield from _alternating(seen, cells, groups, scale)
+
+
+def _beside(
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], pair: tuple[int, int]
+) -> tuple[list[tuple[float, _Cell]], list[tuple[float, _Cell]]]:
+    """The regions of two solids; a ball that keeps clear of the sides of an extrusion sees the planes of its height alone."""
+    for ball, other in (pair, pair[::-1]):
+        solid = seen[other].solid
+        if isinstance(seen[ball].solid, Sphere) and isinstance(solid, Extrusion):
+            frame = solid.frame.within(seen[other].frame)
+            arm = seen[ball].solid.frame.within(seen[ball].frame).position - frame.position
+            if _is_clear(
+                (np.swapaxes(frame.rotation, -1, -2) @ arm[..., None])[..., :2, 0],
+                np.asarray(seen[ball].solid.sides[..., 0]),
+                solid.corners,
+            ):
+                upright = Frame(frame.rotation[..., :, [2, 0, 1]], frame.position)
+                return cells[ball], [(1.0, _box(upright, np.asarray(solid.height)[..., None]))]
+    return cells[pair[0]], cells[pair[1]]
+
+
+def _is_clear(centre: Array, diameter: Array, corners: Array) -> bool:
+    """Whether circles lie within polygons in all designs."""
+    shape = np.broadcast_shapes(centre.shape[:-1], diameter.shape, corners.shape[:-2])
+    centre, corners = np.broadcast_to(np.real(centre), (*shape, 2)), np.broadcast_to(np.real(corners), (*shape, *corners.shape[-2:]))
+    radius = 0.5 * np.broadcast_to(np.real(diameter), shape)
+    return all(bool(within_polygon(centre[design][None], corners[design], -float(radius[design]))[0]) for design in np.ndindex(shape))
 
 
 def _alternating(
@@ -160,9 +208,9 @@ def _alternating(
 
 def _near(seen: Sequence[Drawn]) -> dict[tuple[int, int], Array]:
     """Pairs whose boxes overlap, and in which designs of a batch."""
-    frames = [solid_frame(drawn.solid).within(drawn.frame) for drawn in seen]
+    frames = [drawn.solid.frame.within(drawn.frame) for drawn in seen]
     boxes = [
-        Boxes(np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(_size(drawn.solid)))
+        Boxes(np.real(frame.rotation), np.real(frame.position), 0.5 * np.real(drawn.solid.sides))
         for frame, drawn in zip(frames, seen, strict=True)
     ]
     reach = [np.sqrt(np.sum(box.halves * box.halves, axis=-1)) for box in boxes]
@@ -202,13 +250,9 @@ def _spread(centres: Array) -> float:
     return 0.0 if centres.ndim == 1 else float(np.max(np.linalg.norm(centres - _first(centres, 1), axis=-1)))
 
 
-def _size(solid: Solid) -> Array:
-    return stack((solid.length, solid.diameter, solid.diameter)) if isinstance(solid, Cylinder) else stack(solid.size)
-
-
 def _cells(drawn: Drawn) -> list[tuple[float, _Cell]]:
     """A solid as a sum of convex regions: its outer form, less its hole."""
-    solid, frame = drawn.solid, solid_frame(drawn.solid).within(drawn.frame)
+    solid, frame = drawn.solid, drawn.solid.frame.within(drawn.frame)
     if isinstance(solid, Cylinder):
         caps = _box(frame, stack((solid.length,)))
         axis = frame.rotation[..., :, 0]
@@ -216,8 +260,14 @@ def _cells(drawn: Drawn) -> list[tuple[float, _Cell]]:
         if solid.bore is None:
             return [(1.0, outer)]
         return [(1.0, outer), (-1.0, replace(caps, rounds=(_Round(axis, frame.position, np.asarray(0.5 * solid.bore)),)))]
-    outer = _box(frame, stack(solid.size))
-    if isinstance(solid, Imported) or solid.hole is None:
+    if isinstance(solid, Sphere):
+        return [(1.0, _Cell(np.zeros((0, 3)), np.zeros(0), balls=(_Ball(frame.position, np.asarray(0.5 * solid.diameter)),)))]
+    if isinstance(solid, Extrusion):
+        corners = solid.corners
+        filled = triangles(_first(corners, 2))
+        return [(1.0, _wedge(frame, corners[..., trio, :], np.asarray(solid.height))) for trio in filled]
+    outer = _box(frame, solid.sides)
+    if not isinstance(solid, Block) or solid.hole is None:
         return [(1.0, outer)]
     return [(1.0, outer), (-1.0, _box(frame, stack((*solid.hole, solid.size[2]))))]
 
@@ -231,6 +281,43 @@ def _box(frame: Frame, size: Array) -> _Cell:
     return _Cell(np.concatenate([normals, -normals], axis=-2), offsets)
 
 
+def _wedge(frame: Frame, trio: Array, height: Array) -> _Cell:
+    """The prism over a triangle (..., 3, 2) in x and y of a frame, half of its height on either side."""
+    run = np.roll(trio, -1, axis=-2) - trio
+    outward = np.stack([run[..., 1], -run[..., 0]], axis=-1) / np.sqrt(np.sum(run * run, axis=-1, keepdims=True))
+    turn = np.swapaxes(frame.rotation, -1, -2)
+    sides = outward @ turn[..., :2, :]
+    caps = turn[..., [2, 2], :] * np.array([[1.0], [-1.0]])
+    sides, caps = (
+        np.broadcast_to(each, (*np.broadcast_shapes(sides.shape[:-2], caps.shape[:-2]), *each.shape[-2:])) for each in (sides, caps)
+    )
+    normals = np.concatenate([sides, caps], axis=-2)
+    own = [np.sum(outward * trio, axis=-1), np.broadcast_to(0.5 * height[..., None], (*height.shape, 2))]
+    shape = np.broadcast_shapes(*(each.shape[:-1] for each in own))
+    offsets = np.concatenate([np.broadcast_to(each, (*shape, each.shape[-1])) for each in own], axis=-1)
+    return _Cell(normals, offsets + np.sum(normals * frame.position[..., None, :], axis=-1))
+
+
+def polygon_moments(corners: Array, height: Array) -> Moments:
+    """Moments of a prism over a polygon of corners (..., n, 2), counter-clockwise, half of its `height` on either side (Green's theorem).
+
+    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    >>> float(polygon_moments(square, np.asarray(2.0)).volume)
+    2.0
+    """
+    ahead = np.roll(corners, -1, axis=-2)
+    cross = corners[..., 0] * ahead[..., 1] - corners[..., 1] * ahead[..., 0]
+    total = corners + ahead
+    area = 0.5 * np.sum(cross, axis=-1)
+    outer = [np.einsum("...nx,...ny,...n->...xy", each, each, cross) for each in (corners, ahead, total)]
+    second = np.zeros((*np.broadcast_shapes(area.shape, height.shape), 3, 3), dtype=np.result_type(corners, height))
+    second[..., :2, :2] = sum(outer) / 24.0 * height[..., None, None]
+    second[..., 2, 2] = area * height**3 / 12.0
+    first = np.zeros(second.shape[:-1], dtype=second.dtype)
+    first[..., :2] = np.einsum("...nx,...n->...x", total, cross) / 6.0 * height[..., None]
+    return Moments(np.asarray(area * height), first, second)
+
+
 def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float, _Cell]], where: Array, scale: float) -> list[_Region]:
     """The common regions of two sums in the designs `where` they may meet, without those that are empty in every design."""
     found: list[_Region] = []
@@ -241,6 +328,25 @@ def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float,
             found.append(_Region(sign * other_sign, cell, moments))
     total = sum((region.sign * np.real(region.moments.volume) for region in found), np.zeros(()))
     return found if np.any(np.abs(total) > (_FLUSH * scale) * scale**2) else []
+
+
+def _volume_of(regions: Sequence[_Region]) -> float:
+    return sum(float(np.max(region.sign * np.real(region.moments.volume))) for region in regions)
+
+
+def _removed(
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], pair: tuple[int, int], found: Sequence[_Region], scale: float
+) -> Iterator[list[_Region]]:
+    """What holes in one of two solids take away of the regions that both have in common."""
+    materials = {seen[number].solid.material for number in pair}
+    for number, drawn in enumerate(seen):
+        if drawn.solid.removes and drawn.solid.material in materials and number in cells:
+            yield _product([(region.sign, region.cell) for region in found], cells[number], np.ones((), dtype=bool), scale)
+
+
+def _is_apart(first: Drawn, second: Drawn) -> bool:
+    """Whether one is a hole, which takes away nothing of another material."""
+    return (first.solid.removes or second.solid.removes) and first.solid.material != second.solid.material
 
 
 def _differ(first: Drawn, second: Drawn) -> bool:
@@ -269,34 +375,45 @@ def _volume(cubic_metres: float) -> str:
 
 def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
     """Moments of a region in the designs `where`, nothing in the others; design by design where its corners differ."""
-    rounds = cell.rounds
-    arrays = [cell.offsets[..., 0], *(each for item in rounds for each in (item.axis[..., 0], item.point[..., 0], item.radius))]
-    shape = np.broadcast_shapes(where.shape, *(each.shape for each in arrays))
-    kind = np.result_type(cell.normals, cell.offsets, *(each for item in rounds for each in (item.axis, item.point, item.radius)))
+    numbers = [each for item in cell.rounds for each in (item.axis, item.point)] + [item.point for item in cell.balls]
+    radii = [item.radius for item in (*cell.rounds, *cell.balls)]
+    shape = np.broadcast_shapes(
+        where.shape, cell.offsets.shape[:-1], *(each.shape[:-1] for each in numbers), *(each.shape for each in radii)
+    )
+    kind = np.result_type(cell.normals, cell.offsets, *numbers, *radii)
     count = int(np.prod(shape, dtype=int))
-    normals = np.broadcast_to(cell.normals, (*shape, *cell.normals.shape[-2:])).reshape(count, -1, 3)
-    offsets = np.broadcast_to(cell.offsets, (*shape, cell.offsets.shape[-1])).reshape(count, -1)
-    flat = [
-        _Round(
-            np.broadcast_to(item.axis, (*shape, 3)).reshape(count, 3),
-            np.broadcast_to(item.point, (*shape, 3)).reshape(count, 3),
-            np.broadcast_to(item.radius, shape).reshape(count),
-        )
-        for item in rounds
-    ]
+    flat = _flat_cell(cell, shape)
     volume, first, second = np.zeros(count, kind), np.zeros((count, 3), kind), np.zeros((count, 3, 3), kind)
     pending = np.flatnonzero(np.broadcast_to(where, shape))
     while pending.size:
-        number = pending[0]
-        if flat:
-            mine = [_Round(item.axis[number], item.point[number], item.radius[number]) for item in flat]
-            done, values = pending[:1], _round_moments(_Cell(normals[number], offsets[number], tuple(mine)), scale)
+        if cell.balls or cell.rounds:
+            mine = _design(flat, pending[0])
+            done, values = pending[:1], _ball_moments(mine, scale) if cell.balls else _round_moments(mine, scale)
         else:
-            done, values = _polytopes(normals[pending], offsets[pending], scale)
+            done, values = _polytopes(flat.normals[pending], flat.offsets[pending], scale)
             done = pending[done]
         volume[done], first[done], second[done] = values
         pending = np.setdiff1d(pending, done, assume_unique=True)
     return Moments(volume.reshape(shape), first.reshape((*shape, 3)), second.reshape((*shape, 3, 3)))
+
+
+def _flat_cell(cell: _Cell, shape: tuple[int, ...]) -> _Cell:
+    """A region with one batch axis."""
+
+    def flat(values: Array, axes: int) -> Array:
+        own = values.shape[values.ndim - axes :]
+        return np.broadcast_to(values, (*shape, *own)).reshape(int(np.prod(shape, dtype=int)), *own)
+
+    rounds = tuple(_Round(flat(item.axis, 1), flat(item.point, 1), flat(item.radius, 0)) for item in cell.rounds)
+    balls = tuple(_Ball(flat(item.point, 1), flat(item.radius, 0)) for item in cell.balls)
+    return _Cell(flat(cell.normals, 2), flat(cell.offsets, 1), rounds, balls)
+
+
+def _design(cell: _Cell, number: int) -> _Cell:
+    """One design of a region with one batch axis."""
+    rounds = tuple(_Round(item.axis[number], item.point[number], item.radius[number]) for item in cell.rounds)
+    balls = tuple(_Ball(item.point[number], item.radius[number]) for item in cell.balls)
+    return _Cell(cell.normals[number], cell.offsets[number], rounds, balls)
 
 
 _Values = tuple[Array, Array, Array]
@@ -403,6 +520,46 @@ def _round_moments(cell: _Cell, scale: float) -> _Values:
     turn = frame.rotation
     own = (np.asarray(area * size), turn @ flat, turn @ moments @ turn.T)
     return _shift(own, frame.position + middle * turn[:, 0])
+
+
+def _ball_moments(cell: _Cell, scale: float) -> _Values:
+    """Moments of a region with balls, of one design: a ball, its cap, or nothing; what is cut otherwise is told by its volume."""
+    nothing = np.zeros(()), np.zeros(3), np.zeros((3, 3))
+    within = _FLUSH * scale
+    ball, *others = sorted(cell.balls, key=lambda item: float(np.real(item.radius)))
+    least = float(np.real(ball.radius))
+    depths = cell.offsets - cell.normals @ ball.point
+    beside = [(float(np.real(other.radius)), _length(other.point - ball.point)) for other in others]
+    beside += [(float(np.real(item.radius)), _length(np.cross(item.point - ball.point, item.axis))) for item in cell.rounds]
+    if np.any(np.real(depths) <= within - least) or any(gap >= radius + least - within for radius, gap in beside):
+        return nothing
+    planes = _distinct(np.real(cell.normals), np.real(depths), within)
+    cuts = [number for number in planes if np.real(depths[number]) < least - within]
+    if len(cuts) > 1 or any(gap + least > radius + within for radius, gap in beside):
+        volume = _by_numbers(cell, scale)
+        if volume <= _FLUSH * scale**3:
+            return nothing
+        raise _InexactError(volume)
+    normal, depth = (cell.normals[cuts[0]], depths[cuts[0]]) if cuts else (np.array([1.0, 0.0, 0.0]), ball.radius)
+    return _shift(_cap(normal, ball.radius, depth), ball.point)
+
+
+def _length(vector: Array) -> float:
+    return float(np.linalg.norm(np.real(vector)))
+
+
+def _cap(normal: Array, radius: Array, depth: Array) -> _Values:
+    """Moments of what of a ball about the origin lies at t = normal . r <= depth: integrals of its round sections over t."""
+    square = radius * radius
+
+    def upto(t: Array) -> tuple[Array, Array, Array, Array]:
+        along = square * t**3 / 3.0 - t**5 / 5.0
+        across = 0.25 * (square * square * t - 2.0 * square * t**3 / 3.0 + t**5 / 5.0)
+        return square * t - t**3 / 3.0, 0.5 * square * t**2 - 0.25 * t**4, along, across
+
+    volume, first, along, across = (np.pi * (high - low) for high, low in zip(upto(depth), upto(-radius), strict=True))
+    line = normal[:, None] * normal
+    return np.asarray(volume), first * normal, along * line + across * (np.eye(3) - line)
 
 
 def _prism(cell: _Cell, within: float) -> tuple[Frame, tuple[Array, Array], _Values] | None:
@@ -549,7 +706,7 @@ def _angle(direction: Array) -> Array:
     return base + turned / np.sqrt(np.sum(direction * direction))
 
 
-_SIDES = 64
+_SIDES, _FACES = 64, 400
 
 
 def _by_numbers(cell: _Cell, scale: float) -> float:
@@ -564,13 +721,18 @@ def _by_numbers(cell: _Cell, scale: float) -> float:
 
 
 def _halves(cell: _Cell, share: float) -> Array:
-    """A region as half-spaces (k, 4), its rounds as prisms whose sides lie at a share of their radius."""
+    """A region as half-spaces (k, 4), the sides of its rounds and balls at a share of their radius."""
     planes = [np.column_stack([np.real(cell.normals), -np.real(cell.offsets)])]
     angles = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
     for item in cell.rounds:
         normals = np.column_stack([np.cos(angles), np.sin(angles)]) @ np.linalg.svd(np.real(item.axis)[None])[2][1:]
         offsets = normals @ np.real(item.point) + share * float(np.real(item.radius))
         planes.append(np.column_stack([normals, -offsets]))
+    turns, heights = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(_FACES), 1.0 - (2.0 * np.arange(_FACES) + 1.0) / _FACES
+    rims = np.sqrt(1.0 - heights**2)
+    for ball in cell.balls:
+        normals = np.column_stack([rims * np.cos(turns), rims * np.sin(turns), heights])
+        planes.append(np.column_stack([normals, -(normals @ np.real(ball.point) + share * float(np.real(ball.radius)))]))
     return np.concatenate(planes)
 
 

@@ -13,13 +13,14 @@ from flexstage.mechanism.expand import copy_names, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, posed
 from flexstage.mechanism.outline import outlines
 from flexstage.mechanism.pattern import Normal, Polar
-from flexstage.parts.body import Block, Cylinder
+from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, Solid
 from flexstage.show.display import number
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.primitives import first_value
 from flexstage.show.scene.stage import Scene
 from flexstage.show.scene.view import Side, view, write
+from flexstage.spatial.frame import Frame
 
 _FILLS = {Kind.BODY: "#8d99a6", Kind.HINGE: "#0f8a7e", Kind.DRIVE: "#f2a33c", Kind.GAUGE: "#c2395a", Kind.GROUND: "#56606b"}
 _UPRIGHT = 1.0 - 1e-9
@@ -153,13 +154,28 @@ def _holes(mechanism: Mechanism) -> Iterator[Array]:
     if PLATFORM not in mechanism.bodies:
         return
     for placed in expand(mechanism).bodies[PLATFORM].solids.values():
-        solid, turn, place = placed.solid, first_design(placed.frame.rotation, 2), first_design(placed.frame.position, 1)
-        if isinstance(solid, Block) and solid.hole is not None and abs(turn[2, 2]) > _UPRIGHT:
-            corners = 0.5 * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
-            yield place + (corners * [*(first_value(side) for side in solid.hole), 0.0]) @ turn.T
-        elif isinstance(solid, Cylinder) and solid.bore is not None and abs(turn[2, 0]) > _UPRIGHT:
-            angle = np.linspace(0.0, 2.0 * np.pi, 61)
-            yield place + 0.5 * first_value(solid.bore) * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=-1) @ turn.T
+        whole = placed.solid.solid if isinstance(placed.solid, Pierced) else placed.solid
+        holes = placed.solid.holes if isinstance(placed.solid, Pierced) else ()
+        if isinstance(whole, Block) and whole.hole is not None:
+            yield from _outline_of(Block(whole.material, (*whole.hole, whole.size[2])), placed.frame)
+        elif isinstance(whole, Cylinder) and whole.bore is not None:
+            yield from _outline_of(Cylinder(whole.material, whole.bore, whole.length), placed.frame)
+        for hole in holes:
+            yield from _outline_of(hole, hole.frame.within(placed.frame))
+
+
+def _outline_of(hole: Solid, frame: Frame) -> Iterator[Array]:
+    """The closed outline (k, 3) [m] of a hole that stands upright in a frame."""
+    turn, place = first_design(np.real(frame.rotation), 2), first_design(np.real(frame.position), 1)
+    angle = np.linspace(0.0, 2.0 * np.pi, 61)
+    if isinstance(hole, Cylinder) and abs(turn[2, 0]) > _UPRIGHT:
+        yield place + 0.5 * first_value(hole.diameter) * np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=-1) @ turn.T
+    elif isinstance(hole, Block) and abs(turn[2, 2]) > _UPRIGHT:
+        corners = 0.5 * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
+        yield place + (corners * [*(first_value(side) for side in hole.size[:2]), 0.0]) @ turn.T
+    elif isinstance(hole, Extrusion) and abs(turn[2, 2]) > _UPRIGHT:
+        corners = first_design(np.real(hole.corners), 2)
+        yield place + np.vstack([corners, corners[:1]]) @ turn[:, :2].T
 
 
 def _rectangle(axes: Any, size: Sequence[float], style: str, colour: str, centre: Sequence[float] = (0.0, 0.0)) -> None:

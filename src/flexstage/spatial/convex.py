@@ -102,6 +102,19 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
     return float(gaps[widest]), unit, float(np.max(others, initial=-np.inf))
 
 
+def polytope_corners(normals: Array, offsets: Array) -> Array:
+    """Corners (n, 3) of the polytope of all r with `normals` (k, 3) r <= `offsets` (k,); none where it is empty.
+
+    >>> len(polytope_corners(np.concatenate([np.eye(3), -np.eye(3)]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
+    8
+    """
+    wanted = np.column_stack([normals, np.linalg.norm(normals, axis=1)])
+    ball = scipy.optimize.linprog([0.0, 0.0, 0.0, -1.0], A_ub=wanted, b_ub=offsets, bounds=(None, None))
+    if ball.x is None or ball.x[3] <= 0.0:
+        return np.zeros((0, 3))
+    return scipy.spatial.HalfspaceIntersection(np.column_stack([normals, -offsets]), ball.x[:3]).intersections
+
+
 def distance(first: Array, second: Array) -> float:
     """Distance of the hulls of two sets of points (n, 3) [m], 0 where they meet.
 

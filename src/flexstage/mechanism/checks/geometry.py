@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+import itertools
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Number, stack
-from flexstage.base.quantity import LENGTH, Quantity
+from flexstage.base.number import Array, Number, first_design, stack
+from flexstage.base.quantity import Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
@@ -19,12 +20,12 @@ from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.locate import link_path, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import join
-from flexstage.parts.body import Body, Cylinder, Imported, Inertia, Solid
+from flexstage.parts.body import Body, Extrusion, Imported, Inertia, Solid, winding
 from flexstage.parts.condensation import superelement_findings
 from flexstage.parts.given import Given
 from flexstage.parts.mass import tensor
 from flexstage.parts.part import Part, Restricted, inner
-from flexstage.parts.shape import Elastic, Shaped
+from flexstage.parts.shape import Elastic, Order, Shaped
 from flexstage.parts.superelement import Superelement
 
 _NEAR = 1e-6
@@ -121,13 +122,17 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
         for freedom in set(part.elastic) & set(part.free):
             yield Finding(where, f"freedom {freedom.value} is both elastic and free", "Name it once")
         return
-    for order in part.orders if isinstance(part, Elastic) else ():
-        compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
-        yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
+    yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
         yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
     if isinstance(part, Given):
         yield from _given_findings(where, part)
+
+
+def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
+    for order in orders:
+        compared = _Order(f"{where}.{order.field}", order.quantity, order.other, order.advice)
+        yield from (compared.strict if order.strict else compared.loose)(order.small, order.large)
 
 
 @dataclass(frozen=True)
@@ -202,15 +207,33 @@ def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
 
 
 def _solid(where: str, solid: Solid) -> Iterator[Finding]:
-    if isinstance(solid, Cylinder):
-        yield from _Order(f"{where}.bore", LENGTH, "the diameter", "Make the bore smaller").strict(solid.bore, solid.diameter)
-    elif isinstance(solid, Imported):
+    if isinstance(solid, Imported):
         yield from _inertia(f"{where}.inertia", solid.inertia)
-        for side in solid.size:
-            yield from _Order(f"{where}.wall", LENGTH, "the sides of the box around it", "Give the thinnest wall").loose(solid.wall, side)
-    elif solid.hole is not None:
-        for name, hole, size in zip("xy", solid.hole, solid.size, strict=False):
-            yield from _Order(f"{where}.hole.{name}", LENGTH, "the size of the block", "Make the hole smaller").strict(hole, size)
+    if isinstance(solid, Extrusion):
+        yield from _polygon(f"{where}.outline", solid)
+    yield from _orders(where, solid.orders)
+
+
+def _polygon(where: str, solid: Extrusion) -> Iterator[Finding]:
+    """A polygon has three corners or more, and its sides meet only there."""
+    if len(solid.outline) < 3:
+        yield Finding(where, f"it has {len(solid.outline)} corners", "Give three or more, one after the other round the polygon")
+        return
+    corners = first_design(np.real(solid.corners), 2)
+    after = np.roll(corners, -1, axis=0)
+    for here, there in itertools.combinations(range(len(corners)), 2):
+        apart = there - here not in (1, len(corners) - 1)
+        if np.all(corners[here] == corners[there]) or (apart and _cross((corners[here], after[here]), (corners[there], after[there]))):
+            what = f"its sides from corner {here + 1} and from corner {there + 1} meet"
+            yield Finding(where, what, "Give the corners one after the other round the polygon, each once")
+            return
+
+
+def _cross(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
+    """Whether two sides of a polygon cross or touch."""
+    beside = [winding(np.array([*line, point])) for line, points in ((one, other), (other, one)) for point in points]
+    overlap = all(max(np.min(one, 0)[k], np.min(other, 0)[k]) <= min(np.max(one, 0)[k], np.max(other, 0)[k]) for k in (0, 1))
+    return overlap and beside[0] * beside[1] <= 0.0 and beside[2] * beside[3] <= 0.0
 
 
 def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:

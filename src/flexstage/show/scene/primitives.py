@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 import numpy as np
 
-from flexstage.base.number import Array, Number
-from flexstage.parts.body import Block, Cylinder, Imported, Solid
+from flexstage.base.number import Array, Number, first_design
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
 from flexstage.parts.part import Part, inner
 from flexstage.parts.shape import Profiled, Section, Shaped
-from flexstage.show.scene.facet import Facet, Paint, circle, extrude, loft, pierce, rectangle
+from flexstage.show.scene.facet import SHARP, Facet, Paint, circle, extrude, loft, pierce, rectangle
 
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
@@ -75,9 +78,11 @@ def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
     >>> len(solid_facets(Block("steel", (0.1, 0.1, 0.01)), Paint(Kind.BODY, ("a", "a"))))
     6
     """
+    if isinstance(solid, Pierced):  # shown without its holes
+        return solid_facets(solid.solid, paint)
     if isinstance(solid, Imported):  # shown as the box around it
         return _block(Block(solid.material, solid.size), paint)
-    return _block(solid, paint) if isinstance(solid, Block) else _cylinder(solid, paint)
+    return _SOLIDS[type(solid)](solid, paint)
 
 
 def _block(solid: Block, paint: Paint) -> list[Facet]:
@@ -100,3 +105,30 @@ def _cylinder(solid: Cylinder, paint: Paint) -> list[Facet]:
         return loft(outer, paint, round_section=True)
     core = extrude(ends, [circle(first_value(solid.bore), 24)] * 2)
     return pierce(outer, core, paint, round_section=True)
+
+
+def _extrusion(solid: Extrusion, paint: Paint) -> list[Facet]:
+    corners = first_design(np.real(solid.corners), 2)
+    bottom, top = _prism(corners, first_value(solid.height))
+    facets = loft(np.stack([bottom, top]), paint, closed=False)
+    for trio in triangles(corners):
+        for ring, turn in ((top, trio), (bottom, trio[::-1])):
+            ends = zip(turn, (*turn[1:], turn[0]), strict=True)
+            edges = tuple(SHARP if abs(after - here) in (1, len(corners) - 1) else None for here, after in ends)
+            facets.append(Facet(ring[list(turn)], edges, paint, np.zeros(3)))
+    return facets
+
+
+def _sphere(solid: Sphere, paint: Paint) -> list[Facet]:
+    radius = 0.5 * first_value(solid.diameter)
+    angles = np.linspace(0.0, np.pi, 13)[1:-1]
+    rings = extrude(-radius * np.cos(angles), [circle(2.0 * radius * float(np.sin(angle)), 24) for angle in angles])
+    return loft(rings, paint, round_section=True)
+
+
+_SOLIDS: Mapping[type[Solid], Callable[[Any, Paint], list[Facet]]] = {
+    Block: _block,
+    Cylinder: _cylinder,
+    Extrusion: _extrusion,
+    Sphere: _sphere,
+}

@@ -51,13 +51,17 @@ def cad(
 
 
 def state(
-    part: Annotated[Path, typer.Argument(metavar="PART.STEP", help="STEP file of one solid.", show_default=False)],
+    part: Annotated[Path, typer.Argument(metavar="PART.STEP", help="STEP file of one solid, or an assembly.", show_default=False)],
     design: Design,
     *,
     material: Annotated[
         str | None, typer.Option("--material", help="Material of the design; without it the only one.", show_default=False)
     ] = None,
     body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body the outline is for.")] = "platform",
+    solid: Annotated[
+        str | None,
+        typer.Option("--solid", metavar="NAME", help="Solid of an assembly, by its name or its place: #2.", show_default=False),
+    ] = None,
 ) -> None:
     """State a STEP file as an outline.
 
@@ -70,8 +74,9 @@ def state(
     require_solver()
     from flexstage.solid.fea.imported import measure, with_properties  # needs the solver, refused by name where it is missing
 
-    solid = with_properties(measure(part), str(part.resolve()), chosen, float(mechanism.materials[chosen].density))
-    print_result(outline_text(body, part.stem, solid, design.parent))
+    density = float(mechanism.materials[chosen].density)
+    stated = with_properties(measure(part, solid), str(part.resolve()), chosen, density, solid)
+    print_result(outline_text(body, part.stem if solid is None else solid.lstrip("#"), stated, design.parent))
 
 
 def _material(mechanism: Mechanism, name: str | None) -> str:

@@ -18,7 +18,7 @@ from netgen import occ
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.register import Register
-from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -49,13 +49,7 @@ def draw_form(form: Form) -> occ.Solid:
     >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
     6000.0
     """
-    if isinstance(form, Block):
-        return _block(form)
-    if isinstance(form, Cylinder):
-        return _tube(form)
-    if isinstance(form, Imported):
-        return imported_shape(form)
-    return _shape(form).draw(form)
+    return _SOLIDS[type(form)](form) if isinstance(form, Solid) else _shape(form).draw(form)
 
 
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
@@ -123,6 +117,30 @@ def _block(form: Block) -> occ.Solid:
 def _tube(form: Cylinder) -> occ.Solid:
     solid = _round(form.diameter, form.length)
     return solid if form.bore is None else solid - _round(form.bore, 2.0 * form.length)
+
+
+def _extrusion(form: Extrusion) -> occ.Solid:
+    half = 0.5 * _mm(form.height)
+    corners = [occ.Pnt(_mm(x), _mm(y), -half) for x, y in np.real(form.corners)]
+    sides = [occ.Segment(here, there) for here, there in pairwise([*corners, corners[0]])]
+    return occ.Face(occ.Wire(sides)).Extrude(occ.Vec(0, 0, 2.0 * half))
+
+
+def _pierced(form: Pierced) -> occ.Solid:
+    drawn = draw_form(form.solid)
+    for hole in form.holes:
+        drawn = drawn - move_solid(draw_form(hole), hole.frame)
+    return drawn
+
+
+_SOLIDS: Mapping[type[Solid], Callable[[Any], occ.Solid]] = {
+    Block: _block,
+    Cylinder: _tube,
+    Extrusion: _extrusion,
+    Sphere: lambda form: occ.Sphere(occ.Pnt(0, 0, 0), 0.5 * _mm(form.diameter)),
+    Imported: imported_shape,
+    Pierced: _pierced,
+}
 
 
 def _neck(form: Neck) -> occ.Solid:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import numpy as np
 from netgen import occ
 
 from flexstage.base.files import require_regular
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, stack
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Imported, Inertia
@@ -47,20 +48,20 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
     x, y, z = (-MILLIMETRES * float(np.real(value)) for value in form.middle)
-    return _solid(path).Move(occ.Vec(x, y, z))
+    return _solid(path, form.solid).Move(occ.Vec(x, y, z))
 
 
-def measure(path: Path) -> ImportedProperties:
-    """Measure the solid in a STEP file.
+def measure(path: Path, name: str | None = None) -> ImportedProperties:
+    """Measure the solid in a STEP file, of several the one of that name or place (`#2`).
 
-    Raises `DesignError` where there is no such file or it does not hold exactly one solid.
+    Raises `DesignError` where there is no such file or it does not hold exactly one such solid.
 
     >>> measure(Path("nowhere.step"))
     Traceback (most recent call last):
     flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
     """
     digest = _sha256(path)
-    solid = _solid(path)
+    solid = _solid(path, name)
     low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
     volume = float(solid.mass) / MILLIMETRES**3
     centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / MILLIMETRES
@@ -73,8 +74,8 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
     return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / MILLIMETRES**5
 
 
-def with_properties(found: ImportedProperties, file: str, material: str, density: float) -> Imported:
-    """The description of a measured solid of a `density` [kg/m^3].
+def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
+    """The description of a measured solid of a `density` [kg/m^3], called `solid` where its file holds several.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
@@ -91,6 +92,7 @@ def with_properties(found: ImportedProperties, file: str, material: str, density
         centre=_triple(found.centre),
         inertia=inertia,
         middle=_triple(found.middle),
+        solid=solid,
     )
 
 
@@ -121,7 +123,7 @@ def _imported_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
 def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Finding]:
     path = Path(solid.file)
     try:
-        found = measure(path)
+        found = measure(path, solid.solid)
     except DesignError as error:
         yield from (Finding(f"{where}.file", f"{each.where}: {each.what}", each.advice) for each in error.findings)
         return
@@ -165,7 +167,7 @@ def _sha256(path: Path) -> str:
         raise refuse(str(path), f"it cannot be read: {reason}", "Give the path of a STEP file, from the design file or whole") from None
 
 
-def _solid(path: Path) -> occ.TopoDS_Shape:
+def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     with path.open("rb") as stream:
         start = stream.read(200)
     if not start.lstrip().startswith(b"ISO-10303-21"):
@@ -176,6 +178,24 @@ def _solid(path: Path) -> occ.TopoDS_Shape:
         solids = list(occ.OCCGeometry(str(path)).shape.solids)
     except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
         raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) anew") from None
-    if len(solids) != 1:
-        raise refuse(str(path), f"it holds {len(solids)} solids", "Give a file of one solid; a body may have several files")
-    return solids[0]
+    names = _names(path, solids)
+    if name is None and len(solids) != 1:
+        what = f"it holds {len(solids)} solids: {', '.join(names)}"
+        raise refuse(str(path), what, f'Say which: solid = "{next(iter(names), "")}"; a body may have several')
+    if name is not None and names.count(name) != 1 and not (name.startswith("#") and name[1:].isdecimal() and 0 < int(name[1:]) <= len(names)):
+        what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'
+        raise refuse(str(path), what, f'{suggest_nearest(name, names)}; or name it by its place among them, "#1" to "#{len(names)}"')
+    return solids[0 if name is None else names.index(name) if name in names else int(name[1:]) - 1]
+
+
+_BREP = re.compile(rb"=\s*MANIFOLD_SOLID_BREP\s*\(\s*'((?:[^']|'')*)'\s*,\s*(#\d+)\s*\)")
+_SHELL = re.compile(rb"(#\d+)\s*=\s*CLOSED_SHELL\s*\(\s*'(?:[^']|'')*'\s*,\s*\(([^)]*)\)")
+
+
+def _names(path: Path, solids: Sequence[occ.TopoDS_Shape]) -> list[str]:
+    """What a file calls its solids, or their places: the kernel drops names, which count where the file's order is its own."""
+    text = path.read_bytes()
+    faces = {shell: members.count(b"#") for shell, members in _SHELL.findall(text)}
+    found = [(name.decode("utf-8", "replace").replace("''", "'"), faces.get(shell)) for name, shell in _BREP.findall(text)]
+    alike = len(found) == len(solids) and all(count == len(solid.faces) for (_, count), solid in zip(found, solids, strict=True))
+    return [found[place][0] if alike and found[place][0] else f"#{place + 1}" for place in range(len(solids))]

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Number
 from flexstage.base.register import Register
 from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement
-from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.body import Cylinder, Solid
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
@@ -26,7 +26,7 @@ MILLIMETRES = 1e3
 OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
 """Shapes that other packages offer, without those of `draw`: the kernel that draws is not needed to ask for versions."""
 
-Form: TypeAlias = Shaped | Block | Cylinder | Imported
+Form: TypeAlias = Shaped | Solid
 """What can be drawn: given 6x6 parts and ideal joints have no shape."""
 
 
@@ -113,6 +113,7 @@ def form_of(link: PlacedLink | PlacedSuperelement) -> Form | Finding:
 def form_digest(form: Form) -> str:
     """Digest of what is drawn; where another package offers its shape, that package's name and version count.
 
+    >>> from flexstage.parts.body import Block
     >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))
     False
     """
@@ -137,9 +138,7 @@ def span(form: Form) -> float:
     >>> span(Notch("steel", 1e-3, 1e-2, Circular(5e-3)))
     0.01
     """
-    if isinstance(form, (Block, Imported)):
-        return _single(form.size[0])
-    return _single(form.span if isinstance(form, Shaped) else form.length)
+    return _single(form.span if isinstance(form, Shaped) else form.sides[..., 0])
 
 
 def end_area(form: Form) -> float:
@@ -150,10 +149,10 @@ def end_area(form: Form) -> float:
     >>> round(end_area(Neck("steel", 2e-3, Straight(1e-2), width=3e-3)) * 1e6, 9)
     6.0
     """
-    if isinstance(form, (Block, Imported)):
-        return _single(form.size[1]) * _single(form.size[2])
     if isinstance(form, Cylinder):
         return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
+    if isinstance(form, Solid):
+        return _single(form.sides[..., 1]) * _single(form.sides[..., 2])
     end = form.end
     return 0.25 * np.pi * _single(end.height) ** 2 if end.is_round else _single(end.height) * _single(end.width)
 
@@ -161,16 +160,12 @@ def end_area(form: Form) -> float:
 def thinnest(form: Form) -> float:
     """Smallest dimension of a form [m]: it sets the mesh there.
 
+    >>> from flexstage.parts.body import Block
     >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
     0.02
     """
-    if isinstance(form, Imported) and form.wall is not None:
-        return _single(form.wall)
-    if isinstance(form, (Block, Imported)):
-        return min(_single(value) for value in form.size)
-    if isinstance(form, Cylinder):
-        wall = _single(form.diameter) if form.bore is None else 0.5 * (_single(form.diameter) - _single(form.bore))
-        return min(wall, _single(form.length))
+    if isinstance(form, Solid):
+        return _single(form.thinnest)
     return min(_single(form.throat.height), _single(form.throat.width))
 
 
