@@ -138,7 +138,7 @@ def polygon(*corners: str) -> str:
         ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "2 corners", "three"]),
         ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "meet"]),
         ('mass = "1 kg"', polygon("0 0", "2 0", "0 0", "0 1"), ["bodies.platform.solids.s.outline", "meet"]),
-        ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "meet"]),
+        ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "on a line"]),
     ],
 )
 def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:

@@ -227,6 +227,8 @@ def _polygon(where: str, solid: Extrusion) -> Iterator[Finding]:
             what = f"its sides from corner {here + 1} and from corner {there + 1} meet"
             yield Finding(where, what, "Give the corners one after the other round the polygon, each once")
             return
+    if abs(winding(corners)) <= _SLACK * float(np.max(np.abs(corners))) ** 2:
+        yield Finding(where, "its corners lie on a line", "Give a polygon that encloses an area")
 
 
 def _cross(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
