@@ -13,6 +13,8 @@ from netgen import occ
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Placement, Unit
+from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Inertia, Solid, Sphere
 from flexstage.parts.mass import MassProperties, mass_properties
 from flexstage.parts.material import Material
@@ -343,3 +345,25 @@ def test_a_shifted_copy_neither_gains_nor_loses_mass() -> None:
     stage = case("double-triangle")
     masses = [expand(replace(stage, changes={"B2.shift.y": shift})).bodies["platform"].mass for shift in (-1e-5, 0.0, 1e-5)]
     assert all(mass is not None and masses[1] is not None and np.isclose(mass.mass, masses[1].mass, rtol=ROUND_OFF) for mass in masses)
+
+
+def test_a_mirrored_body_is_the_image_of_what_is_drawn() -> None:
+    """Weighed by theory, drawn by CAD: both where the mirror shows them, the hole too."""
+    hole = Cylinder("steel", 0.004, 0.05, (0.005, 0.025, 0.0), removes=True)
+    unit = Unit(bodies={"angle": Body(solids={"s": replace(CORNER, along=(1.0, 0.3, 0.0)), "hole": hole})}, links={})
+    stage = replace(case("parallelogram"), materials={**case("parallelogram").materials, "steel": MATERIALS["steel"]}, gauges={})
+    copies = {name: Placement("angle", Pose((0.02, 0.03, 0.04), mirror=mirror)) for name, mirror in (("A", None), ("M", Normal.X))}
+    shown = replace(stage, units={"angle": unit}, place=copies, links={}, requirements={})
+    bodies, pieces = expand(shown).bodies, stage_pieces(shown).bodies
+    masses = [bodies[f"{name}/angle"].mass for name in "AM"]
+    assert masses[0] is not None
+    assert masses[1] is not None
+    turn = np.diag([-1.0, 1.0, 1.0])
+    assert np.isclose(masses[0].mass, masses[1].mass, rtol=ROUND_OFF)
+    assert np.allclose(masses[1].centre, turn @ masses[0].centre, rtol=0.0, atol=ROUND_OFF)
+    assert np.allclose(masses[1].inertia, turn @ masses[0].inertia @ turn, rtol=0.0, atol=ROUND_OFF * np.max(np.abs(masses[0].inertia)))
+    for name, mass in zip("AM", masses, strict=True):
+        (piece,) = pieces[f"{name}/angle"]
+        drawn = move_solid(draw_form(piece.form), piece.frame)
+        assert np.isclose(float(mass.mass) / DENSITY * 1e9, drawn.mass, rtol=1e-6)  # type: ignore[union-attr]
+        assert np.allclose(1e3 * mass.centre, [drawn.center.x, drawn.center.y, drawn.center.z], rtol=0.0, atol=1e-4)  # type: ignore[union-attr]

@@ -182,10 +182,11 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     if name is None and len(solids) != 1:
         what = f"it holds {len(solids)} solids: {', '.join(names)}"
         raise refuse(str(path), what, f'Say which: solid = "{next(iter(names), "")}"; a body may have several')
-    if name is not None and names.count(name) != 1 and not (name.startswith("#") and name[1:].isdecimal() and 0 < int(name[1:]) <= len(names)):
+    place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
+    if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
         what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'
         raise refuse(str(path), what, f'{suggest_nearest(name, names)}; or name it by its place among them, "#1" to "#{len(names)}"')
-    return solids[0 if name is None else names.index(name) if name in names else int(name[1:]) - 1]
+    return solids[0 if name is None else names.index(name) if name in names else place - 1]
 
 
 _BREP = re.compile(rb"=\s*MANIFOLD_SOLID_BREP\s*\(\s*'((?:[^']|'')*)'\s*,\s*(#\d+)\s*\)")
