@@ -60,7 +60,7 @@ from flexstage.mechanism.node import (
 from flexstage.mechanism.pattern import Polar, Pose
 from flexstage.mechanism.trade import advise_key, advise_kind
 from flexstage.parts import GAUGES, PARTS
-from flexstage.parts.body import Block, Cylinder, Imported
+from flexstage.parts.body import SOLIDS, Block, Cylinder, Imported, Solid
 from flexstage.parts.gauge import Gauge, Instrument
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.shape import Elastic
@@ -595,8 +595,9 @@ def _node(hint: Any) -> Node:
     if hint is Instrument:
         kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
         return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
-    if hint is Elastic or origin in (types.UnionType, typing.Union):
-        options = [each for option in typing.get_args(hint) or (hint,) for each in (PARTS.all.values() if option is Elastic else [option])]
+    if hint in (Elastic, Solid) or origin in (types.UnionType, typing.Union):
+        several = {Elastic: PARTS.all.values(), Solid: SOLIDS}
+        options = [each for option in typing.get_args(hint) or (hint,) for each in several.get(option, [option])]
         told = [_discriminator(option) for option in options]
         named = tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True))
         return FieldUnionNode(None, named) if told[0][0] == BY_FIELD else UnionNode(told[0][0], named)

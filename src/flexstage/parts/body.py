@@ -469,6 +469,10 @@ def within_polygon(points: Array, corners: Array, slack: float) -> Array:
     return inside | near if slack >= 0.0 else inside & ~near
 
 
+SOLIDS: tuple[type[Solid], ...] = (Block, Cylinder, Extrusion, Sphere, Imported)
+"""What a body may be drawn of."""
+
+
 @dataclass(frozen=True, eq=False)
 class Body(Description):
     """A rigid body: `solids` (outlines with materials), or a stated `mass`, `centre` of mass and `inertia`; named `points`.
@@ -483,7 +487,7 @@ class Body(Description):
     the owner. It states no mass and no reference.
     """
 
-    solids: Mapping[str, Block | Cylinder | Extrusion | Sphere | Imported] = field(default_factory=lambda: Table({}))
+    solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))
     mass: Annotated[Number, MASS, NOT_NEGATIVE] | None = None
     centre: Annotated[Vector, LENGTH] | None = None
     inertia: Inertia | None = None

@@ -12,7 +12,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, first_design, stack
-from flexstage.base.quantity import Quantity
+from flexstage.base.quantity import LENGTH, Quantity
 from flexstage.base.unit import show
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies

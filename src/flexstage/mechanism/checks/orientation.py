@@ -11,7 +11,7 @@ from flexstage.base.number import Vector, stack
 from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism, posed
 from flexstage.mechanism.pattern import Pattern, Pose
-from flexstage.parts.body import Body, Cylinder, Sphere
+from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Part, Restricted, ports_of
@@ -75,8 +75,9 @@ def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]
     for name, body in bodies:
         for solid_name, solid in body.solids.items():
             here = f"{where}.{name}.solids.{solid_name}"
-            if not isinstance(solid, Sphere):
-                yield from _pair(f"{here}.along", solid.along, f"{here}.up", None if isinstance(solid, Cylinder) else solid.up)
+            along, up = getattr(solid, "along", None), getattr(solid, "up", None)
+            if along is not None:
+                yield from _pair(f"{here}.along", along, f"{here}.up", up)
 
 
 def _pattern(where: str, pattern: Pattern, *, is_round: bool = False) -> Iterator[Finding]:
