@@ -13,6 +13,10 @@ import flexstage as fs
 from flexstage.analysis.workspace.gauging import gauge_inverse, pose_resolution
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.coordinates import coordinates
+from flexstage.control.electronics import hardware
+from flexstage.control.plants import plant
+from flexstage.experiment.virtual_rig.plan import plan_test
+from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugeSum, LinkProbe, Probe
 from flexstage.mechanism.pattern import Pose
@@ -175,6 +179,30 @@ def test_growth_alike_everywhere_is_read_as_scale_by_strain_gauges_and_not_at_al
     assert found.at("G", "uniform") == pytest.approx(steel * length, rel=1e-6)
     assert abs(found.at("T", "uniform")) < 1e-12
     assert [units[0] for units in found.unit] == ["m/K", "rad/K"]
+
+
+def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
+    """Of a tilt rad everywhere, and what is asked of all gauges in metres is not its; sums are formed where the pose is."""
+    gauges = {
+        "T": read("tilt", PLATFORM, GROUND, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        "G1-G6": LinkProbe("strain", "B1-B6/pzt"),
+        "E": read("scale", PLATFORM, GROUND, (0.0, 0.1, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        "D": GaugeSum({"G1": 1.0, "G2": -1.0}),
+    }
+    whole = replace(stage, sensors=SENSORS, gauges=gauges)
+    model = mapped(whole)
+    assert {channel.name: channel.unit for channel in model.outputs if channel.name in ("T", "G1", "D")} == {
+        "T": "rad",
+        "G1": "m",
+        "D": "m",
+    }
+    test = plan_test(whole, model, RigSetup(seconds=1.0, sensing=Sensing(density=1e-9, resolution=1e-8, drift=1e-9)))
+    assert (test.gauges, test.units) == (("T", "G1", "G2", "G3", "G4", "G5", "G6", "E"), ("rad", *("m",) * 7))
+    assert (test.densities[0], test.steps[0], test.walks[0]) == (1e-10, 5e-9, 0.0)
+    assert set(test.densities[1:]) == {1e-9}
+    loop = plant(model, ideal(whole), hardware(whole, rate=10e3))
+    assert loop.gauges == test.gauges
+    assert [channel.unit for channel in loop.system.outputs if channel.name.startswith("gap.")] == ["rad", *("m",) * 7]
 
 
 @pytest.mark.parametrize(
