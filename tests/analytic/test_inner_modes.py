@@ -77,6 +77,16 @@ def test_a_clamped_free_beam_needs_few_modes(count, error):
     np.testing.assert_allclose(nearest, FREE[:2], rtol=error)
 
 
+def test_a_rod_bends_alike_both_ways():
+    """Clamped-free: every frequency of Euler's twice, across y and across z."""
+    light = lumped(stage(ROD, Body(reference=(0.0, 0.0, -0.025))))
+    found = eigen(light).values ** 0.5 / unit(ROD)
+    for wanted in FREE[:2]:
+        pair = np.sort(np.abs(found / wanted - 1.0))[:2]
+        np.testing.assert_allclose(pair, pair[0], atol=1e-7)
+        assert pair[1] < 2e-3
+
+
 def test_wide_leaf_of_a_component_library():
     """Clamped-free silicon leaf, 100 x 20 x 2 um: modes of an ANSYS model [kHz] (Kolchuzhin, LMGT_MEMS_component_library, clamped_beam).
 
