@@ -14,19 +14,21 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, first_design
 from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
+from flexstage.mechanism.incidence import deformation, layout, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.models.ideal import ideal
+from flexstage.models.linear.elimination import null_space, pivoted_qr
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted, actuator_of
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame, transport
 
 _COLLINEAR = 1e-6
 
@@ -78,23 +80,34 @@ def mapped(mechanism: Mechanism) -> LinearModel:
     kinematics = ideal(mechanism)
     kinematics.mapping  # noqa: B018  (refuses under-actuated stages)
     assembly = expand(mechanism).welded
-    springs = unit_stiffness(mechanism, assembly)
+    springs = unit_stiffness(mechanism, assembly, kinematics)
     mass = moving_inertia(mechanism, assembly.bodies[PLATFORM])
     if mass is None:
         raise refuse("bodies.platform", "it has no mass", "State its mass, centre and inertia, or give it solids")
-    return _model(mechanism, kinematics, springs, mass)
+    return _model(mechanism, kinematics, springs, mass, _points(assembly, kinematics))
 
 
-def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, Number], mass: Array) -> LinearModel:
+def _points(assembly: Assembly, kinematics: Kinematics) -> dict[str, tuple[Array, Array]]:
+    """The ideal motion (..., 6, f) of the platform and of every named point, and that (..., 6, 6) when all moves with the ground."""
+    order, centre = layout(assembly), assembly.bodies[PLATFORM].reference
+    found = {PLATFORM: (kinematics.motion, np.eye(6))}
+    for name, (body, point) in assembly.points.items():
+        found[name] = twist_at(assembly, order, body, Frame(np.eye(3), point)) @ kinematics.bodies, transport(point - centre)
+    return found
+
+
+def _model(
+    mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, Number], mass: Array, places: Mapping[str, tuple[Array, Array]]
+) -> LinearModel:
     count, freedoms = len(kinematics.actuators), kinematics.mobility
-    outputs = np.concatenate(np.broadcast_arrays(kinematics.motion), axis=-2)
+    outputs = np.concatenate(_broadcast(*(motion for motion, _ in places.values())), axis=-2)
+    loads, carried = 6 * len(places), [rigid for _, rigid in places.values()]
     sensing = kinematics.sensing @ kinematics.motion
-    channels = [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
+    channels = [Channel(f"{place}.{name}", unit) for place in places for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)]
     channels += [Channel(name, unit) for name, unit in zip(kinematics.gauges, kinematics.reading_units, strict=True)]
     inputs = [Channel(name, "m") for name in kinematics.actuators]
-    inputs += [Channel(f"{PLATFORM}.{name}", unit) for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
+    inputs += [Channel(f"{place}.{name}", unit) for place in places for name, unit in zip(FORCES, WRENCH_UNITS, strict=True)]
     transposed = np.swapaxes(kinematics.motion, -1, -2)
-    batch = kinematics.motion.shape[:-2]
     return LinearModel(
         coordinates=tuple(f"{PLATFORM}.{name}" for name in kinematics.coordinates),
         stiffness={
@@ -103,13 +116,13 @@ def _model(mechanism: Mechanism, kinematics: Kinematics, springs: Mapping[str, N
         },
         inertia={PLATFORM: Contribution(kinematics.motion, mass)},
         inputs=tuple(inputs),
-        force=np.concatenate([np.zeros((*batch, freedoms, count)), transposed], axis=-1),
-        imposed={name: np.eye(count + 6)[index : index + 1] for index, name in enumerate(kinematics.actuators)},
+        force=np.concatenate([np.zeros((*outputs.shape[:-2], freedoms, count)), np.swapaxes(outputs, -1, -2)], axis=-1),
+        imposed={name: np.eye(count + loads)[index : index + 1] for index, name in enumerate(kinematics.actuators)},
         outputs=tuple(channels),
         output=np.concatenate(_broadcast(outputs, sensing), axis=-2),
-        feedthrough=np.zeros((len(channels), count + 6)),
+        feedthrough=np.zeros((len(channels), count + loads)),
         rigid=kinematics.projection,
-        rigid_output=np.concatenate([np.eye(6), np.zeros((len(kinematics.gauges), 6))]),
+        rigid_output=np.concatenate(_broadcast(*carried, np.zeros((len(kinematics.gauges), 6))), axis=-2),
         base_inertia=transposed @ mass,
         damping=mechanism.damping,
         idle=(),
@@ -122,8 +135,11 @@ def _broadcast(*arrays: Array) -> list[Array]:
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
 
 
-def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number]:
+def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
     """Stiffness of every actuator's unit in actuator coordinates [N/m], stated or computed.
+
+    A unit that is neither a straight strut nor a lever is read as the chain of links that bear its load (`borne_compliance`), where the
+    `kinematics` are given and statics alone says which those are.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -134,15 +150,104 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly) -> dict[str, Number
     findings: list[Finding] = []
     result: dict[str, Number] = {}
     for name, drive in assembly.strokes.items():
-        copy = drive.rpartition("/")[0]
+        owner = drive.rpartition("/")[0]
+        copy = owner if owner in unit_of else ""
         stated = mechanism.units[unit_of[copy]].stiffness if copy else None
         try:
             result[name] = stated if stated is not None else computed_stiffness(assembly, drive)
         except DesignError as error:
+            if kinematics is not None and (borne := borne_compliance(assembly, kinematics, name)) is not None:
+                result[name] = 1.0 / borne
+                continue
             key = f"State units.{unit_of[copy]}.stiffness" if copy else "Draw the actuator in a unit, whose stiffness can be stated"
             findings += [Finding(item.where, item.what, f"{key}, or use the lumped model") for item in error.findings]
     require(findings)
     return result
+
+
+def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
+    """Compliance [m/N] in an actuator's coordinate of all links that bear its load: the sum of f^T C f, by virtual work.
+
+    f is what a link bears in its locked freedoms, in equilibrium, strokes held, under a wrench on the platform that loads this actuator
+    alone, V^T w = R_a^T e, and no guide: what bears wrenches that move nothing is rigid in this model. Free freedoms bear nothing, ideal
+    joints give way nowhere. None where statics does not say what the links bear (redundant constraints take part, or a guide does), where
+    one of them has no known compliance, or where nothing is elastic.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(1e-6 / float(borne_compliance(expand(stage), ideal(stage), "B1")), 2)  # as its straight strut
+    10.3
+    """
+    order = layout(assembly)
+    locked = {name: [axis for axis, each in enumerate(ALL) if each not in free] for name, free in kinematics.free.items()}
+    strains = [deformation(assembly, order, assembly.links[name])[..., axes, :] for name, axes in locked.items()]
+    row = kinematics.actuation[..., kinematics.actuators.index(actuator), :, None]
+    wrenches = _broadcast(np.swapaxes(kinematics.projection, -1, -2) @ row, _idle_wrenches(kinematics))
+    loads = order.selector(PLATFORM).T @ np.concatenate(wrenches, axis=-1)
+    rigid = np.array([isinstance(assembly.links[name].part, Joint) for name, axes in locked.items() for _ in axes])
+    rows, loads = _broadcast(np.concatenate(_broadcast(*strains), axis=-2), loads)
+    forces = _equilibrium(rows, loads, rigid, kinematics.length)
+    return None if forces is None else _work(assembly, locked, forces)
+
+
+def _idle_wrenches(kinematics: Kinematics) -> Array:
+    """Wrenches (..., 6, 6 - f) that do no work in any ideal motion."""
+    rest = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
+    return rest[..., pivoted_qr(np.real(first_design(rest, 2)))[2][: 6 - kinematics.mobility]]
+
+
+def _work(assembly: Assembly, locked: Mapping[str, list[int]], forces: Array) -> Number | None:
+    """f^T C f of all links that bear something; none where a compliance is not known, or nothing gives way."""
+    total, start = np.zeros(()), 0
+    largest = np.max(np.abs(np.real(first_design(forces, 1))))
+    for name, axes in locked.items():
+        borne = forces[..., start : start + len(axes)]
+        start += len(axes)
+        if np.max(np.abs(np.real(borne)), initial=0.0) > _COLLINEAR * largest and not isinstance(assembly.links[name].part, Joint):
+            matrix = _known_compliance(assembly.links[name])
+            if matrix is None:
+                return None
+            total = total + np.einsum("...i,...ij,...j", borne, matrix[..., axes, :][..., axes], borne)
+    return None if np.all(np.real(total) == 0.0) else total
+
+
+def _known_compliance(link: PlacedLink) -> Array | None:
+    try:
+        return _compliance(link)
+    except DesignError:
+        return None
+
+
+def _equilibrium(rows: Array, loads: Array, rigid: Array, length: float) -> Array | None:
+    """Forces (..., m) of constraints (..., m, N) that hold the first load (..., N, k), with any amount of the others added.
+
+    Elastic constraints whose force is a matter of choice bear nothing: redundant ones, and guides, which the other loads would load. Those
+    that are `rigid` (m,) bear what is needed, which is not told. None where the first load cannot be held so. Choices are those of the
+    first design.
+    """
+    scale = np.tile([1.0, 1.0, 1.0, *[1.0 / length] * 3], rows.shape[-1] // 6)
+    first, wanted = np.real(first_design(rows, 2)) * scale, np.real(first_design(loads, 2)) * scale[:, None]
+    columns = np.concatenate([_normal(first).T, _normal(wanted[:, 1:].T).T], axis=1)
+    open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[: len(first)] > _COLLINEAR
+    bearing = np.append(np.flatnonzero(rigid | ~open_), np.arange(len(first), columns.shape[1]))
+    _, triangle, order = pivoted_qr(columns[:, bearing])
+    diagonal = np.abs(np.diag(triangle))
+    chosen = bearing[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
+    missed = wanted[:, 0] - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted[:, 0], rcond=None)[0]
+    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted[:, 0])):
+        return None
+    equations = pivoted_qr(columns[:, chosen].T)[2][: len(chosen)]
+    full = np.concatenate([np.swapaxes(rows, -1, -2), loads[..., 1:]], axis=-1)
+    solved = np.linalg.solve(full[..., equations, :][..., chosen], loads[..., equations, :1])[..., 0]
+    forces = np.zeros((*solved.shape[:-1], columns.shape[1]), dtype=solved.dtype)
+    forces[..., chosen] = solved
+    return forces[..., : len(first)]
+
+
+def _normal(rows: Array) -> Array:
+    """Rows of length one; those of nothing stay."""
+    norms = np.linalg.norm(rows, axis=1)
+    return rows / np.where(norms > 0.0, norms, 1.0)[:, None]
 
 
 def computed_stiffness(assembly: Assembly, drive: str) -> Number:
