@@ -269,7 +269,8 @@ def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Findi
     stress = hinge_stress(mechanism, model, StrokeLimits((), np.zeros(0), np.zeros(0)))
     safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
     if np.min(safety, initial=np.inf) < 1.0:
-        what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its yield stress"
+        limit = stress.governing[stress.links.index(stress.weakest)]
+        what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its {limit}"
         yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
 
 

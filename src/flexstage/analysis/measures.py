@@ -161,7 +161,7 @@ def safety(bench: Bench, _: Measure) -> Array:
     if bench.stress.unknown:
         links = ", ".join(bench.stress.unknown[:3])
         raise refuse(
-            "safety", f"the material of {links} states no yield stress", 'Add for example yield_stress = "1360 MPa" to the material'
+            "safety", f"the material of {links} states no limit of stress", 'Add for example yield_stress = "1360 MPa" to the material'
         )
     return bench.stress.safety
 

@@ -50,13 +50,22 @@ def beam(points: Stations, section: Section, material: Material) -> Beam:
     >>> round(float(bar.diagonal()[0] * 200e9 * 1e-4), 12)
     0.1
     """
-    young, shear = _column(material.young), _column(material.shear)
-    twisting = free_twist(section, shear) if section.is_round else constrained_twist(section, points, young, shear)
-    return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, _column(material.density)), twisting)
+    young, shear = _column(material.modulus), _column(material.shear)
+    across = shear_across(material)
+    even = shear if across is None else 2.0 / (1.0 / shear + 1.0 / across)
+    twisting = free_twist(section, even) if section.is_round else constrained_twist(section, points, young, shear)
+    return Beam(
+        points, section, flexibility(section, young, shear, twisting, across), inertia(section, _column(material.density)), twisting
+    )
 
 
-def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting) -> Array:
-    """Flexibility per length (..., m, 6) of a section; moduli of shape (..., 1).
+def shear_across(material: Material) -> Array | None:
+    """The material's shear modulus in the plane of x and y (..., 1), where it is another one than in that of x and z."""
+    return None if material.shear_across is None else _column(material.shear_across)
+
+
+def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting, across: Array | None = None) -> Array:
+    """Flexibility per length (..., m, 6) of a section; moduli of shape (..., 1), `across` that of shear along y where it is another one.
 
     >>> from flexstage.beams.section import circle
     >>> section = circle(np.ones(1), 1.0)
@@ -67,7 +76,7 @@ def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting
     return stack(
         [
             1.0 / (young * section.area),
-            lateral,
+            lateral if across is None else lateral * (shear / across),
             lateral,
             twisting.rate,
             1.0 / (young * section.inertia_y),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.beam import Beam, flexibility, inertia
+from flexstage.beams.beam import Beam, flexibility, inertia, shear_across
 from flexstage.beams.held import Bending, Held, Plate, Torsion, held_bending, held_twist
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
@@ -27,11 +27,11 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
     """
     points = stations(Straight(part.length), part.thickness)
     thickness, width = np.asarray(part.thickness)[..., None] + points.growth, np.asarray(part.width)[..., None]
-    section = rectangle(thickness, width, np.asarray(cowper_rectangle(material.poisson))[..., None])
-    young, shear = np.asarray(material.young)[..., None], np.asarray(material.shear)[..., None]
+    section = rectangle(thickness, width, np.asarray(cowper_rectangle(material.contraction))[..., None])
+    young, shear = np.asarray(material.modulus)[..., None], np.asarray(material.shear)[..., None]
     twisting = free_twist(section, shear) if part.section is LeafSection.BEAM else _twisting(part, points, section, material)
     density = np.asarray(material.density)[..., None]
-    return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
+    return Beam(points, section, flexibility(section, young, shear, twisting, shear_across(material)), inertia(section, density), twisting)
 
 
 def leaf_diagonal(part: Leaf, material: Material) -> Array:
@@ -50,15 +50,16 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
         return leaf_beam(part, material).diagonal()
     slenderness, area = part.length / part.width, part.thickness * part.width
     inertia_y, inertia_z = area * part.width * part.width / 12.0, area * part.thickness * part.thickness / 12.0
-    lateral = cowper_rectangle(material.poisson) * part.length / (material.shear * area)
-    cubed = part.length * part.length * part.length / (12.0 * material.young)
+    lateral = cowper_rectangle(material.contraction) * part.length / (material.shear * area)
+    across = lateral if material.shear_across is None else lateral * (material.shear / material.shear_across)
+    cubed = part.length * part.length * part.length / (12.0 * material.modulus)
     rows = np.broadcast_arrays(
-        part.length / (material.young * area),
-        cubed / (inertia_z * shear_factor(slenderness, material.poisson)) + lateral,
+        part.length / (material.modulus * area),
+        cubed / (inertia_z * shear_factor(slenderness, material.contraction)) + across,
         cubed / inertia_y + lateral,
         torsional_compliance(part, material),
-        part.length / (material.young * inertia_y),
-        part.length / (material.young * inertia_z * moment_factor(slenderness, material.poisson)),
+        part.length / (material.modulus * inertia_y),
+        part.length / (material.modulus * inertia_z * moment_factor(slenderness, material.contraction)),
     )
     return np.stack(rows, axis=-1)
 
@@ -80,7 +81,7 @@ def torsional_compliance(part: Leaf, material: Material) -> Number:
 
 
 def _wavenumber(part: Leaf, material: Material) -> Number:
-    return np.sqrt(24.0 / (1.0 + material.poisson)) / part.width
+    return np.sqrt(24.0 / material.twist_ratio) / part.width
 
 
 def _twisting(part: Leaf, points: Stations, section: Section, material: Material) -> Twisting:
@@ -89,7 +90,7 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
     free = 1.0 / (np.asarray(material.shear)[..., None] * section.torsion)
     near, far = np.exp(wavenumber * (points.position - half)), np.exp(-wavenumber * (points.position + half))
     whole = 1.0 + np.exp(-2.0 * wavenumber * half)
-    warping = np.asarray(material.young)[..., None] * section.warping
+    warping = np.asarray(material.modulus)[..., None] * section.warping
     return Twisting(free * (1.0 - (near + far) / whole), -free * warping * wavenumber * (near - far) / whole)
 
 
@@ -101,13 +102,13 @@ def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]
     >>> round(float(bending.squares[0] ** 0.5 / (22.3733 * (200e9 * 0.0002**2 / 12.0 / 7750.0 / 0.1**4) ** 0.5)), 4)  # over a beam's
     1.0133
     """
-    section = rectangle(part.thickness, part.width, cowper_rectangle(material.poisson))
+    section = rectangle(part.thickness, part.width, cowper_rectangle(material.contraction))
     density, is_plate = material.density, part.section is LeafSection.PLATE
-    rigidity, shear = material.young * section.inertia_z, material.shear * section.area / section.shear
-    plate = Plate(part.width, material.poisson) if is_plate else None
+    rigidity, shear = material.modulus * section.inertia_z, material.shear * section.area / section.shear
+    plate = Plate(part.width, material.contraction) if is_plate else None
     bending = Bending(part.length, rigidity, shear, density * section.area, density * section.inertia_z, plate)
     warped = section.area * section.area * section.area / 144.0
-    warping = material.young * warped / (1.0 - material.poisson * material.poisson) if is_plate else None
+    warping = material.modulus * warped / (1.0 - material.contraction * material.contraction) if is_plate else None
     torsion = Torsion(part.length, material.shear * section.torsion, density * section.polar, warping, density * warped)
     return held_bending(1, bending, part.inner_modes, places), held_twist(torsion, part.inner_modes, places)
 

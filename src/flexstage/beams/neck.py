@@ -26,7 +26,7 @@ def neck_beam(part: Neck, material: Material) -> Beam:
     """
     if part.width is None:
         points = stations(part.profile, part.thickness)
-        factor = np.asarray(cowper_circle(material.poisson))[..., None]
+        factor = np.asarray(cowper_circle(material.contraction))[..., None]
         return beam(points, circle(_grow(part.thickness, points.growth), factor), material)
     points = stations(part.profile, np.minimum(part.thickness, part.width))
     return beam(points, rectangle(_grow(part.thickness, points.growth), _grow(part.width, points.growth)), material)

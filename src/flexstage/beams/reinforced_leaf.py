@@ -24,8 +24,8 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
     """
     points = _points(part)
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
-    section = rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.poisson))[..., None])
-    young, shear, density = (np.asarray(each)[..., None] for each in (material.young, material.shear, material.density))
+    section = rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.contraction))[..., None])
+    young, shear, density = (np.asarray(each)[..., None] for each in (material.modulus, material.shear, material.density))
     is_beam = part.section is LeafSection.BEAM
     twisting = free_twist(section, shear) if is_beam else constrained_twist(section, points, young, shear)
     return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
@@ -43,9 +43,9 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
         return whole
     thin = part.flexure_length - (0.0 if part.fillet is None else part.fillet)
     slenderness, arm = thin / part.width, 0.5 * (part.length - thin)
-    turning = 24.0 * thin / (material.young * part.width * part.thickness**3)
-    rotation = turning * (1.0 / moment_factor(slenderness, material.poisson) - 1.0)
-    across = turning * thin * thin / 12.0 * (1.0 / shear_factor(slenderness, material.poisson) - 1.0)
+    turning = 24.0 * thin / (material.modulus * part.width * part.thickness**3)
+    rotation = turning * (1.0 / moment_factor(slenderness, material.contraction) - 1.0)
+    across = turning * thin * thin / 12.0 * (1.0 / shear_factor(slenderness, material.contraction) - 1.0)
     nothing = np.zeros(np.broadcast_shapes(np.shape(rotation), np.shape(arm)))
     return whole + np.stack(np.broadcast_arrays(nothing, arm * arm * rotation + across, nothing, nothing, nothing, rotation), axis=-1)
 

@@ -24,7 +24,7 @@ def rod_beam(part: Rod, material: Material) -> Beam:
     0.1
     """
     points = stations(Straight(part.length), part.diameter)
-    factor = np.asarray(cowper_circle(material.poisson))[..., None]
+    factor = np.asarray(cowper_circle(material.contraction))[..., None]
     return beam(points, circle(np.asarray(part.diameter)[..., None] + points.growth, factor), material)
 
 
@@ -35,9 +35,9 @@ def rod_held(part: Rod, material: Material, places: Array) -> tuple[Held, ...]:
     >>> [held.axis for held in rod_held(Rod("steel", length=0.1, diameter=0.002, inner_modes=1), steel, np.zeros(1))]
     [1, 2, 3]
     """
-    section, density = circle(part.diameter, cowper_circle(material.poisson)), material.density
+    section, density = circle(part.diameter, cowper_circle(material.contraction)), material.density
     shear = material.shear * section.area / section.shear
-    bending = Bending(part.length, material.young * section.inertia_z, shear, density * section.area, density * section.inertia_z)
+    bending = Bending(part.length, material.modulus * section.inertia_z, shear, density * section.area, density * section.inertia_z)
     torsion = Torsion(part.length, material.shear * section.torsion, density * section.polar)
     across = (held_bending(axis, bending, part.inner_modes, places) for axis in (1, 2))
     return (*across, held_twist(torsion, part.inner_modes, places))

@@ -50,7 +50,7 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
     ranges = () if known is None else known.ranges(part)
     findings = (each.finding(where) for each in ranges)
     family = None if known is None else known.family(part)
-    errors = _errors(part, family, _POISSON if material is None else material.poisson) if family and isinstance(part, Shaped) else {}
+    errors = _errors(part, family, _POISSON if material is None else material.contraction) if family and isinstance(part, Shaped) else {}
     return Validity(ranges, Table(errors), tuple(finding for finding in findings if finding is not None))
 
 

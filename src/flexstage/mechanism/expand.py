@@ -492,7 +492,7 @@ def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition |
             (first, second),
             replace(whole.link, joins=(first, second)),
             member.part,
-            mechanism.materials[material] if material else None,
+            _seen_from(mechanism, material, frame),
             frame,
             whole,
         )
@@ -531,7 +531,12 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
         return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
     material = material_of(part)
     first, second = ends
-    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, mechanism.materials[material] if material else None, frame)
+    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, _seen_from(mechanism, material, frame), frame)
+
+
+def _seen_from(mechanism: Mechanism, material: str | None, frame: Frame) -> Material | None:
+    """The material of a part as it stands: of a crystal, in the part's own axes."""
+    return mechanism.materials[material].oriented(frame.rotation) if material else None
 
 
 def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:

@@ -572,6 +572,8 @@ def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
     default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
     if default is dataclasses.MISSING and isinstance(node, (TableNode, OpenNode)):
         default = Table({})
+    if default is dataclasses.MISSING and optional:
+        default = None
     return Slot(key, node, optional, default)
 
 

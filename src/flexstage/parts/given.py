@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.number import Number, stack
-from flexstage.base.quantity import COMPLIANCE_MATRIX, MASS, NOT_NEGATIVE
+from flexstage.base.finding import Finding
+from flexstage.base.number import Number, Vector, stack
+from flexstage.base.quantity import COMPLIANCE_MATRIX, LENGTH, MASS, NOT_NEGATIVE
+from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic
 from flexstage.parts.stated import is_even, mirror_rows, turns_into_itself
@@ -28,7 +33,8 @@ class Given(Elastic):
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
     `stands_for` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
-    and drift and structural damping the material.
+    and drift and structural damping the material. `mass` is a point at the part's centre, half of it at each end, or, with `inertia` about
+    its `centre` of mass (along the axes of the link's frame), a solid.
     """
 
     kind: ClassVar[str] = "given"
@@ -38,6 +44,8 @@ class Given(Elastic):
     origin: Origin = Origin.STATED
     source: str = field(default="", metadata=DOCUMENT_ONLY)
     stands_for: str = ""
+    centre: Annotated[Vector, LENGTH] | None = None
+    inertia: Inertia | None = None
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -47,7 +55,16 @@ class Given(Elastic):
     @property
     def mirrored(self) -> Given:
         """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
-        return replace(self, compliance=mirror_rows(self.compliance))
+        inertia = None if self.inertia is None else replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
+        centre = None if self.centre is None else (self.centre[0], -self.centre[1], self.centre[2])
+        return replace(self, compliance=mirror_rows(self.compliance), centre=centre, inertia=inertia)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """Inertia and centre of mass are those of a mass."""
+        for name in ("centre", "inertia"):
+            if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
+                yield Finding(name, "it is stated without a mass", "State the mass too")
 
     @property
     def is_round(self) -> bool:

@@ -1,14 +1,20 @@
-"""Isotropic linear-elastic materials."""
+"""Linear-elastic materials: isotropic, or crystals of cubic symmetry."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Annotated
 
+import numpy as np
+
 from flexstage.base.digest import DOCUMENT_ONLY, Description
-from flexstage.base.number import Number
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number, Vector
 from flexstage.base.quantity import (
     DENSITY,
+    DIRECTION,
     EXPANSION,
     MODULUS,
     NOT_NEGATIVE,
@@ -17,27 +23,172 @@ from flexstage.base.quantity import (
     PRESSURE,
     RATIO,
 )
+from flexstage.spatial.frame import axes
+
+_AGREES = 0.01
+"""How far Poisson's ratios as stated and as of both moduli may lie apart, 1 + nu relative: moduli are told with two or three digits."""
+_CUBIC = ("c11", "c12", "c44")
 
 
 @dataclass(frozen=True, eq=False)
 class Material(Description):
-    """An isotropic linear-elastic material.
+    """A linear-elastic material.
 
-    `young` [Pa], `poisson` [-], `density` [kg/m^3]; optional: `yield_stress` [Pa], `expansion` [1/K], `loss_factor` [-].
+    Isotropic: `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, which must agree). A crystal of cubic symmetry: `c11`,
+    `c12`, `c44` [Pa] instead, and `crystal`, the crystal's directions along the stage's x and z axes (absent: 100 and 001). `density`
+    [kg/m^3]; optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`,
+    `allowable_stress`, of which the least governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
     """
 
-    young: Annotated[Number, MODULUS, POSITIVE]
-    poisson: Annotated[Number, RATIO, POISSON_RANGE]
+    young: Annotated[Number, MODULUS, POSITIVE] | None
+    poisson: Annotated[Number, RATIO, POISSON_RANGE] | None
     density: Annotated[Number, DENSITY, NOT_NEGATIVE]
     yield_stress: Annotated[Number, PRESSURE, POSITIVE] | None = None
     expansion: Annotated[Number, EXPANSION] | None = None
     loss_factor: Annotated[Number, RATIO, NOT_NEGATIVE] | None = None
     source: str = field(default="", metadata=DOCUMENT_ONLY)
+    shear_modulus: Annotated[Number, MODULUS, POSITIVE] | None = None
+    fatigue_limit: Annotated[Number, PRESSURE, POSITIVE] | None = None
+    allowable_stress: Annotated[Number, PRESSURE, POSITIVE] | None = None
+    c11: Annotated[Number, MODULUS, POSITIVE] | None = None
+    c12: Annotated[Number, MODULUS] | None = None
+    c44: Annotated[Number, MODULUS, POSITIVE] | None = None
+    crystal: tuple[Annotated[Vector, DIRECTION], Annotated[Vector, DIRECTION]] | None = None
+
+    @property
+    def modulus(self) -> Number:
+        """Young's modulus [Pa]; NaN of a crystal, whose own follows from the direction (`oriented`)."""
+        return np.nan if self.young is None else self.young
 
     @property
     def shear(self) -> Number:
-        """Shear modulus G = E / (2 (1 + nu)) [Pa]."""
-        return self.young / (2.0 * (1.0 + self.poisson))
+        """Shear modulus [Pa]: as stated, or G = E / (2 (1 + nu))."""
+        return self.modulus / (2.0 * (1.0 + self.contraction)) if self.shear_modulus is None else self.shear_modulus
+
+    @property
+    def contraction(self) -> Number:
+        """Poisson's ratio: as stated, or nu = E / (2 G) - 1."""
+        if self.poisson is not None:
+            return self.poisson
+        return np.nan if self.shear_modulus is None else self.modulus / (2.0 * self.shear_modulus) - 1.0
+
+    @property
+    def twist_ratio(self) -> Number:
+        """E / (2 G), which is 1 + nu where the material is isotropic: how torsion and its warping compare."""
+        return 1.0 + self.contraction
+
+    @property
+    def shear_across(self) -> Number | None:
+        """Shear modulus [Pa] in the plane of x and y, where it is not that of x and z; `None` of an isotropic material."""
+        return None
+
+    @property
+    def is_cubic(self) -> bool:
+        """Whether it is stated as a crystal."""
+        return any(getattr(self, name) is not None for name in _CUBIC)
+
+    @property
+    def limits(self) -> dict[str, Number]:
+        """The limits of stress that it states [Pa], by name."""
+        stated = {"yield stress": self.yield_stress, "fatigue limit": self.fatigue_limit, "allowable stress": self.allowable_stress}
+        return {name: limit for name, limit in stated.items() if limit is not None}
+
+    @property
+    def limit(self) -> Number | None:
+        """The least limit of stress [Pa]; `None` where none is stated.
+
+        >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit
+        400000000.0
+        """
+        stated = list(self.limits.values())
+        return reduce(lambda one, other: np.where(np.real(one) <= np.real(other), one, other)[()], stated) if stated else None
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """What is wrong with its elastic constants taken together, by field."""
+        yield from self._cubic_faults() if self.is_cubic else self._isotropic_faults()
+
+    def _isotropic_faults(self) -> Iterator[Finding]:
+        if self.young is None or (self.poisson is None and self.shear_modulus is None):
+            missing, example = ("poisson", "poisson = 0.3") if self.young is not None else ("young", 'young = "200 GPa"')
+            what = "its elastic constants are not known: it needs young and one of poisson and shear_modulus, or c11, c12 and c44"
+            yield Finding(missing, what, f"Write for example {example}")
+        elif self.shear_modulus is not None:
+            found = np.real(self.young) / (2.0 * np.real(self.shear_modulus)) - 1.0
+            apart = 0.0 if self.poisson is None else np.abs(found - np.real(self.poisson)) / (1.0 + np.real(self.poisson))
+            first = float(np.ravel(found)[0])
+            if np.any(found <= -1.0) or np.any(found >= 0.5):
+                yield Finding("shear_modulus", f"young and shear_modulus make Poisson's ratio {first:.4g}", "It lies between -1 and 0.5")
+            elif np.any(apart > _AGREES):
+                stated = float(np.ravel(np.real(self.contraction))[0])
+                what = f"young and shear_modulus make Poisson's ratio {first:.4g}, and poisson is {stated:.4g}"
+                yield Finding("shear_modulus", what, "State two of the three, or three that agree")
+
+    def _cubic_faults(self) -> Iterator[Finding]:
+        missing = [name for name in _CUBIC if getattr(self, name) is None]
+        if missing:
+            yield Finding(missing[0], f"a crystal of cubic symmetry needs {', '.join(_CUBIC)}", "State all three")
+            return
+        double = [name for name in ("young", "poisson", "shear_modulus") if getattr(self, name) is not None]
+        if double:
+            yield Finding(double[0], "it states c11, c12 and c44 too, from which this follows by direction", "Leave one of them out")
+        c11, c12, _ = (np.real(each) for each in self._constants)
+        if np.any(c11 <= np.abs(c12)) or np.any(c11 + 2.0 * c12 <= 0.0):
+            yield Finding("c11", "no crystal with these constants is stable: c11 > |c12| and c11 + 2 c12 > 0", "Check c11, c12 and c44")
+
+    @property
+    def _constants(self) -> tuple[Array, Array, Array]:
+        c11, c12, c44 = (np.asarray(np.nan if each is None else each) for each in (self.c11, self.c12, self.c44))
+        return c11, c12, c44
+
+    def oriented(self, rotation: Array) -> Material:
+        """The material as a part sees it whose axes (x along it, z along its width) are the columns of `rotation` (..., 3, 3) in the stage.
+
+        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal: 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
+        n3^2 n1^2), strain ratio -E (S12 + J sum n^2 m^2), 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010)
+        229-238). Beams along x take E of x and G of the planes xy and xz, wide leaves -S13 / (S11 S33)^(1/2), with which E / (1 - nu^2) is
+        the modulus of the plate; coupling of tension or bending with shear and twist, which other directions than 100, 110 and 111 have, is
+        left out. Isotropic materials are returned as they are.
+        """
+        if not self.is_cubic:
+            return self
+        c11, c12, c44 = self._constants
+        s11 = (c11 + c12) / ((c11 - c12) * (c11 + 2.0 * c12))
+        s12 = -c12 / ((c11 - c12) * (c11 + 2.0 * c12))
+        s44 = 1.0 / c44
+        excess = s11 - s12 - 0.5 * s44
+        along, up = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if self.crystal is None else self.crystal
+        square = (axes(along, up) @ rotation) ** 2
+        own = s11[..., None] - excess[..., None] * (1.0 - np.sum(square * square, axis=-2))
+        mixed = [np.sum(square[..., :, 0] * square[..., :, axis], axis=-1) for axis in (1, 2)]
+        across, plane = (1.0 / (s44 + 4.0 * excess * each) for each in mixed)
+        return Oriented(
+            young=1.0 / own[..., 0],
+            poisson=-(s12 + excess * mixed[1]) / np.sqrt(own[..., 0] * own[..., 2]),
+            shear_modulus=plane,
+            other_shear=across,
+            **{name: getattr(self, name) for name in _KEPT},
+        )
+
+
+_KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatigue_limit", "allowable_stress", *_CUBIC, "crystal")
+
+
+@dataclass(frozen=True, eq=False)
+class Oriented(Material):
+    """A cubic crystal in a part's own axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy."""
+
+    other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
+
+    @property
+    def twist_ratio(self) -> Number:
+        """E / (2 G) of the plane xz, that of a leaf."""
+        return self.modulus / (2.0 * self.shear)
+
+    @property
+    def shear_across(self) -> Number:
+        """Shear modulus in the plane of x and y [Pa]."""
+        return self.other_shear

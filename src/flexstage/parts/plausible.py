@@ -135,7 +135,7 @@ RULES: Mapping[type, tuple[Rule, ...]] = {
         Rule("loss_factor", lambda each: each.loss_factor, 1e-6, 2.0, "of the energy", _LOSSES),
         Rule(
             "yield_stress",
-            lambda each: None if each.yield_stress is None else each.yield_stress / each.young,
+            _ratio("yield_stress", "young"),
             7e-5,
             0.1,
             "of Young's modulus",

@@ -24,7 +24,8 @@ from flexstage.solid.read import SolidRead
 class LinkStress(InNotebook):
     """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, stacks left out.
 
-    `case` (L,) is the number of the worst case, `yield_stress` (L,) [Pa] that of the material (NaN: not stated). At sharp inner corners the
+    `case` (L,) is the number of the worst case, `yield_stress` (L,) [Pa] that of the material, or its
+    fatigue limit or allowable stress where that is less (NaN: none is stated). At sharp inner corners the
     true stress has no limit, and what is computed grows with the resolution.
     """
 
@@ -91,4 +92,4 @@ def _yield(read: SolidRead, assembly: Assembly, name: str) -> float:
         material = assembly.links[name].material
     else:
         material = read.mechanism.materials[next(iter(assembly.bodies[name].solids.values())).solid.material]
-    return np.nan if material is None or material.yield_stress is None else float(np.real(material.yield_stress))
+    return np.nan if material is None or material.limit is None else float(np.real(material.limit))

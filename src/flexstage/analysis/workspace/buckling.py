@@ -121,7 +121,7 @@ def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]
     if isinstance(part, Piezo):
         return stack_rigidity(part), _strut_length(assembly, link, part), Ends.PINNED
     alone = any(body != GROUND and len(_links_at(assembly, body)) == 1 for body in link.joins)
-    young = np.nan if link.material is None else link.material.young
+    young = np.nan if link.material is None else link.material.modulus
     assert isinstance(part, Shaped)  # noqa: S101  _is_column has asked
     return young * part.throat.second_moment, part.span, Ends.FREE if alone else Ends.GUIDED
 

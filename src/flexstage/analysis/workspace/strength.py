@@ -1,4 +1,4 @@
-"""Stress at every hinge at the worst corner of the strokes, against yield."""
+"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue or what is allowed."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
 from flexstage.base.quantity import RATIO
-from flexstage.base.record import VIEW
+from flexstage.base.record import INNER, VIEW
 from flexstage.beams.stress import has_section, stress
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
+from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 
 
@@ -29,6 +30,8 @@ class HingeStress(InNotebook):
 
     `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`
     (..., L, n) [m] at the worst corner. `unchecked` names links without a section to check (stacks, given matrices, restricted parts).
+    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress that the material states (NaN: none; absent: yield
+    stress), `governing` names which of them, on the first design.
     """
 
     links: tuple[str, ...]
@@ -39,16 +42,23 @@ class HingeStress(InNotebook):
     strokes: Array
     unchecked: tuple[str, ...]
     provenance: str
+    limit: Array | None = None
+    governing: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> Annotated[Array, INNER]:
+        """The stress that counts as the limit (..., L) [Pa]."""
+        return self.yield_stress if self.limit is None else self.limit
 
     @property
     def safety(self) -> Array:
-        """Yield stress over peak stress (..., L); infinite where nothing is stressed."""
+        """The limit over peak stress (..., L); infinite where nothing is stressed."""
         loaded = self.peak != 0.0
-        return np.where(loaded | np.isnan(self.yield_stress), self.yield_stress / np.where(loaded, self.peak, 1.0), np.inf)
+        return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
     def least(self) -> Annotated[Array, RATIO]:
-        """The least safety factor of the stage (...); NaN where any hinge's yield stress is unknown."""
+        """The least safety factor of the stage (...); NaN where any hinge's limit is unknown."""
         return np.min(self.safety, axis=-1)
 
     @property
@@ -59,8 +69,8 @@ class HingeStress(InNotebook):
 
     @property
     def unknown(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Links whose material states no yield stress."""
-        gone = np.isnan(np.atleast_2d(self.yield_stress)).reshape(-1, len(self.links)).any(axis=0)
+        """Links whose material states no limit of stress."""
+        gone = np.isnan(np.atleast_2d(self.allowed)).reshape(-1, len(self.links)).any(axis=0)
         return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
 
     @property
@@ -70,8 +80,8 @@ class HingeStress(InNotebook):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the links, columns nominal, peak, yield and safety."""
-        values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.yield_stress, self.safety), axis=-1)
+        """Rows are the links, columns nominal, peak, yield (where another limit governs, that) and safety."""
+        values = np.stack(np.broadcast_arrays(self.nominal, self.peak, self.allowed, self.safety), axis=-1)
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
 
@@ -95,7 +105,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)
-    nominal, peak, known = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in range(3))
+    nominal, peak, known, limit = (np.stack(np.broadcast_arrays(*(row[item] for row in rows)), axis=-1) for item in (0, 1, 2, 4))
     return HingeStress(
         links=tuple(sized),
         actuators=limits.actuators,
@@ -105,6 +115,8 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
         strokes=np.stack(np.broadcast_arrays(*(row[3] for row in rows)), axis=-2),
         unchecked=tuple(name for name in (*assembly.links, *assembly.superelements) if name not in sized),
         provenance=model.provenance,
+        limit=limit,
+        governing=tuple(_governing(link.material) for link in sized.values()),
     )
 
 
@@ -114,9 +126,15 @@ def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
 
 
 def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Largest share of its yield stress (...) that a link bears under wrenches (..., L, 6); NaN where a yield stress is not stated."""
+    """Largest share of its limit of stress (...) that a link bears under wrenches (..., L, 6); NaN where a limit is not stated."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
-    return np.max(np.stack(np.broadcast_arrays(*(peak / known for _, peak, known, _ in rows)), axis=-1), axis=-1)
+    return np.max(np.stack(np.broadcast_arrays(*(row[1] / row[4] for row in rows)), axis=-1), axis=-1)
+
+
+def _governing(material: Material | None) -> str:
+    """Which limit of stress is the least on the first design; empty where none is stated."""
+    limits = {} if material is None else material.limits
+    return min(limits, key=lambda name: float(np.real(np.ravel(limits[name])[0])), default="")
 
 
 def _has_section(link: PlacedLink) -> bool:
@@ -124,11 +142,11 @@ def _has_section(link: PlacedLink) -> bool:
     return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
-_Row: TypeAlias = tuple[Array, Array, Array, Array]
+_Row: TypeAlias = tuple[Array, Array, Array, Array, Array]
 
 
 def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
-    """Nominal and peak stress, yield stress and strokes of every link at its worst corner; links of one part are worked out together."""
+    """Nominal and peak stress, yield stress, strokes and least limit of links at their worst corners; those of one part together."""
     groups: dict[tuple[int, int], list[int]] = {}
     for index, link in enumerate(links):
         groups.setdefault((id(link.part), id(link.material)), []).append(index)
@@ -142,7 +160,8 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
         nominal, peak = _stress(first.part, first, worst)  # of stepped numbers, derivatives at the worst corner are all that is needed
         for place, index in enumerate(members):
             strokes = np.take_along_axis(np.broadcast_to(points, (*peaks.shape[1:], points.shape[-1])), where[place][..., None], axis=0)[0]
-            rows[index] = nominal[place, 0], peak[place, 0], _yield(links[index], peak[place, 0]), strokes
+            limits = (_limit(links[index], name, peak[place, 0]) for name in ("yield_stress", "limit"))
+            rows[index] = nominal[place, 0], peak[place, 0], next(limits), strokes, next(limits)
     return [rows[index] for index in range(len(links))]
 
 
@@ -153,8 +172,8 @@ def _stress(part: Part, link: PlacedLink, wrenches: Array) -> tuple[Array, Array
     return found.nominal, np.broadcast_to(found.peak, found.nominal.shape)
 
 
-def _yield(link: PlacedLink, peak: Array) -> Array:
-    limit = None if link.material is None else link.material.yield_stress
+def _limit(link: PlacedLink, name: str, peak: Array) -> Array:
+    limit = None if link.material is None else getattr(link.material, name)
     return np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape)
 
 

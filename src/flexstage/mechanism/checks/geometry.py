@@ -35,13 +35,15 @@ _SLACK = 1e-9
 
 
 def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Iterator[Finding]:
-    """Findings about parts, solids, stated masses and payloads; with `departures` also about parts of single copies.
+    """Findings about materials, parts, solids, stated masses and payloads; with `departures` also about parts of single copies.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
     >>> print(*geometry_findings(Mechanism("", parts={"blade": leaf})))
     parts.blade.thickness: found 12 mm, which is not below the width, 10 mm. Exchange them, or turn the link's bends.
     """
+    for name, material in mechanism.materials.items():
+        yield from (replace(fault, where=f"materials.{name}.{fault.where}") for fault in material.faults)
     for name, part in mechanism.parts.items():
         yield from _part(f"parts.{name}", part)
     if departures:
@@ -127,6 +129,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
         yield from (replace(fault, where=join(where, fault.where) if fault.where else where) for fault in part.faults)
     if isinstance(part, Given):
         yield from _given_findings(where, part)
+        yield from () if part.inertia is None else _inertia(f"{where}.inertia", part.inertia)
 
 
 def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:

@@ -57,7 +57,8 @@ def stress_table(stress: HingeStress) -> Table:
     >>> stress_table(seen).texts()[1]
     ['a', '2', 'B1', '100', '200', '1000', '5']
     """
-    nominal, peak, limit, safety = (first_design(each, 1) for each in (stress.nominal, stress.peak, stress.yield_stress, stress.safety))
+    nominal, peak, limit, safety = (first_design(each, 1) for each in (stress.nominal, stress.peak, stress.allowed, stress.safety))
+    other = {link: name for link, name in zip(stress.links, stress.governing, strict=False) if name not in ("", "yield stress")}
     rows: list[tuple[Content, ...]] = []
     for name, members in _rank_by_factor(stress.links, safety):
         worst = members[0]
@@ -71,12 +72,13 @@ def stress_table(stress: HingeStress) -> Table:
         "first in",
         Column("nominal", "MPa"),
         Column("peak", "MPa"),
-        Column("yield", "MPa"),
+        Column("limit" if other else "yield", "MPa"),
         Column("safety"),
     ]
     notes = ["Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor."]
     notes += [f"Not checked: {', '.join(stress.unchecked)}."] if stress.unchecked else []
     notes += [f"Yield stress not stated: {', '.join(stress.unknown)}."] if stress.unknown else []
+    notes += [f"What limits: {', '.join(f'{link} {name}' for link, name in other.items())}; else yield."] if other else []
     return make_table("Stress in the hinges", heads, rows, notes=notes)
 
 

@@ -85,5 +85,5 @@ def _ignore(_finding: Finding) -> None:
 
 
 def _key(form: HingeForm, asked: Accuracy) -> str:
-    stiffness = (float(np.real(form.material.young)), float(np.real(form.material.poisson)))
+    stiffness = (float(np.real(form.material.modulus)), float(np.real(form.material.contraction)))
     return hashlib.sha256(f"{form_digest(form.part)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]

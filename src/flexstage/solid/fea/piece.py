@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Number
 from flexstage.base.register import Register
 from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement
@@ -73,12 +73,15 @@ class Piece:
 
 
 def medium(material: Material) -> Medium:
-    """The medium of a material.
+    """The medium of a material. Raises `DesignError` for a crystal.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
     """
-    return Medium(_single(material.young), _single(material.poisson), _single(material.density))
+    if material.is_cubic:
+        what = "a crystal is stiffer in some directions than in others, and the solid model knows isotropic materials only"
+        raise refuse("materials", what, "Use the lumped model, or state young and poisson that stand for the direction that counts")
+    return Medium(_single(material.modulus), _single(material.contraction), _single(material.density))
 
 
 def stack_medium(stack: Piezo) -> Medium:
