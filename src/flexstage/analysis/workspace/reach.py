@@ -15,7 +15,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design, magnitude
-from flexstage.base.record import VIEW
+from flexstage.base.record import VIEW, Axes
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.arguments import takes_models
@@ -54,12 +54,12 @@ class ForceReach(InNotebook):
     provenance: str
 
     @property
-    def held(self) -> Array:
+    def held(self) -> Annotated[Array, VIEW, Axes("coordinates")]:
         """The least bound of every coordinate (..., f) [m, rad], for ever; NaN where no limit is known."""
         return _least(self.bounds.values)
 
     @property
-    def held_briefly(self) -> Array:
+    def held_briefly(self) -> Annotated[Array, VIEW, Axes("coordinates")]:
         """The least bound of every coordinate (..., f) [m, rad] in short use."""
         return _least(self.short.values)
 
