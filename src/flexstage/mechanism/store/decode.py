@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
+from flexstage.mechanism.address import set_text, set_value
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
@@ -20,6 +21,7 @@ from flexstage.mechanism.mount import STAGES, Mount, mount_all
 from flexstage.mechanism.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 from flexstage.mechanism.store.anchor import anchor_paths
 from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
+from flexstage.mechanism.store.include import entry_of, with_included
 from flexstage.mechanism.store.lines import with_lines
 
 _FORMS = {FORMAT: "a design file"}
@@ -29,21 +31,24 @@ _Record = TypeVar("_Record")
 def mechanism_from(raw: dict[str, Any], catalogue: Catalogue, where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
     """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
 
-    Stages that stand on it are read from their files, looked for beside the file `where`; `above` are the files that are being read.
+    Files that it includes, and those of stages that stand on it, are looked for beside the file `where`; `above` are those being read.
 
     >>> from flexstage.mechanism.catalogue import shipped_catalogue
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}, shipped_catalogue()).name
     'empty'
     """
+    included, told = with_included(raw, where, above)
+    raw = included.tree
     table = raw.get(NUMBERS)
     numbers = read_numbers({name: value for name, value in table.items() if name != TAGS} if isinstance(table, dict) else {})
     reader = Reader(catalogue, numbers=numbers, formulas=dict(numbers.formulas))
     mechanism: Any = None
     try:
-        mechanism = _mechanism(reader, raw, _Files(where, above))
+        reader.note(told)
+        mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
         reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
-    require(reader.findings)
+    require(included.located(reader.findings))
     return mechanism
 
 
@@ -116,7 +121,7 @@ class _Files:
         reader.note(replace(finding, where=f"{address}: {finding.where}") for finding in findings)
 
 
-def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files) -> Any:
+def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: frozenset[str]) -> Any:
     _check_format(reader, raw, FORMAT)
     reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
@@ -135,11 +140,49 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files) -> Any:
     changes = raw.get("change", {})
     formulas = {canonical(mechanism, where): text for where, text in reader.formulas.items()}
     reader.formulas.clear()
+    if included and isinstance(changes, dict):
+        stated = replace(mechanism, formulas=Table(formulas), tags=Table({**mechanism.tags, **reader.tags}))
+        mechanism, changes = _with_own_values(reader, stated, changes, included)
+        formulas, reader.tags = dict(mechanism.formulas), dict(mechanism.tags) | _tags_above(raw)
     values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
     sources = reader.sources | dict(mechanism.sources)
     formulas |= reader.formulas
     values, tags = {**mechanism.changes, **values}, {**mechanism.tags, **reader.tags}
     return replace(mechanism, changes=values, tags=Table(tags), sources=Table(sources), formulas=Table(formulas))
+
+
+def _with_own_values(
+    reader: Reader, mechanism: Mechanism, raw: dict[str, Any], included: frozenset[str]
+) -> tuple[Mechanism, dict[str, Any]]:
+    """The description with the values that its changes state of included entries, and the other changes."""
+    rest: dict[str, Any] = {}
+    for address, value in raw.items():
+        if not _is_of(mechanism, address, included):
+            rest[address] = value
+            continue
+        try:
+            if isinstance(value, str):
+                mechanism = set_text(mechanism, address, value)
+            else:
+                mechanism = set_value(mechanism, address, locate(mechanism, address).node.read(value, address, reader))
+        except DesignError as error:
+            reader.note(replace(finding, where=f'change."{short(address)}"') for finding in error.findings)
+    return mechanism, rest
+
+
+def _is_of(mechanism: Mechanism, address: str, entries: frozenset[str]) -> bool:
+    """Whether an address is of a value of one of these entries itself."""
+    try:
+        place = locate(mechanism, address)
+    except DesignError:
+        return False
+    return not place.owners and entry_of(place.address) in entries
+
+
+def _tags_above(raw: dict[str, Any]) -> dict[str, str]:
+    """The tags that stand above all tables."""
+    tags = raw.get(TAGS)
+    return {key: tag for key, tag in tags.items() if isinstance(tag, str)} if isinstance(tags, dict) else {}
 
 
 def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[str, Any]:

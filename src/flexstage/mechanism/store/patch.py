@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.mechanism.address import set_text, set_value
+from flexstage.mechanism.address import get, set_text, set_value
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS, node_of
 from flexstage.mechanism.locate import Place, canonical, locate
@@ -20,6 +20,7 @@ from flexstage.mechanism.path import member, with_mirror
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
+from flexstage.mechanism.store.include import INCLUDE, SECTIONS
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
@@ -84,8 +85,18 @@ def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) 
     if place.owners:
         _set_changes(document, mechanism, changed)
         return
+    if _is_included(document, place):
+        table = document.setdefault("change", tomlkit.table())
+        table[place.address] = plain(place.node, get(changed, address), place.address, changed.formulas)
+        return
     for path in with_mirror(place.path):
         _set_at(document, changed, path)
+
+
+def _is_included(document: Any, place: Place) -> bool:
+    """Whether a value stands in a file that this one includes: what this one says of it stands under `change`."""
+    path = place.path
+    return INCLUDE in document and len(path) > 1 and path[0] in SECTIONS and path[1] not in document.get(path[0], {})
 
 
 def _set_changes(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:

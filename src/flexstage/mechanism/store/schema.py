@@ -12,6 +12,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.mount import STAGES, Mount
 from flexstage.mechanism.node import Definitions
 from flexstage.mechanism.store.file import FORMAT
+from flexstage.mechanism.store.include import INCLUDE
 
 
 def schema() -> dict[str, Any]:
@@ -20,7 +21,10 @@ def schema() -> dict[str, Any]:
     >>> schema()["properties"]["mode_limit"]["examples"]
     ['4 kHz']
     """
-    return schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
+    found = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
+    said = "Files whose numbers, materials, parts, sensors, units and sources belong to this design, from beside it."
+    found["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
+    return found
 
 
 def schema_of(

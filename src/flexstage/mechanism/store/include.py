@@ -1,0 +1,129 @@
+"""Entries of other files: materials, parts, units and whatever else is drawn once, brought into a design by `include`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.node import kind
+from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
+from flexstage.mechanism.store.lines import with_lines
+
+INCLUDE = "include"
+SECTIONS = ("numbers", "materials", "parts", "sensors", "units", "sources")
+"""What an included file may hold: what is drawn once and stands nowhere."""
+_BESIDE = ("format", "name", INCLUDE)
+_LIST = 'Name files in brackets: include = ["stock.toml"]'
+
+
+@dataclass(frozen=True, eq=False)
+class Included:
+    """The `tree` of a design with the entries of the files it includes.
+
+    `origin` says of each of these (`parts.neck`) which file and text it is from.
+    """
+
+    tree: dict[str, Any]
+    origin: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+
+    def located(self, findings: list[Finding]) -> Iterator[Finding]:
+        """The findings, those about included entries with their file and line."""
+        for finding in findings:
+            file, text = self.origin.get(entry_of(finding.where), ("", ""))
+            yield from with_lines([finding], text, file) if file else (finding,)
+
+
+def entry_of(address: str) -> str:
+    """The entry that an address is in.
+
+    >>> entry_of("parts.neck.profile.radius")
+    'parts.neck'
+    """
+    return ".".join(address.split(".")[:2])
+
+
+def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ()) -> tuple[Included, list[Finding]]:
+    """The tree with all that its `include` names, from beside the file `where`, and what is wrong with it.
+
+    `above` are the files that are being read. An entry stands in one file: a second one of its name is a finding.
+
+    >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
+    'found "stock.toml" where a list of files is expected'
+    """
+    names = raw.get(INCLUDE, [])
+    tree = {key: dict(value) if key in SECTIONS and isinstance(value, dict) else value for key, value in raw.items() if key != INCLUDE}
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        return Included(tree), [Finding(INCLUDE, f"found {kind(names)} where a list of files is expected", _LIST)]
+    origin: dict[str, tuple[str, str]] = {}
+    findings: list[Finding] = []
+    for name in names:
+        entries, told = _entries(name, where, above)
+        findings += told
+        for address, (value, file, text) in entries.items():
+            section, entry = address.split(".", 1)
+            if entry in tree.setdefault(section, {}):
+                other = origin[address][0] if address in origin else "this file"
+                what = f"{address} stands in {file} and in {other}"
+                findings.append(
+                    Finding(INCLUDE, what, "Rename one or take it out; single values of included entries are changed in [change]")
+                )
+                continue
+            tree[section][entry] = value
+            origin[address] = (file, text)
+    return Included(tree, origin), findings
+
+
+_Entries = dict[str, tuple[Any, str, str]]
+
+
+def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, list[Finding]]:
+    """The entries of an included file by address, with the file and the text they stand in, and what is wrong with the file."""
+    here, path = Path(where).resolve(), (Path(where).parent / name).resolve()
+    if path in (here, *above):
+        what = f"{name} is this file itself" if path == here else f"{name} includes this file, and this file includes it"
+        return {}, [Finding(INCLUDE, what, "Take one of them out")]
+    try:
+        text = read_text(path)
+        raw = parse_toml(text, name)
+    except DesignError as error:
+        return {}, [replace(each, where=f"{INCLUDE}: {each.where.replace(str(path), name)}") for each in error.findings]
+    findings = list(with_lines(_strange(raw), text, name))
+    included, told = with_included({key: value for key, value in raw.items() if key in (*SECTIONS, INCLUDE)}, str(path), (*above, here))
+    findings += [replace(each, where=f"{name}: {each.where}") for each in told]
+    found: _Entries = {}
+    for section, table in included.tree.items():
+        for entry, value in table.items() if isinstance(table, dict) else ():
+            if entry != TAGS:
+                address = f"{section}.{entry}"
+                found[address] = (_with_whole_paths(value, path.parent), *included.origin.get(address, (name, text)))
+    return found, [replace(each, where=f"{INCLUDE}: {each.where}") for each in findings]
+
+
+def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
+    """What an included file may not hold, or lacks."""
+    if raw.get("format") != FORMAT:
+        found = f"found {kind(raw['format'])}" if "format" in raw else "the file does not say its format"
+        yield Finding("format", found, f'The first line of an included file is format = "{FORMAT}"')
+        return
+    for key, value in raw.items():
+        if key not in (*SECTIONS, *_BESIDE):
+            place = f"{key}.{next(iter(value))}" if isinstance(value, dict) and value else key
+            yield Finding(place, f"an included file holds what is drawn once: {', '.join(SECTIONS)}", "Write the rest in the design")
+        elif key in SECTIONS and not isinstance(value, dict):
+            yield Finding(key, f"found {kind(value)} where a table is expected", "Write a table: [name]")
+
+
+def _with_whole_paths(value: Any, folder: Path) -> Any:
+    """An entry in which paths of files are whole, from the folder of its own file."""
+    if isinstance(value, dict):
+        return {
+            key: str(folder / item)
+            if isinstance(item, str) and (key == "file" or key.endswith("_file"))
+            else _with_whole_paths(item, folder)
+            for key, item in value.items()
+        }
+    return [_with_whole_paths(item, folder) for item in value] if isinstance(value, list) else value
