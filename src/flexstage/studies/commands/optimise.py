@@ -53,7 +53,7 @@ def optimise(
         values = values_of(asked, found.final.shares)
         cautions = require_stable(asked, values)
         if output is not None:
-            save(output, write_optimum(design_text(asked, study.parent), asked, wanted, values, where=str(study)), "--output")
+            save(output, write_optimum(design_text(asked, study.parent), asked, wanted, values, where=str(source or study)), "--output")
     else:
         cautions = loaded_findings(asked)
     if report is not None:
