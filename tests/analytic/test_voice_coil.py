@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.complete import analyse
 from flexstage.analysis.judge import judge
 from flexstage.analysis.response import response
 from flexstage.analysis.workspace.reach import reach
@@ -25,6 +26,7 @@ from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.voice_coil import Supply, VoiceCoil
+from flexstage.show.sections.reach import workspace_section
 
 YOUNG, LENGTH, THICKNESS, WIDTH = 200e9, 50 * mm, 0.4 * mm, 20 * mm
 COIL = VoiceCoil(force_constant=12.0, resistance=6.0, mass=0.1, magnet_mass=0.4, damping=0.5)
@@ -190,3 +192,11 @@ def test_redundant_coils_share_by_their_limits():
     alone, together = (reach(each, ideal(each), lumped(each)) for each in (single, both))
     assert together.current.values[0] == pytest.approx([1.0, 3.0], rel=1e-9)
     assert together.held.item() == pytest.approx(4.0 * alone.held.item(), rel=1e-9)
+
+
+def test_the_report_shows_the_reach():
+    """Where strokes would stand: how far, and what holding it takes."""
+    shown = workspace_section(analyse(stage(LIMITED)))
+    assert shown is not None
+    assert shown.title == "Reach"
+    assert [each.title for each in shown.blocks] == ["Reach", "What holding it takes"]

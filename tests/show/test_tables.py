@@ -75,7 +75,8 @@ NOT_SHOWN = {"mechanism", "model", "linear", "missing", "reasons"}
 
 def test_every_result_is_presented() -> None:
     """A result that is added to the analysis fails here until the report shows it."""
-    assert {field.name for field in fields(Analysis)} - NOT_SHOWN == set(TITLES)
+    # reach: of stages that forces move, see test_voice_coil
+    assert {field.name for field in fields(Analysis)} - NOT_SHOWN - {"reach"} == set(TITLES)
     assert {field.name for field in fields(Workspace)} - NOT_SHOWN == set(REACH)
     page = reported("double-triangle")
     assert [title for title in (*TITLES.values(), *REACH.values()) if title not in page] == []
