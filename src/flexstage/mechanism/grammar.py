@@ -143,7 +143,7 @@ class ListNode(Node):
 
 @dataclass(frozen=True)
 class NumbersNode(ListNode):
-    """Numbers in a row, any number of them, each of which has an address: its place, counted from nought."""
+    """Numbers or points in a row, any number of them, each of which has an address: its place, counted from nought."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The numbers."""
@@ -645,6 +645,8 @@ def _annotated_node(hint: Any) -> Node:
 def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
     nodes = [_node(item) for item in items if item is not Ellipsis]
     numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
+    if Ellipsis in items and isinstance(nodes[0], NumberNode | VectorNode):
+        return NumbersNode(nodes[0], None)
     if numbers:
-        return NumbersNode(numbers[0], None) if Ellipsis in items else VectorNode(numbers)
+        return VectorNode(numbers)
     return ListNode(nodes[0], None if Ellipsis in items else len(items))
