@@ -18,6 +18,7 @@ from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal
+from flexstage.parts.body import Block, Body, Cylinder, Sphere
 from flexstage.spatial.frame import Frame
 from tests.conftest import examples
 from tests.laws.shared import lumped
@@ -176,3 +177,19 @@ def test_stages_that_carry_one_another_are_told(tmp_path):
         DesignError, match=r"line 5: stages\.fine\.file: fine\.toml: line \d+: parts\.leaf\.thicknes: this key is not known"
     ):
         load(path)
+
+
+def test_outlines_of_every_kind_go_with_their_stage():
+    solids = {
+        "plate": Block("metal", (0.1, 0.05, 0.01), at=(0.01, 0.0, 0.0), up=(0.0, 0.1, 1.0)),
+        "pin": Cylinder("metal", 0.01, 0.05, at=(0.0, 0.1, 0.0), along=(1.0, 0.0, 1.0)),
+        "ball": Sphere("metal", 0.01, at=(0.0, 0.0, 0.1)),
+    }
+    fine = replace(parallelogram(), materials={**parallelogram().materials, "metal": next(iter(parallelogram().materials.values()))})
+    fine = replace(fine, bodies={**fine.bodies, "seat": Body(solids=solids, of=PLATFORM)})
+    turn, shift = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([0.1, 0.2, 0.3])
+    found = expand(mount(Mechanism("bare"), "fine", fine, pose=pose_of(turn, shift))).bodies[PLATFORM]
+    drawn = expand(fine).bodies[PLATFORM]
+    centre = Frame(turn, shift).point(drawn.mass.centre)
+    np.testing.assert_allclose(found.mass.centre, centre, atol=1e-12)
+    np.testing.assert_allclose(found.mass.inertia, turn @ drawn.mass.inertia @ turn.T, atol=1e-15)

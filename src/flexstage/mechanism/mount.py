@@ -17,7 +17,7 @@ from flexstage.mechanism.locate import canonical
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, Link, LinkProbe, Mechanism, Placement, Probe, Unit
 from flexstage.mechanism.pattern import Normal, Pose, copy_names
 from flexstage.mechanism.sight import link_names
-from flexstage.parts.body import Body, Cylinder, Inertia, Solid
+from flexstage.parts.body import Body, Inertia, Solid
 from flexstage.parts.mass import tensor
 from flexstage.parts.part import Part, Restricted
 from flexstage.spatial.frame import Frame, identity, reflection
@@ -126,7 +126,7 @@ class _Names:
 
     def solids(self, body: Body) -> Body:
         """A body, its solids of the materials under their new names, and whose it is."""
-        solids = {key: replace(solid, material=f"{self.name}/{solid.material}") for key, solid in body.solids.items()}
+        solids = {key: replace(cast("Any", solid), material=f"{self.name}/{solid.material}") for key, solid in body.solids.items()}
         return replace(body, solids=Table(solids), of=None if body.of is None else self.body(body.of))
 
     def link(self, link: Link, own: frozenset[str] = frozenset()) -> Link:
@@ -221,10 +221,8 @@ def _moved_body(body: Body, frame: Frame) -> Body:
 
 
 def _moved_solid(solid: Solid, frame: Frame) -> Solid:
-    at, along = _point(frame, solid.at), _direction(frame, solid.along)
-    if isinstance(solid, Cylinder):
-        return replace(solid, at=at, along=along)
-    return replace(solid, at=at, along=along, up=_direction(frame, solid.up))
+    directions = {key: _direction(frame, getattr(solid, key)) for key in ("along", "up") if hasattr(solid, key)}
+    return replace(cast("Any", solid), at=_point(frame, solid.at), **directions)
 
 
 def _moved_link(link: Link, frame: Frame) -> Link:
