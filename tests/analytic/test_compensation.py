@@ -29,7 +29,7 @@ from flexstage.models.mapped import mapped
 from flexstage.parts.body import Payload
 from flexstage.spatial.frame import COMPONENTS
 
-STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted", "xy-stage-floating"})
+STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted", "xy-stage-floating", "telescope-mount"})
 DAMPING: Damping = ModalDamping(0.01)
 
 

@@ -34,6 +34,7 @@ EXPECTED = {
     "hexapod": (6, 6),
     "tip-tilt": (3, 3),
     "tip-tilt-four": (3, 4),
+    "telescope-mount": (0, 0),
 }
 """Mobility and number of actuators that each case is meant to have."""
 
@@ -57,7 +58,7 @@ def test_file_and_back(name):
 def test_mobility_and_actuators(name):
     found = ideal(case(name))
     assert (found.mobility, len(found.actuators)) == EXPECTED[name]
-    assert len(found.gauges) >= 1
+    assert len(found.gauges) >= 1 or not found.actuators
 
 
 @every

@@ -15,6 +15,7 @@ from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTE
 from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.parallelogram import Parallelogram, parallelogram
 from flexstage.cases.parameters import Stated, parameter, with_parameters
+from flexstage.cases.telescope_mount import TelescopeMount, telescope_mount
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.mechanism.address import get
@@ -67,6 +68,9 @@ CASES: Mapping[str, Case] = {
     "hexapod": Case(hexapod, Hexapod(), "six axes: six flexure struts in three pairs"),
     "tip-tilt": Case(tip_tilt, TipTilt(), "tip, tilt and piston of a mirror: three stacks and a guide of three leaves"),
     "tip-tilt-four": Case(tip_tilt, TipTilt(posts=4), "the mirror mount on four stacks: redundant actuation"),
+    "telescope-mount": Case(
+        telescope_mount, TelescopeMount(), "no axis: a mirror on three bipods of blades, a second one on struts above it"
+    ),
 }
 
 
