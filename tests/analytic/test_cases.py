@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.judge import judge
 from flexstage.base.finding import DesignError
 from flexstage.base.scale import GPa, X, deg, mm
 from flexstage.beams.compliance import compliance
@@ -16,7 +17,9 @@ from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.parallelogram import Parallelogram, parallelogram
 from flexstage.cases.stock import ALUMINIUM, STEEL
 from flexstage.cases.strut import Strut
+from flexstage.cases.tilt_stage import TiltStage, tilt_stage
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
+from flexstage.cases.voice_coil_stage import VoiceCoilStage, voice_coil_stage
 from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
@@ -24,7 +27,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
-from flexstage.parts.leaf import Leaf
+from flexstage.parts.leaf import Leaf, LeafSection
 
 
 def test_parallelogram_moves_along_x_as_its_stack_does():
@@ -183,3 +186,35 @@ def test_strut_reaches_from_neck_to_neck():
     strut = Strut((0.0, 0.0, 0.0), X, p.neck, p.stack, "steel", 10 * mm)
     assert strut.length == pytest.approx(8 * mm + 10 * mm + 36 * mm)
     assert strut.foot == pytest.approx((-54 * mm, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("crossing", [0.5, 0.25, 0.12732, 0.0])
+def test_tilt_stage_turns_against_wittrick(crossing):
+    """Two pivots of K0 = 8 (E I / L)(3 lambda^2 - 3 lambda + 1) each (Wittrick 1951); the force map is the coil's constant by its lever.
+
+    The coil pushes aside too, which turns a hinge that crosses off its middle by (t/L)^2.
+    """
+    p = TiltStage()
+    hinge = replace(p.hinge, crossing=crossing, section=LeafSection.BEAM)
+    stage = tilt_stage(replace(p, hinge=hinge))
+    bending = STEEL.young * hinge.width * hinge.thickness**3 / 12.0 / hinge.length
+    turned = static_gain(lumped(stage), ("platform.rz",), ("platform.mz", "motor")).values[0]
+    assert 1.0 / turned[0] == pytest.approx(16.0 * bending * (3.0 * crossing**2 - 3.0 * crossing + 1.0), rel=1e-3)
+    assert turned[1] / turned[0] == pytest.approx(p.coil.force_constant * p.lever, rel=(hinge.thickness / hinge.length) ** 2)
+    assert ideal(stage).coordinates == ("rz",)
+
+
+def test_voice_coil_stage_is_as_stiff_as_two_leaves():
+    """Each side has two pairs of leaves in series, 2 k / 2; both sides: 2 k, of leaves whose faces stay parallel."""
+    p = VoiceCoilStage()
+    moved = static_gain(lumped(voice_coil_stage(p)), ("platform.x",), ("platform.fx", "motor")).values[0]
+    assert 1.0 / moved[0] == pytest.approx(2.0 / compliance(p.leaf, STEEL)[1, 1], rel=1e-3)
+    assert moved[1] / moved[0] == pytest.approx(p.coil.force_constant, rel=1e-9)
+
+
+def test_voice_coil_stage_warms_by_the_current_that_holds_it():
+    """i = K x / k_f, heat R i^2, and its rise over the surroundings."""
+    p = VoiceCoilStage()
+    current = 2.0 / compliance(p.leaf, STEEL)[1, 1] * 2 * mm / p.coil.force_constant
+    heating = next(each for each in judge(voice_coil_stage(p)) if each.requirement.key == "heating.x")
+    assert heating.value == pytest.approx(current**2 * p.coil.resistance * p.coil.thermal_resistance, rel=2e-3)

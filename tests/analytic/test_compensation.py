@@ -29,7 +29,9 @@ from flexstage.models.mapped import mapped
 from flexstage.parts.body import Payload
 from flexstage.spatial.frame import COMPONENTS
 
-STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted", "xy-stage-floating", "telescope-mount"})
+STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "telescope-mount"}
+"""Cases whose motion strokes do not determine: there are too few, or none."""
+STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted"} - STROKELESS)
 DAMPING: Damping = ModalDamping(0.01)
 
 

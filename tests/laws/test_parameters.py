@@ -41,7 +41,7 @@ def values_of(mechanism):
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_batch_of_parameters_is_its_stages_one_by_one(name):
-    factors = np.array([1.0, 1.01, 0.98])
+    factors = np.array([1.0, 0.99, 0.98])  # shares stay below one
     varying = {each.name: each.value * factors for each in parameters(CASES[name].parameters).values() if each.quantity is not None}
     batch = values_of(Variant(name).mechanism_at(varying))
     for index in range(len(factors)):

@@ -35,8 +35,10 @@ EXPECTED = {
     "tip-tilt": (3, 3),
     "tip-tilt-four": (3, 4),
     "telescope-mount": (0, 0),
+    "tilt-stage": (1, 0),
+    "voice-coil-stage": (1, 0),
 }
-"""Mobility and number of actuators that each case is meant to have."""
+"""Mobility and number of strokes that each case is meant to have."""
 
 LOSS = {"bridge": 0.08, "double-triangle": 0.1, "double-triangle-a": 0.1, "double-triangle-refitted": 0.1}
 """Lost motion beyond 2 %: an amplifier's output is soft against its guide."""
@@ -107,7 +109,7 @@ def test_modes_meet_the_requirement(name):
 
 @every
 def test_floor_motion_is_followed_at_low_frequency(name):
-    found = transmissibility(lumped(case(name)), frequencies=np.array([0.01]))
+    found = transmissibility(lumped(case(name)), frequencies=np.array([0.003]))
     np.testing.assert_allclose(found.values[0], np.eye(6), atol=1e-5)
 
 

@@ -16,7 +16,9 @@ from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.parallelogram import Parallelogram, parallelogram
 from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.telescope_mount import TelescopeMount, telescope_mount
+from flexstage.cases.tilt_stage import TiltStage, tilt_stage
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
+from flexstage.cases.voice_coil_stage import VoiceCoilStage, voice_coil_stage
 from flexstage.cases.xy_stage import XYStage, xy_stage
 from flexstage.mechanism.address import get
 from flexstage.mechanism.mechanism import Mechanism
@@ -68,6 +70,10 @@ CASES: Mapping[str, Case] = {
     "hexapod": Case(hexapod, Hexapod(), "six axes: six flexure struts in three pairs"),
     "tip-tilt": Case(tip_tilt, TipTilt(), "tip, tilt and piston of a mirror: three stacks and a guide of three leaves"),
     "tip-tilt-four": Case(tip_tilt, TipTilt(posts=4), "the mirror mount on four stacks: redundant actuation"),
+    "tilt-stage": Case(tilt_stage, TiltStage(), "one axis: an arm on two cross hinges, turned by a voice coil"),
+    "voice-coil-stage": Case(
+        voice_coil_stage, VoiceCoilStage(), "one axis: a platform between double parallelograms, pushed by a voice coil"
+    ),
     "telescope-mount": Case(
         telescope_mount, TelescopeMount(), "no axis: a mirror on three bipods of blades, a second one on struts above it"
     ),

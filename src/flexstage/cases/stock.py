@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from flexstage.base.scale import GPa, MPa, N_per_um, kHz, mm, nm, uF, um
+from flexstage.parts.encoder import Encoder
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.voice_coil import VoiceCoil
 
 ALUMINIUM = Material(
     young=71.7 * GPa,
@@ -82,6 +84,23 @@ STRONG_STACK = Piezo(
 GAUGE = Gauge(
     range=200 * um, resolution=0.5 * nm, noise_density=0.01 * nm, bandwidth=3 * kHz, source="capacitive gauge of 200 um range, typical"
 )
+
+COIL = VoiceCoil(
+    force_constant=10.0,
+    peak_current=3.0,
+    continuous_current=1.0,
+    resistance=5.0,
+    inductance=1e-3,
+    mass=0.06,
+    magnet_mass=0.25,
+    damping=0.5,
+    travel=6 * mm,
+    thermal_resistance=10.0,
+    temperature_rise=80.0,
+    source="moving coil of 10 N, typical",
+)
+
+SCALE = Encoder(range=6 * mm, period=20 * um, steps=4096.0, source="linear encoder, typical")
 
 SOURCES: Mapping[str, str] = {
     "handbook": "typical handbook value of the material, that of the shipped catalogue",
