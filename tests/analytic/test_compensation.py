@@ -29,7 +29,7 @@ from flexstage.models.mapped import mapped
 from flexstage.parts.body import Payload
 from flexstage.spatial.frame import COMPONENTS
 
-STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "telescope-mount"}
+STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
 """Cases whose motion strokes do not determine: there are too few, or none."""
 STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted"} - STROKELESS)
 DAMPING: Damping = ModalDamping(0.01)

@@ -172,6 +172,8 @@ def test_numbers_that_are_not_finite_are_null_with_a_reason(flexstage: Command) 
 
 
 ALIKE = ("double-triangle-a", "double-triangle-refitted", "tip-tilt-four")
+MOUNTS = ("mirror-mount", "telescope-mount")
+"""Cases in which nothing is meant to move."""
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.full if name in ALIKE else ()) for name in sorted(CASES)])
@@ -179,7 +181,7 @@ def test_every_case_is_analysed(flexstage: Command, tmp_path: Path, name: str) -
     design_in(tmp_path, name)
     ended = flexstage("analyse", "stage.toml", "--json", "out.json")
     assert ended.code == 0, ended.err
-    assert json.loads((tmp_path / "out.json").read_text())["mapping"]["mobility"] >= 1
+    assert json.loads((tmp_path / "out.json").read_text())["mapping"]["mobility"] >= (0 if name in MOUNTS else 1)
     assert "Mobility" in ended.out
 
 

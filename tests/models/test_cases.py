@@ -34,6 +34,7 @@ EXPECTED = {
     "hexapod": (6, 6),
     "tip-tilt": (3, 3),
     "tip-tilt-four": (3, 4),
+    "mirror-mount": (0, 0),
     "telescope-mount": (0, 0),
     "tilt-stage": (1, 0),
     "voice-coil-stage": (1, 0),

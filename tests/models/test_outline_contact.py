@@ -152,9 +152,12 @@ def test_two_hundred_random_stages_clash_as_cad_says() -> None:
 
 
 QUICK = ("parallelogram", "bridge")
+UNDRAWN = {"tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
+"""Voice coils have no shape, and the mirrors and knees of the mounts have no outlines."""
+DRAWN = [name for name in CASES if name not in UNDRAWN]
 
 
-@pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.full) for name in CASES])
+@pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.full) for name in DRAWN])
 def test_shipped_cases_are_told_what_cad_tells(name: str) -> None:
     mechanism = case(name)
     by_cad, found = cad_findings(mechanism), contact_findings(mechanism)

@@ -13,6 +13,7 @@ from flexstage.base.number import Number, Table, stack
 from flexstage.cases.bridge import Bridge, bridge
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
 from flexstage.cases.hexapod import Hexapod, hexapod
+from flexstage.cases.mirror_mount import MirrorMount, mirror_mount
 from flexstage.cases.parallelogram import Parallelogram, parallelogram
 from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.telescope_mount import TelescopeMount, telescope_mount
@@ -74,6 +75,7 @@ CASES: Mapping[str, Case] = {
     "voice-coil-stage": Case(
         voice_coil_stage, VoiceCoilStage(), "one axis: a platform between double parallelograms, pushed by a voice coil"
     ),
+    "mirror-mount": Case(mirror_mount, MirrorMount(), "no axis: a mirror of one metre on three bipods of blades"),
     "telescope-mount": Case(
         telescope_mount, TelescopeMount(), "no axis: a mirror on three bipods of blades, a second one on struts above it"
     ),

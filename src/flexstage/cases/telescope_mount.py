@@ -12,10 +12,11 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.number import Number, Vector
+from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, MASS, POSITIVE
 from flexstage.base.scale import GPa, X, deg, kHz, mm
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Placement, Unit
+from flexstage.cases.bipod import SIDES, Bipod
+from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism, ModalDamping, Placement, Unit
 from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Body, Inertia, Payload
 from flexstage.parts.leaf import Leaf, LeafSection
@@ -108,31 +109,16 @@ def _bars(p: TelescopeMount) -> Payload:
 
 
 def _bipod(p: TelescopeMount) -> Unit:
-    """Two legs in the plane x = 0, where x points outward."""
-    bodies: dict[str, Body] = {}
-    links: dict[str, Link] = {}
-    for name, side in (("left", 1.0), ("right", -1.0)):
-        bodies |= {f"{name}_{knee}": Body() for knee in ("low", "high", "head")}
-        links |= _leg(p, name, side)
-    return Unit(bodies, links)
-
-
-def _leg(p: TelescopeMount, name: str, side: float) -> dict[str, Link]:
-    """Three blades, the middle one wide in the bipod's plane and the others across it, and the free end of the bar."""
-    stops = [_along_leg(p, side, share / 3.0) for share in range(4)]
-    across = (0.0, p.height, side * (p.foot - p.head))
-    low, high, head = (f"{name}_{knee}" for knee in ("low", "high", "head"))
-    clamp = (0.0, side * p.clamp, p.height)
-    return {
-        f"{name}_foot": Link((GROUND, low), "blade", start=stops[0], end=stops[1], bends=X),
-        f"{name}_middle": Link((low, high), "blade", start=stops[1], end=stops[2], bends=across),
-        f"{name}_top": Link((high, head), "blade", start=stops[2], end=stops[3], bends=X),
-        f"{name}_end": Link((head, PLATFORM), "end", start=stops[3], end=clamp, bends=X, free=()),
+    """A bipod, where x points outward, and the free ends of its bar, which let nothing move ideally."""
+    bipod = Bipod(p.foot, 0.0, p.head, p.height)
+    ends = {
+        f"{name}_end": Link(
+            (f"{name}_head", PLATFORM), "end", start=bipod.at(side, 1.0), end=(0.0, side * p.clamp, p.height), bends=X, free=()
+        )
+        for name, side in SIDES.items()
     }
-
-
-def _along_leg(p: TelescopeMount, side: float, share: float) -> Vector:
-    return (0.0, side * (p.foot - share * (p.foot - p.head)), share * p.height)
+    heads = {f"{name}_head": Body() for name in SIDES}
+    return Unit({**bipod.bodies(), **heads}, {**bipod.links("head"), **ends})
 
 
 def _strut(p: TelescopeMount) -> Unit:
