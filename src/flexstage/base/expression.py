@@ -190,7 +190,7 @@ def evaluate(expression: Expression, scope: Scope) -> Amount:
     """Return the amount of an expression; raises `ExpressionError`, also for a value that is not finite.
 
     >>> arm = Amount(0.026, dimension_of("m"))
-    >>> evaluate(parse_expression("arm/2 + 1 mm"), {"arm": arm}).value
+    >>> round(evaluate(parse_expression("arm/2 + 1 mm"), {"arm": arm}).value, 12)
     0.014
     """
     with np.errstate(all="ignore"):

@@ -100,7 +100,7 @@ class Material(Description):
     def limit(self) -> Number | None:
         """The least limit of stress [Pa]; `None` where none is stated.
 
-        >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit
+        >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit.item()
         400000000.0
         """
         stated = list(self.limits.values())

@@ -22,8 +22,8 @@ def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS
     What is straight or a cubic between two knots is drawn exactly, all else as a spline through 65 points: 2e-5 of its size off at most.
 
     >>> from flexstage.parts.profile import Vee
-    >>> [round(edge.mass, 6) for edge in contour_edges(Vee(2e-3, 1e-9, np.pi / 2.0), 0.5, 1.0)[::3]]  # two flanks at 45 degrees
-    [1.414213, 1.414213]
+    >>> [round(edge.mass, 6) for edge in contour_edges(Vee(2e-3, 1e-4, np.pi / 2.0), 0.5, 1.0)[::3]]  # two flanks at 45 degrees
+    [1.314214, 1.314214]
     """
     pieces = list(pairwise(contour.knots))
     left = [_curve(contour, (-end, -start), rise, sign) for start, end in reversed(pieces)]
