@@ -24,6 +24,7 @@ HOMES = {
     "parts.rod": "Rod",
     "parts.given": "Given Joint",
     "parts.spring": "Spring",
+    "parts.contact": "Contact Seat",
     "parts.piezo": "Piezo",
     "parts.shear_piezo": "ShearPiezo",
     "parts.amplified": "Amplified SteppingDrive",

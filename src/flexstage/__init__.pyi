@@ -142,6 +142,10 @@ from flexstage.parts.cartwheel import (
 from flexstage.parts.condensation import (
     superelement as superelement,
 )
+from flexstage.parts.contact import (
+    Contact as Contact,
+    Seat as Seat,
+)
 from flexstage.parts.cross_hinge import (
     CrossHinge as CrossHinge,
 )

@@ -12,6 +12,7 @@ import numpy as np
 
 from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
+from flexstage.analysis.seating import seating, seating_findings
 from flexstage.analysis.standing import load_factors, standing
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
@@ -36,6 +37,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body
+from flexstage.parts.contact import Contact
 from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Part, Restricted, material_of
 from flexstage.parts.piezo import Piezo
@@ -86,7 +88,13 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
     >>> defaults(Mechanism("stage"))
     ()
     """
-    return (*_stack_defaults(mechanism), *_massless_defaults(mechanism), *_lossless(mechanism), *_ground_default(mechanism))
+    return (
+        *_stack_defaults(mechanism),
+        *_massless_defaults(mechanism),
+        *_sticking(mechanism),
+        *_lossless(mechanism),
+        *_ground_default(mechanism),
+    )
 
 
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
@@ -114,6 +122,15 @@ def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
         if size > 0.0:
             advice = "Add it to the bodies that it joins, as it moves with them"
             yield Default(where, f"a restricted part has no mass: its {size:.4g} kg are left out", advice, _STILL | {"stiffness"})
+
+
+def _sticking(mechanism: Mechanism) -> Iterator[Default]:
+    """Contacts that state no friction."""
+    for name, part in mechanism.parts.items():
+        if isinstance(part, Contact) and part.friction is None:
+            yield Default(
+                f"parts.{name}", "it is taken as sticking: slip is not judged", "State it: friction = 0.15", frozenset({"mapping"})
+            )
 
 
 def _lossless(mechanism: Mechanism) -> Iterator[Default]:
@@ -253,13 +270,13 @@ def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
 
 
 def _overload_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Hinges beyond yield and stacks beyond their maximum load under weight, payloads and forces alone."""
+    """Hinges beyond yield, balls that leave their seats and stacks beyond their maximum load under weight, payloads and forces alone."""
     try:
         model = lumped(mechanism)
     except DesignError:
         return ()
     found: list[Finding] = []
-    for judged in (_stress_findings, _compression_findings):
+    for judged in (_stress_findings, _compression_findings, _seat_findings):
         with suppress(DesignError):
             found += judged(mechanism, model)
     return tuple(found)
@@ -272,6 +289,10 @@ def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Findi
         limit = stress.governing[stress.links.index(stress.weakest)]
         what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its {limit}"
         yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
+
+
+def _seat_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
+    yield from seating_findings(seating(mechanism, model))
 
 
 def _compression_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:

@@ -2,6 +2,7 @@
 
 from flexstage.base.register import Register
 from flexstage.beams.amplified import AMPLIFIED, STEPPER
+from flexstage.beams.contact import CONTACT
 from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
@@ -15,6 +16,7 @@ from flexstage.beams.shear_piezo import SHEAR_PIEZO
 from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
 from flexstage.parts.amplified import Amplified, SteppingDrive
+from flexstage.parts.contact import Contact
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -27,7 +29,7 @@ from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING}
+_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})

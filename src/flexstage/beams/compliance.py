@@ -53,9 +53,9 @@ def compliance(part: Elastic, material: Material | None) -> Array:
     >>> compliance(Rod("steel", length=0.1, diameter=0.002), steel).shape
     (6, 6)
     """
-    known = _law_of(part)
-    if known.stiffness is not None:
-        return np.linalg.inv(_regular(part, known.stiffness(part)))
+    known, stated = _law_of(part), _stated(part, material)
+    if stated is not None:
+        return np.linalg.inv(_regular(part, stated))
     return _diagonal_matrix(_diagonal(part, material)) if known.compliance is None else known.compliance(part)
 
 
@@ -68,9 +68,9 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
     >>> bool(np.allclose(stiffness(rod, steel) @ compliance(rod, steel), np.eye(6)))
     True
     """
-    known = _law_of(part)
-    if known.stiffness is not None:
-        return known.stiffness(part)
+    known, stated = _law_of(part), _stated(part, material)
+    if stated is not None:
+        return stated
     if known.compliance is not None:
         return np.linalg.inv(known.compliance(part))
     return _diagonal_matrix(1.0 / _diagonal(part, material))
@@ -164,6 +164,14 @@ def _law_of(part: Part) -> PartLaw:
     if known is None:
         raise _unknown(part)
     return known
+
+
+def _stated(part: Elastic, material: Material | None) -> Array | None:
+    """The stiffness of a part whose law states it, not its compliance."""
+    known = _law_of(part)
+    if known.material_stiffness is not None:
+        return known.material_stiffness(part, _required_material(part, material))
+    return None if known.stiffness is None else known.stiffness(part)
 
 
 def _unknown(part: Part) -> DesignError:

@@ -57,17 +57,18 @@ class PartLaw:
 
     A part is a `beam`, from which its compliance, mass, geometric stiffness and stress follow; `diagonal` is its compliance (..., 6) where
     that is not the beam's own (plates). A part without a beam states its whole `compliance` (..., 6, 6), or its `stiffness` (..., 6, 6)
-    where that may be singular or negative in some freedoms (then its compliance need not exist), and `mass` (..., 12, 12), all about its
-    centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that states it, about its centre too. `concentration` is the factor
-    of its notches on the nominal stress; without it, or where it is `None`, its stress is unknown. `ranges` are those in which the law
-    was compared with elasticity, `family` names the fitted laws that tell its error. `held` are the modes it has while its ends are held,
-    as many as it asks for, at stations of its half length from -1 to 1.
+    where that may be singular or negative in some freedoms (then its compliance need not exist; `material_stiffness` where it is that of a
+    part and its material), and `mass` (..., 12, 12), all about its centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that
+    states it, about its centre too. `concentration` is the factor of its notches on the nominal stress; without it, or where it is `None`,
+    its stress is unknown. `ranges` are those in which the law was compared with elasticity, `family` names the fitted laws that tell its
+    error. `held` are the modes it has while its ends are held, as many as it asks for, at stations of its half length from -1 to 1.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None
     diagonal: Callable[[Any, Material], Array] | None = None
     compliance: Callable[[Any], Array] | None = None
     stiffness: Callable[[Any], Array] | None = None
+    material_stiffness: Callable[[Any, Material], Array] | None = None
     mass: Callable[[Any], Array] | None = None
     damping: Callable[[Any], Array] | None = None
     concentration: Callable[[Any], Number | None] | None = None

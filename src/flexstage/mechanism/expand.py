@@ -23,8 +23,8 @@ from flexstage.parts.body import Body, Solid, owner_of, pierce
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
-from flexstage.parts.material import Material
-from flexstage.parts.part import Part, Restricted, actuator_of, inner, is_actuator, material_of, ports_of
+from flexstage.parts.material import Material, Paired
+from flexstage.parts.part import Part, Restricted, actuator_of, counter_of, inner, is_actuator, material_of, ports_of
 from flexstage.parts.superelement import Superelement
 from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
@@ -288,6 +288,7 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
     ]
     yield from (finding for where, link in drawn if link.part in mechanism.parts for finding in port_findings(where, link, mechanism.parts))
     named += [(f"parts.{name}.material", "material", material_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
+    named += [(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
     named += [
         (f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
         for where, body in bodies
@@ -485,14 +486,13 @@ def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition |
     for name, member in composition.members.items():
         first, second = (ends.get(body) or f"{whole.name}.{body}" for body in member.joins)
         frame = Frame(axes(member.along, member.bends), stack(member.at)).within(whole.frame)
-        material = material_of(member.part)
         link = PlacedLink(
             f"{whole.name}.{name}",
             f"{whole.drawn}.{name}",
             (first, second),
             replace(whole.link, joins=(first, second)),
             member.part,
-            _seen_from(mechanism, material, frame),
+            _seen_from(mechanism, member.part, frame),
             frame,
             whole,
         )
@@ -529,14 +529,17 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
         whole = cast("Superelement", inner(part))
         whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
         return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
-    material = material_of(part)
     first, second = ends
-    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, _seen_from(mechanism, material, frame), frame)
+    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, _seen_from(mechanism, part, frame), frame)
 
 
-def _seen_from(mechanism: Mechanism, material: str | None, frame: Frame) -> Material | None:
-    """The material of a part as it stands: of a crystal, in the part's own axes."""
-    return mechanism.materials[material].oriented(frame.rotation) if material else None
+def _seen_from(mechanism: Mechanism, part: Part, frame: Frame) -> Material | None:
+    """The material of a part as it stands: of a crystal, in the part's own axes; of a contact, with that of its seat."""
+    name, counter = material_of(part), counter_of(part)
+    if not name:
+        return None
+    own = mechanism.materials[name].oriented(frame.rotation)
+    return Paired.of(own, mechanism.materials[counter]) if counter else own
 
 
 def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:

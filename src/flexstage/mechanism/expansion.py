@@ -14,7 +14,7 @@ from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
 from flexstage.parts.body import Solid
 from flexstage.parts.mass import solid_properties
-from flexstage.parts.part import inner, material_of, span
+from flexstage.parts.part import counter_of, inner, material_of, span
 from flexstage.parts.shape import Shaped
 
 _STATED, _ASKED = "as stated", "as asked"
@@ -145,8 +145,8 @@ def _weight(mechanism: Mechanism, solid: Solid) -> float:
 
 
 def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list[str]:
-    names = [material_of(as_drawn(mechanism, link).part) for link in assembly.links.values() if body in link.joins]
-    return sorted({name for name in names if name is not None})
+    parts = [as_drawn(mechanism, link).part for link in assembly.links.values() if body in link.joins]
+    return sorted({name for part in parts if (name := material_of(part)) is not None and counter_of(part) is None})
 
 
 def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:

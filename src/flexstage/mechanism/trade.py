@@ -54,6 +54,7 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     ),
     "force_actuator": ("force", "forcer", "motor"),
     "spring": ("coilspring", "helicalspring", "preloadspring", "springdamper", "bellows", "bushing"),
+    "contact": ("hertz", "hertzian", "hertzcontact", "ballcontact", "vgroove", "kinematiccoupling", "kinematicmount", "maxwell"),
     "given": ("compliance", "matrix", "stiffnessmatrix", "fea", "measured"),
     "superelement": ("substructure", "craigbampton", "reduced", "condensed"),
     "joint": ("ideal", "idealjoint", "revolute", "prismatic", "bearing"),

@@ -3,6 +3,7 @@
 from flexstage.base.register import Register
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.cartwheel import Cartwheel
+from flexstage.parts.contact import Contact
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.encoder import Encoder
 from flexstage.parts.folded_leaf import FoldedLeaf
@@ -27,7 +28,7 @@ _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Superelement, *_COMPOUNDS, *_ACTUATORS)}
+    "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import reduce
 from typing import Annotated
 
@@ -192,3 +192,18 @@ class Oriented(Material):
     def shear_across(self) -> Number:
         """Shear modulus in the plane of x and y [Pa]."""
         return self.other_shear
+
+
+@dataclass(frozen=True, eq=False)
+class Paired(Material):
+    """A part's material with that of what it is pressed on, its `counter`."""
+
+    counter: Material = field(default_factory=lambda: _NOTHING)
+
+    @classmethod
+    def of(cls, material: Material, counter: Material) -> Paired:
+        """Both, each as it is stated."""
+        return cls(**{each.name: getattr(material, each.name) for each in fields(Material)}, counter=counter)
+
+
+_NOTHING = Material(None, None, 0.0)

@@ -90,6 +90,15 @@ def material_of(part: Part) -> str | None:
     return getattr(inner(part), "material", None)
 
 
+def counter_of(part: Part) -> str | None:
+    """Name of the material that the part is pressed on, if it is.
+
+    >>> counter_of(Joint()) is None
+    True
+    """
+    return getattr(inner(part), "counter", None)
+
+
 def ports_of(part: Part) -> Mapping[str, Port]:
     """The interface frames that a part is joined by, by name; empty for a part between two bodies.
 

@@ -15,7 +15,7 @@ from flexstage.mechanism.pattern import copy_names
 from flexstage.mechanism.sight import gauge_findings
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.given import Given
-from flexstage.parts.part import material_of
+from flexstage.parts.part import counter_of, material_of
 
 MOST_COPIES = 360
 _LONGEST = 60
@@ -137,6 +137,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 def _materials(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
         yield from _check_known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
+        yield from _check_known(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials)
         if isinstance(part, Given):
             yield from _check_known(f"parts.{name}.stands_for", "part", part.stands_for or None, mechanism.parts)
     for where, body in _all_bodies(mechanism):
