@@ -92,6 +92,7 @@ from flexstage.mechanism.mechanism import (
     Placement as Placement,
     Probe as Probe,
     RayleighDamping as RayleighDamping,
+    Stop as Stop,
     StructuralDamping as StructuralDamping,
     Unit as Unit,
 )

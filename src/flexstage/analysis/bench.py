@@ -18,6 +18,7 @@ from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.reach import ForceReach, input_limits, reach
+from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
 from flexstage.base.finding import refuse
@@ -58,6 +59,10 @@ class Bench:
         if point not in self._corrections:
             self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
         return self._corrections[point]
+
+    def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
+        """Strokes per motion of a point, lost motion made up by command, with their limits and the stops that they reach."""
+        return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
     def assembly(self) -> Assembly:

@@ -17,8 +17,9 @@ from flexstage.analysis.standing import load_factors, standing
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.small import small_motion
+from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.analysis.workspace.strength import hinge_stress
-from flexstage.analysis.workspace.stroke import StrokeLimits, single_axis, stroke_limits
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.quantity import LENGTH
@@ -204,7 +205,7 @@ def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
     try:
         kinematics = ideal(mechanism)
-        single = single_axis(kinematics.mapping, stroke_limits(mechanism))
+        single = single_strokes(mechanism, kinematics)
     except DesignError:
         return ()
     return tuple(small_motion(mechanism, kinematics).cautions(single))

@@ -10,7 +10,7 @@ from flexstage.analysis.bench import Bench
 from flexstage.analysis.measures import Measure, corner, stroke
 from flexstage.analysis.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.workspace.small import small_motion
-from flexstage.analysis.workspace.stroke import single_axis
+from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
@@ -94,7 +94,7 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
     elif line.kind is corner:
         asked = bench.box()
     elif line.kind.over_strokes and bench.kinematics.actuated:
-        single = single_axis(bench.kinematics.mapping, bench.limits)
+        single = single_strokes(bench.mechanism, bench.kinematics)
         asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
     else:
         return ""

@@ -15,6 +15,7 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
 from flexstage.analysis.workspace.reach import bounds_along
+from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import refuse, require
 from flexstage.base.number import Array, magnitude, stack
@@ -115,25 +116,25 @@ class Measure:
 def stroke(bench: Bench, asked: Measure) -> Array:
     """Stroke both ways along one axis, lost motion made up by command.
 
-    How far each actuator lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
+    How far each actuator and stop lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
     """
     if bench.forced:
         return bounds_along(bench.reach(asked.point), asked.name)
-    mapping = bench.correction(asked.point)
+    mapping, limits = bench.stopped(asked.point)
     if asked.name not in mapping.columns:
         raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
     gain = mapping.values[..., mapping.columns.index(asked.name)]
     able = np.abs(gain) > 1e-12 * np.max(np.abs(mapping.values), axis=(-2, -1), keepdims=False)[..., None]
     safe = np.where(able, gain, 1.0)
-    ends = bench.limits.low / safe, bench.limits.high / safe
+    ends = limits.low / safe, limits.high / safe
     both = np.concatenate(np.broadcast_arrays(-np.minimum(*ends), np.maximum(*ends)), axis=-1)
     return np.where(np.concatenate([able, able], axis=-1), both, np.inf)
 
 
 @partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST)
 def corner(bench: Bench, _: Measure) -> Array:
-    """Share of the actuators' strokes that all required strokes at once ask for."""
-    return utilisation(bench.lost.correction, bench.limits, bench.box()).ratio
+    """Share of the actuators' strokes, and of the gaps of stops, that all required strokes at once ask for."""
+    return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
 
 
 @partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)

@@ -20,6 +20,9 @@ from flexstage.base.register import origin
 DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
 
+WHERE_STATED = {"where_stated": True}
+"""Field metadata: the field counts only where it holds something, so that descriptions without it keep the digests they had before it."""
+
 KEY = "key"
 """Field metadata: what a file, and so an address, calls the field, where that word is one of Python's own."""
 
@@ -102,9 +105,10 @@ def _own(value: Description, *, physics: bool) -> bytes:
     known: dict[bool, bytes] = value.__dict__.setdefault(_KEPT, {})
     if physics not in known:
         pieces = [b"D" + type(value).__name__.encode() + origin(type(value).__module__).encode()]
-        for name, piece in _counted_fields(type(value), physics=physics):
-            pieces.append(piece)
-            _feed(pieces, getattr(value, name), physics=physics)
+        for name, piece, always in _counted_fields(type(value), physics=physics):
+            if always or getattr(value, name):
+                pieces.append(piece)
+                _feed(pieces, getattr(value, name), physics=physics)
         known[physics] = hashlib.sha256(b"".join(pieces)).digest()
     return known[physics]
 
@@ -140,7 +144,7 @@ def _scalar(value: Any) -> bytes:
 
 
 @functools.cache
-def _counted_fields(cls: type, *, physics: bool) -> tuple[tuple[str, bytes], ...]:
-    """Names of the fields that count, with what they feed."""
+def _counted_fields(cls: type, *, physics: bool) -> tuple[tuple[str, bytes, bool], ...]:
+    """Names of the fields that count, with what they feed, and whether they count where they are empty."""
     counted = [field for field in fields(cls) if not (physics and field.metadata.get("physics") is False)]  # type: ignore[arg-type]
-    return tuple((field.name, _scalar(field.name)) for field in counted)
+    return tuple((field.name, _scalar(field.name), not WHERE_STATED.items() <= field.metadata.items()) for field in counted)

@@ -13,11 +13,11 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.mechanism.likeness import drawn_units, link_lineage
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, posed
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, Stop, posed
 from flexstage.mechanism.misalignment import MISALIGNED, misalign
 from flexstage.mechanism.path import complete, has_member, replace_member
 from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
-from flexstage.mechanism.sight import PlacedGauge, gauge_findings, link_names, place_sum, sight, sight_of_link
+from flexstage.mechanism.sight import PlacedGauge, PlacedStop, gauge_findings, link_names, place_stop, place_sum, sight, sight_of_link
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.body import Body, Solid, owner_of, pierce
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
@@ -151,6 +151,7 @@ class Assembly:
     points: Mapping[str, tuple[str, Array]]
     ground: Mapping[str, PlacedSolid]
     superelements: Mapping[str, PlacedSuperelement] = field(default_factory=lambda: Table({}))
+    stops: Mapping[str, PlacedStop] = field(default_factory=lambda: Table({}))
 
     @property
     def welded(self) -> Assembly:
@@ -251,10 +252,11 @@ def _assembly(key: _Same) -> Assembly:
     bodies = {
         item.name: _placed_body((item, *lent.get(item.name, ())), joined, mechanism.materials) for item in drawn if item.body.of is None
     }
-    require(_unknown_bodies(bodies, joined, posed(mechanism.gauges)))
+    require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
+    require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
     ground = _placed_solids(lent.get(GROUND, ()))
     drives = _actuators(links, {copy for copy, _, _ in placed})
-    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements)
+    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements, dict(_stops(mechanism)))
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -325,11 +327,11 @@ def port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator
 
 
 def _unknown_bodies(
-    bodies: Mapping[str, PlacedBody], links: Iterable[PlacedLink | PlacedSuperelement], gauges: Mapping[str, Probe]
+    bodies: Mapping[str, PlacedBody], links: Iterable[PlacedLink | PlacedSuperelement], looking: Mapping[str, Probe | Stop]
 ) -> Iterator[Finding]:
     known = (*bodies, GROUND)
     ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
-    ends += [(f"gauges.{name}", body) for name, probe in gauges.items() for body in (probe.body, probe.base or GROUND)]
+    ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
     yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
 
@@ -643,3 +645,10 @@ def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: s
         gauge = mechanism.sensors[place.gauge]
         for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
             yield PlacedGauge(name, gauge, (sight_of_link(link.joins, link.frame, link.part, gauge),))
+
+
+def _stops(mechanism: Mechanism) -> Iterator[tuple[str, PlacedStop]]:
+    for key, stop in mechanism.stops.items():
+        names = copy_names(key)
+        for name, frame in zip(names, copy_frames(stop.pattern, len(names)), strict=True):
+            yield name, place_stop(stop, frame.right_handed)

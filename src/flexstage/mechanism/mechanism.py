@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, TypeAlias
 
-from flexstage.base.digest import DOCUMENT_ONLY, KEY, Description
+from flexstage.base.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
@@ -159,6 +159,20 @@ GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 
 
 @dataclass(frozen=True, eq=False)
+class Stop(Description):
+    """A gap at which a stroke ends: `body` may move by `gap` along x of the pattern's frame, at its origin, against `base`.
+
+    With `gap_back` it ends the way back too; without, nothing stops that. A key such as `E1-E3` names as many stops.
+    """
+
+    body: str
+    pattern: Pattern
+    gap: Annotated[Number, LENGTH, POSITIVE]
+    gap_back: Annotated[Number, LENGTH, POSITIVE] | None = None
+    base: str = GROUND
+
+
+@dataclass(frozen=True, eq=False)
 class Force(Description):
     """A constant force on a body at a point (a bonding force), in the stage's frame."""
 
@@ -204,9 +218,9 @@ class Mechanism(InNotebook, Description):
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
-    `ground` names the material that the ground grows with (`none`: it does not grow). `packages` are those that its kinds of parts,
-    gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out
-    of `numbers`; values are kept as they come out.
+    `stops` end strokes. `ground` names the material that the ground grows with (`none`: it does not grow). `packages` are those that its
+    kinds of parts, gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values
+    are worked out of `numbers`; values are kept as they come out.
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -235,6 +249,7 @@ class Mechanism(InNotebook, Description):
     sources: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
+    stops: Mapping[str, Stop] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:

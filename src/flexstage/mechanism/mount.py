@@ -14,7 +14,7 @@ from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.mechanism.expand import copy_frames, placed_bodies
 from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.locate import canonical
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, Link, LinkProbe, Mechanism, Placement, Probe, Unit
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, Link, LinkProbe, Mechanism, Placement, Probe, Stop, Unit
 from flexstage.mechanism.pattern import Normal, Pose, copy_names
 from flexstage.mechanism.sight import link_names
 from flexstage.parts.body import Body, Inertia, Solid
@@ -24,7 +24,7 @@ from flexstage.spatial.frame import Frame, identity, reflection
 
 STAGES = "stages"
 """The table of a design file that says what stages stand on this one."""
-_SECTIONS = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces")
+_SECTIONS = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +65,7 @@ def mount(
         "place": dict(_copies(carried, name, frame)),
         "sensors": _under(name, carried.sensors),
         "gauges": dict(_gauges(carried, rename, frame)),
+        "stops": dict(_stops(carried, rename, frame)),
         "payloads": {
             f"{name}/{key}": replace(item, body=rename.body(item.body), at=_point(frame, item.at), inertia=_turned(item.inertia, frame))
             for key, item in carried.payloads.items()
@@ -83,7 +84,12 @@ def mount(
 
 def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, pose: Pose) -> Iterator[Finding]:
     where = f"stages.{name}"
-    taken = {copy for key in (*stage.place, *stage.gauges) for copy in copy_names(key)} | {*stage.bodies, *stage.units, *stage.links}
+    placed = (*stage.place, *stage.gauges, *stage.stops)
+    taken = {copy for key in placed for copy in copy_names(key)} | {
+        *stage.bodies,
+        *stage.units,
+        *stage.links,
+    }
     if name in taken:
         yield Finding(where, "something else has this name", "Give the stage a name of its own: all that is in it is called by it")
     if pose.mirror is not None:
@@ -162,6 +168,15 @@ def _gauges(carried: Mechanism, rename: _Names, frame: Frame) -> Iterator[tuple[
             yield from ((name, replace(own, link=link)) for name, link in zip(names, links, strict=True))
         else:
             yield names[0], replace(item, sum=Table(_under(rename.name, item.sum)))
+
+
+def _stops(carried: Mechanism, rename: _Names, frame: Frame) -> Iterator[tuple[str, Stop]]:
+    """The stops one by one, each in its new pose."""
+    for key, item in carried.stops.items():
+        names = copy_names(key)
+        for name, each in zip(names, copy_frames(item.pattern, len(names)), strict=True):
+            own = replace(item, body=rename.body(item.body), base=rename.body(item.base), pattern=_pose(each.within(frame)))
+            yield f"{rename.name}/{name}", own
 
 
 def _pairs(joins: Any) -> Iterator[tuple[Any, str]]:

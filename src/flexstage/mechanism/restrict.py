@@ -85,6 +85,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         units={**mechanism.units, units[copy]: replace(mechanism.units[units[copy]], bodies=own)},
         place={copy: Placement(units[copy], Pose())},
         gauges={},
+        stops={},
         payloads={},
         forces={},
         requirements={},

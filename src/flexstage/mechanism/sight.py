@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.base.number import Number
-from flexstage.mechanism.mechanism import GROUND, GaugePlace, GaugeSum, LinkProbe, Mechanism, Probe
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.mechanism import GROUND, GaugePlace, GaugeSum, LinkProbe, Mechanism, Probe, Stop
 from flexstage.mechanism.pattern import copy_names
+from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Instrument, Positive, combine_gauges
 from flexstage.parts.part import Part, span
 from flexstage.spatial.frame import Frame
@@ -50,6 +51,21 @@ class PlacedGauge:
     def single(self) -> Sight | None:
         """What it looks at; absent of sums."""
         return None if self.members else self.sights[0]
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedStop:
+    """A stop of the expanded stage: what it sees of its `sight` stays between `low` and `high` (...) [m], infinite where it is open."""
+
+    sight: Sight
+    low: Array
+    high: Array
+
+
+def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
+    """A stop at a frame: it sees the body's motion along x against the base's, as a gauge of a gap does."""
+    seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
+    return PlacedStop(seen, np.asarray(-np.inf if stop.gap_back is None else -stop.gap_back), np.asarray(stop.gap))
 
 
 def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.stops import STOPS
 from flexstage.analysis.workspace.strength import sized_links, stress_use
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.finding import Finding, refuse, require
@@ -17,14 +19,15 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design, magnitude
 from flexstage.base.record import VIEW, Axes
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.arguments import takes_models
+from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.voice_coil import VoiceCoil
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, Frame, twist_transform
 
 _STRESS_STEPS = 60
 _YIELD = "yield stress"
@@ -81,8 +84,8 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
 
     C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
     limits for more. What is left of the motion ends with the first of: each coil's peak and continuous current, heat i^2 R over its
-    thermal resistance, amplifier voltage R i (at rest), largest force, magnetic travel, each stroke, and yield in a hinge under dead load.
-    Linear. Raises `DesignError` where the stage has no force actuator, or no ideal motion.
+    thermal resistance, amplifier voltage R i (at rest), largest force, magnetic travel, each stroke, each stop's nearer side, and yield in
+    a hinge under dead load. Linear. Raises `DesignError` where the stage has no force actuator, or no ideal motion.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("reach", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
@@ -91,7 +94,11 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     gain = static_gain(model, tuple(f"{point}.{name}" for name in names), inputs).values
     limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
     per_motion, alone = _inverse(gain, _sizes(limits[False]))
-    others = [*_travel(assembly, model, inputs, per_motion), *_stress(mechanism, assembly, model, inputs, per_motion)]
+    others = [
+        *_travel(assembly, model, inputs, per_motion),
+        *_stops(assembly, model, inputs, per_motion),
+        *_stress(mechanism, assembly, model, inputs, per_motion),
+    ]
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)
     bounds = {brief: _bounds(names, [*_by_input(inputs, known, per_motion), *others], units) for brief, known in limits.items()}
     channels = tuple(channel.unit for channel in model.inputs if channel.name in inputs)
@@ -175,6 +182,23 @@ def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per
             opened = (model.stiffness[link].operator @ moved)[..., 0, :]
             opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., 0, :]
             yield f"{name} travel", _over(0.5 * np.asarray(part.travel)[..., None], opened)
+
+
+def _stops(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
+    """The motion, by the nearer side, at which every stop is met."""
+    for name, stop in assembly.stops.items():
+        twists = {
+            body: static_gain(model, tuple(f"{body}.{component}" for component in COMPONENTS), inputs).values @ per_motion
+            for body in {stop.sight.body, stop.sight.base} - {GROUND}
+        }
+        closing = see(stop.sight, partial(_twist, assembly, twists))[..., 0, :]
+        yield f"{STOPS}/{name}", _over(np.minimum(-stop.low, stop.high)[..., None], closing)
+
+
+def _twist(assembly: Assembly, twists: Mapping[str, Array], body: str, frame: Frame) -> Array:
+    """The twist of a body at a frame, of those (..., 6, f) at the bodies' reference points; the ground rests."""
+    still = np.zeros_like(next(iter(twists.values())))
+    return still if body == GROUND else twist_transform(frame, assembly.bodies[body].reference) @ twists[body]
 
 
 def _stress(

@@ -64,7 +64,7 @@ class StrokeLimits:
 class SingleAxis(InNotebook):
     """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
 
-    `limiting` names the actuator that ends each stroke (first design, `high` side).
+    `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
     """
 
     coordinates: tuple[str, ...]
@@ -91,7 +91,8 @@ class SingleAxis(InNotebook):
 class Utilisation(InNotebook):
     """What a box of commands, all coordinates at once, asks of the actuators.
 
-    `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways.
+    `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways. Stops
+    that the strokes reach stand among the actuators (`stops/end`), their gaps in the place of strokes.
     """
 
     actuators: tuple[str, ...]

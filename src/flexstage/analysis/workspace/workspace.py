@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 from flexstage.analysis.attempt import Attempts
@@ -16,8 +17,10 @@ from flexstage.analysis.workspace.gauging import GaugeRange, PoseResolution, gau
 from flexstage.analysis.workspace.load import LoadRange, LoadShare, load_share
 from flexstage.analysis.workspace.map_error import MapError, linear_map_error
 from flexstage.analysis.workspace.polytope import Polytope, reachable
+from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
+from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
 from flexstage.base.record import VIEW
@@ -88,21 +91,21 @@ def workspace(
     [75.0, 86.6, 300.0]
     """
     attempt, limits, mapping = Attempts(), stroke_limits(mechanism), kinematics.mapping
-    single = single_axis(mapping, limits, provenance=kinematics.provenance)
+    single = single_strokes(mechanism, kinematics)
     asked = (
         command if command is not None else {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}
     )
     hinged = model if model is not None and set(expand(mechanism).links) <= set(model.stiffness) else None
-    unloaded = limits.from_zero
+    unloaded, stopped = limits.from_zero, partial(_with_stops, mechanism, kinematics, limits)
     return Workspace(
         command=Table(asked),
         limits=limits,
         single=single,
         corrected=attempt.of_ground(
-            "corrected", lost, _RIGID, lambda known: single_axis(known.correction, limits, provenance=known.provenance)
+            "corrected", lost, _RIGID, lambda known: single_axis(*stopped(known.correction), provenance=known.provenance)
         ),
-        corner=attempt.of("corner", lambda: utilisation(mapping, limits, asked, provenance=kinematics.provenance)),
-        polytope=attempt.of("polytope", lambda: reachable(mapping, limits, provenance=kinematics.provenance)),
+        corner=attempt.of("corner", lambda: utilisation(*stopped(mapping), asked, provenance=kinematics.provenance)),
+        polytope=attempt.of("polytope", lambda: reachable(*stopped(mapping), provenance=kinematics.provenance)),
         drive=attempt.of("drive", lambda: drive(mechanism)),
         map_error=attempt.of("map_error", lambda: linear_map_error(mechanism, kinematics, limits)),
         gauges=attempt.of("gauges", lambda: gauge_range(mechanism, kinematics, asked)),
@@ -117,6 +120,10 @@ def workspace(
     )
 
 
+def _with_stops(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, mapping: Matrix) -> tuple[Matrix, StrokeLimits]:
+    return with_stops(mechanism, kinematics, mapping, limits)
+
+
 def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
     """The ideal single-axis strokes as a box of commands by coordinate [m, rad].
 
@@ -124,7 +131,7 @@ def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
     >>> round(1e6 * all_strokes(double_triangle())["z"], 6)
     300.0
     """
-    return _symmetric(single_axis(ideal(mechanism).mapping, stroke_limits(mechanism)))
+    return _symmetric(single_strokes(mechanism, ideal(mechanism)))
 
 
 def _symmetric(single: SingleAxis) -> dict[str, float]:

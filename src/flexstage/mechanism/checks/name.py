@@ -20,7 +20,7 @@ from flexstage.parts.part import counter_of, material_of
 MOST_COPIES = 360
 _LONGEST = 60
 _RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
-_NAMED = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces")
+_NAMED = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -49,7 +49,7 @@ def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*copy_findings(Mechanism("", place={"B3-B1": Placement("leg", Pose())})))
     place.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
     """
-    for section in ("place", "gauges"):
+    for section in ("place", "gauges", "stops"):
         keys = getattr(mechanism, section)
         faults = [fault for key in keys if (fault := _range_fault(f"{section}.{key}", key))]
         yield from faults
@@ -161,10 +161,20 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     for name, probe in posed(mechanism.gauges).items():
         yield from _check_known(f"gauges.{name}.body", "body", probe.body, gauged)
         yield from _check_known(f"gauges.{name}.base", "body", probe.base, gauged)
+    yield from _check_stops(mechanism, gauged)
     yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
     for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
         for name, item in items.items():
             yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
+
+
+def _check_stops(mechanism: Mechanism, moving: Iterable[str]) -> Iterator[Finding]:
+    """A stop is between two bodies that move by themselves, or one of them and the ground."""
+    for name, stop in mechanism.stops.items():
+        yield from _check_known(f"stops.{name}.body", "body", stop.body, moving)
+        yield from _check_known(f"stops.{name}.base", "body", stop.base, moving)
+        if stop.body == stop.base:
+            yield Finding(f"stops.{name}.base", f'it is "{stop.body}", as the body is', "Name the body that it runs against")
 
 
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:

@@ -40,6 +40,8 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _pattern(f"place.{name}", placement.pattern)
     for name, probe in posed(mechanism.gauges).items():
         yield from _pattern(f"gauges.{name}", probe.pattern, is_round=True)
+    for name, stop in mechanism.stops.items():
+        yield from _pattern(f"stops.{name}", stop.pattern, is_round=True)
 
 
 def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]]) -> Iterator[Finding]:

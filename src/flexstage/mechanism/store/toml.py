@@ -27,6 +27,7 @@ HEADINGS: Mapping[str, str] = {
     "gauges": "Where the gauges read: x of each copy points from the gauge to its target.",
     "payloads": "Masses carried by bodies, in the stage's frame.",
     "forces": "Constant forces, in the stage's frame.",
+    "stops": "Gaps at which strokes end: the body may move by gap along x of each copy against its base.",
     "change": "Departures: unit/link.field for all copies, copy/link.field for one.",
     "require": "Judged first in every report.",
     "sources": "Sources that tags name. A value without tag is assumed.",

@@ -142,11 +142,12 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
 
 def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
     """What a gauge reads (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
-    first, *rest = (_see(sight, at) for sight in gauge.sights)
+    first, *rest = (see(sight, at) for sight in gauge.sights)
     return sum(rest, first)
 
 
-def _see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
+def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
+    """What one sight of a gauge, or a stop, adds to its reading (..., 1, n), its weight counted."""
     rows = slice(sight.component, sight.component + 1)
     seen = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
     return np.asarray(sight.weight)[..., None, None] * seen

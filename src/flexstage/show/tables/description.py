@@ -27,6 +27,7 @@ TITLES = {
     "gauges": "Placement of gauges",
     "payloads": "Payloads",
     "forces": "Forces",
+    "stops": "Stops",
     "changes": "Departures of single copies",
     "": "Stage",
 }
@@ -51,6 +52,8 @@ def composition_table(mechanism: Mechanism) -> Table:
         ("actuators", str(len(assembly.actuators)), ", ".join(assembly.actuators)),
         ("gauges", str(len(assembly.gauges)), ", ".join(f"{count} x {gauge}" for gauge, count in gauges.items())),
     ]
+    if assembly.stops:
+        rows.append(("stops", str(len(assembly.stops)), ", ".join(assembly.stops)))
     return make_table("Composition", ["", Column("number"), "of which"], rows)
 
 

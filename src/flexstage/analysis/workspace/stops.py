@@ -1,0 +1,90 @@
+"""Stops among what ends a stroke: gaps in the place of strokes, rows of ideal motions in the place of those of R_a."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, mapping_at, single_axis, stroke_limits
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.number import Array, stack
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.incidence import layout, twist_at
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.channels import see
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+STOPS = "stops"
+"""What names of stops stand under where limits are told: `stops/end`."""
+
+
+def single_strokes(mechanism: Mechanism, kinematics: Kinematics) -> SingleAxis:
+    """Ideal strokes of the platform along single coordinates: between the ends of its actuators, and between stops.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> single_strokes(double_triangle(), ideal(double_triangle())).limiting[2]
+    'B4'
+    """
+    mapping, limits = with_stops(mechanism, kinematics, kinematics.mapping, stroke_limits(mechanism))
+    return single_axis(mapping, limits, provenance=kinematics.provenance)
+
+
+def with_stops(
+    mechanism: Mechanism, kinematics: Kinematics, mapping: Matrix, limits: StrokeLimits, point: str = PLATFORM
+) -> tuple[Matrix, StrokeLimits]:
+    """Mapping and limits with a row for every stop that the strokes can reach: low <= n^T x <= high, n the ideal motion that closes it.
+
+    `mapping` is that of the motions of `point`. Stops beyond what all strokes at once can reach are left out, and an open side ends where
+    no stroke gets to, so that all limits are finite. Bodies between ground and platform move as in the ideal model, small motions only.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> stage = double_triangle()
+    >>> with_stops(stage, ideal(stage), ideal(stage).mapping, stroke_limits(stage))[0].rows
+    ('B1', 'B2', 'B3', 'B4', 'B5', 'B6')
+    """
+    stops = expand(mechanism).stops
+    if not stops:
+        return mapping, limits
+    rows = mapping_at(mechanism, kinematics, point, mapping=_closing(mechanism, kinematics, mapping.columns)).values
+    low, high = (stack([getattr(item, side) for item in stops.values()]) for side in ("low", "high"))
+    least, largest = _reached(mapping.values, rows, limits)
+    met = np.any(np.atleast_2d((np.real(low) > least) | (np.real(high) < largest)).reshape(-1, len(stops)), axis=0)
+    if not np.any(met):
+        return mapping, limits
+    names = tuple(f"{STOPS}/{name}" for name, kept in zip(stops, met.tolist(), strict=True) if kept)
+    low = np.where(np.isinf(low), 2.0 * least - largest, low)
+    units = ratio_units(("m",) * (len(mapping.rows) + len(names)), _units(mapping.columns))
+    values = _joined(mapping.values, rows[..., met, :], -2)
+    ends = (_joined(strokes, gaps[..., met], -1) for strokes, gaps in ((limits.low, low), (limits.high, high)))
+    return Matrix(values, mapping.rows + names, mapping.columns, units), StrokeLimits(limits.actuators + names, *np.broadcast_arrays(*ends))
+
+
+def _closing(mechanism: Mechanism, kinematics: Kinematics, columns: tuple[str, ...]) -> Matrix:
+    """What each stop sees per ideal motion of the platform."""
+    assembly = expand(mechanism)
+    order = layout(assembly)
+    seen = [
+        see(stop.sight, lambda body, frame: twist_at(assembly, order, body, frame)) @ kinematics.bodies for stop in assembly.stops.values()
+    ]
+    names = tuple(f"{STOPS}/{name}" for name in assembly.stops)
+    return Matrix(np.concatenate(np.broadcast_arrays(*seen), axis=-2), names, columns, ratio_units(("m",) * len(names), _units(columns)))
+
+
+def _units(columns: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in columns)
+
+
+def _reached(mapping: Array, rows: Array, limits: StrokeLimits) -> tuple[Array, Array]:
+    """Least and largest that stops (..., s) see over the box of strokes; of more strokes than motions at least that."""
+    gains = np.real(rows) @ np.linalg.pinv(np.real(mapping))
+    ends = np.stack(np.broadcast_arrays(*(gains * np.real(each)[..., None, :] for each in (limits.low, limits.high))))
+    return np.sum(np.min(ends, axis=0), axis=-1), np.sum(np.max(ends, axis=0), axis=-1)
+
+
+def _joined(first: Array, second: Array, axis: int) -> Array:
+    """Two arrays one after the other along an axis, their batches broadcast."""
+    inner = -axis
+    batch = np.broadcast_shapes(first.shape[:-inner], second.shape[:-inner])
+    return np.concatenate([np.broadcast_to(each, batch + each.shape[-inner:]) for each in (first, second)], axis=axis)
