@@ -15,6 +15,9 @@ from flexstage.analysis.drift import (
 from flexstage.analysis.lost_motion import (
     lost_motion as lost_motion,
 )
+from flexstage.analysis.mass_matrix import (
+    mass_matrix as mass_matrix,
+)
 from flexstage.analysis.modes import (
     modes as modes,
 )
@@ -30,6 +33,7 @@ from flexstage.analysis.sensitivities import (
     sensitivities as sensitivities,
 )
 from flexstage.analysis.statics import (
+    freedom_stiffness as freedom_stiffness,
     statics as statics,
 )
 from flexstage.analysis.inner_stage import (

@@ -40,6 +40,7 @@ from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
 TITLES = {
     "kinematics": "Actuator mapping R_a",
     "statics": "Stiffness at platform",
+    "mass": "Mass at platform, whole stage",
     "deflection": "Dead load, platform",
     "units": "Units alone",
     "lost_motion": "Lost motion",
@@ -75,11 +76,12 @@ NOT_SHOWN = {"mechanism", "model", "linear", "missing", "reasons"}
 
 def test_every_result_is_presented() -> None:
     """A result that is added to the analysis fails here until the report shows it."""
-    # reach: of stages that forces move, see test_voice_coil
-    assert {field.name for field in fields(Analysis)} - NOT_SHOWN - {"reach"} == set(TITLES)
+    # reach: of stages that forces move, see test_voice_coil; freedoms: of stages with fewer than six
+    assert {field.name for field in fields(Analysis)} - NOT_SHOWN - {"reach", "freedoms"} == set(TITLES)
     assert {field.name for field in fields(Workspace)} - NOT_SHOWN == set(REACH)
     page = reported("double-triangle")
     assert [title for title in (*TITLES.values(), *REACH.values()) if title not in page] == []
+    assert "Stiffness by freedom at platform" in reported("parallelogram")
 
 
 def test_a_batch_shows_its_first_design_and_says_so() -> None:

@@ -14,12 +14,13 @@ from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.judge import judge
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.measures import stroke
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.requirements import Sense, Verdict, requirements
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.standing import require_standing, standing
-from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.analysis.units import UnitResult, units
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.reach import ForceReach
@@ -49,7 +50,8 @@ class Analysis:
     `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the
     ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
     the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. The error budget is
-    that of the required strokes, or of all single-axis strokes at once, and of one kelvin.
+    that of the required strokes, or of all single-axis strokes at once, and of one kelvin. `freedoms` (stiffness along the motions left and
+    along what links hold; None where six are left) and `mass` of the platform belong to the statics.
     """
 
     mechanism: Mechanism
@@ -70,6 +72,8 @@ class Analysis:
     verdicts: tuple[Verdict, ...]
     missing: Mapping[str, str]
     reach: ForceReach | None = None
+    freedoms: FreedomStiffness | None = None
+    mass: MassMatrix | None = None
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
@@ -109,13 +113,14 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
     hinged = linear if model is Model.LUMPED else None
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
+    stiff = attempt.of_ground("statics", linear, _RIGID, statics)
     drifted = attempt.of_ground("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
         model=model,
         kinematics=kinematics,
         linear=linear,
-        statics=attempt.of_ground("statics", linear, _RIGID, statics),
+        statics=stiff,
         deflection=attempt.of_ground("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
         buckling=attempt.of_ground("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
@@ -128,6 +133,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
         verdicts=verdicts,
         reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
+        freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
+        mass=None if stiff is None or linear is None else mass_matrix(mechanism, linear),
         missing=Table(attempt.missing),
     )
 

@@ -11,8 +11,9 @@ import numpy as np
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
-from flexstage.base.quantity import ANGLE, LENGTH, STIFFNESS
+from flexstage.base.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.models.linear.arguments import takes_models
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.models.linear.undetermined import require_unmoved
@@ -95,6 +96,66 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
         centre=centre_of_stiffness(inverse),
         provenance=model.provenance,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FreedomStiffness(InNotebook):
+    """Stiffness along and about each axis at a point [N/m, N m/rad], strokes held: with the other freedoms free, and with them held.
+
+    `motions` are the coordinates of the ideal motions that the stage leaves its platform, `constraints` what its links hold. Free is what
+    a push test at the point measures; it includes that an ideal motion moves the point along another axis too.
+    """
+
+    point: str
+    motions: Matrix
+    constraints: Matrix
+    provenance: str
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why entries are null, where there are any."""
+        return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
+
+
+@takes_models
+def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
+    """Stiffness by freedom of a stage that leaves its platform fewer than six ideal motions: those left, then those that links hold.
+
+    The statics are those at a point of the platform. 1 / C_ii with the other freedoms free, K_ii with them held; NaN where the model locks
+    a freedom. None for six ideal motions, of which links hold none, and where the statics are read at another point than is loaded.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> fs.freedom_stiffness(fs.statics(fs.lumped(stage)), fs.ideal(stage)).motions.rows
+    ('x',)
+    """
+    if kinematics.mobility == len(COMPONENTS) or found.load_point != found.read_point:
+        return None
+    values = np.stack([_pushed(found), np.diagonal(found.stiffness.values, axis1=-2, axis2=-1)], axis=-1)
+    rest = tuple(name for name in COMPONENTS if name not in kinematics.coordinates)
+    kinds = (kinematics.coordinates, rest)
+    motions, constraints = (by_freedom(values[..., [COMPONENTS.index(name) for name in names], :], names) for names in kinds)
+    return FreedomStiffness(found.read_point, motions, constraints, found.provenance)
+
+
+def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
+    """Stiffness (..., n, 2) of named freedoms as a table: with the others free, and with them held.
+
+    >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
+    (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))
+    """
+    units = tuple((STIFFNESS.si if name in COMPONENTS[:3] else ROTATIONAL_STIFFNESS.si,) * 2 for name in names)
+    return Matrix(values, names, ("free", "held"), units)
+
+
+def _pushed(found: Statics) -> Array:
+    """1 / C_ii (..., 6), NaN along what a model with locked freedoms locks."""
+    along = np.diagonal(found.compliance.values, axis1=-2, axis2=-1)
+    if not np.isnan(found.stiffness.values).any():
+        return 1.0 / along
+    sizes = np.abs(np.real(along)).reshape(*along.shape[:-1], 2, 3)
+    moved = (sizes > _SINGULAR * np.max(sizes, axis=-1, keepdims=True)).reshape(along.shape)
+    return np.where(moved, 1.0 / np.where(moved, along, 1.0), np.nan)
 
 
 def _inverse(compliance: Array) -> Array:

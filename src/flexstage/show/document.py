@@ -9,8 +9,9 @@ import flexstage
 from flexstage.analysis.cautions import Caveats, caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.deflection import Deflection
+from flexstage.analysis.mass_matrix import MassMatrix
 from flexstage.analysis.requirements import Verdict
-from flexstage.analysis.statics import Statics
+from flexstage.analysis.statics import FreedomStiffness, Statics
 from flexstage.base.digest import digest
 from flexstage.base.document import Document, plain
 from flexstage.base.finding import Finding
@@ -21,6 +22,7 @@ from flexstage.models.theory import Model
 
 FORMAT = "flexstage result 2"
 _UNLUMPED = "deflection under dead load needs the lumped model"
+_UNSORTED = "it is told of platforms with fewer than six ideal motions, loaded at the point of theirs that is read"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
 """Fields of an analysis whose document has the name of their command."""
 
@@ -66,7 +68,9 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
     damping = None if analysis.linear is None else analysis.linear.damping
     return {
         "mapping": analysis.kinematics,
-        "stiffness": None if analysis.statics is None else stiffness_body(analysis.statics, analysis.deflection),
+        "stiffness": None
+        if analysis.statics is None
+        else stiffness_body(analysis.statics, analysis.deflection, freedoms=analysis.freedoms, mass=analysis.mass),
         "lost-motion": analysis.lost_motion,
         "modes": analysis.modes,
         "response": None if analysis.response is None else response_body(analysis.response, damping),
@@ -94,9 +98,18 @@ def analysis_body(analysis: Analysis) -> Document:
     return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
 
 
-def stiffness_body(statics: Statics, deflection: Deflection | None = None) -> SideBySide:
-    """Statics of the platform, and its deflection under dead load."""
-    return SideBySide((statics, {"dead_load": deflection, "reasons": {} if deflection is not None else {"dead_load": _UNLUMPED}}))
+def stiffness_body(
+    statics: Statics,
+    deflection: Deflection | None = None,
+    *,
+    freedoms: FreedomStiffness | None = None,
+    mass: MassMatrix | None = None,
+    missing: Mapping[str, str] | None = None,
+) -> SideBySide:
+    """Statics of the platform, its stiffness by freedom where fewer than six are left, its mass, and its deflection under dead load."""
+    reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
+    reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
+    return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))
 
 
 def response_body(response: Response, damping: Damping | None) -> SideBySide:

@@ -103,6 +103,7 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield kinematics.gauge_table(found) if found.gauges else None
     if analysis.statics is not None:
         yield statics.stiffness_table(analysis.statics)
+        yield None if analysis.freedoms is None else statics.freedom_stiffness_table(analysis.freedoms)
         yield statics.principal_table(analysis.statics)
     yield unit_table(analysis.units) if analysis.units else None
     if analysis.lost_motion is not None:

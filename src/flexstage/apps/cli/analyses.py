@@ -9,15 +9,18 @@ import typer
 
 from flexstage.analysis import lost_motion as losses
 from flexstage.analysis import response as responses
+from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.random_response import random_response
-from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import SideBySide, walk
 from flexstage.base.unit import parse
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.kinematics import Kinematics
@@ -85,30 +88,37 @@ def stiffness(
 ) -> None:
     """Compliance and stiffness of the platform.
 
-    6x6, by direction in the plane, and the centre of stiffness; strokes held.
+    6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
     """
     mechanism = open_design(design, changes, [("--json", json)])
 
     linear = elastic_model(mechanism, model)
     found = statics(linear, load_point=known_point(linear, load_at or at), read_point=known_point(linear, at))
     sagging = deflection(mechanism, linear, point=at) if model is Model.LUMPED else None
+    mass = mass_matrix(mechanism, linear, point=at)
+    attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
+    freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
     answer(
         "stiffness",
         mechanism,
-        lambda: stiffness_body(found, sagging),
-        lambda: _stiffness_tables(found, sagging),
+        lambda: stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing),
+        lambda: _stiffness_tables(found, freedoms, mass, sagging),
         model=model,
         json=json,
         csv=csv,
     )
 
 
-def _stiffness_tables(found: Statics, sagging: Deflection | None) -> Iterator[Table | None]:
+def _stiffness_tables(
+    found: Statics, freedoms: FreedomStiffness | None, mass: MassMatrix, sagging: Deflection | None
+) -> Iterator[Table | None]:
     yield static_tables.stiffness_table(found)
     yield static_tables.compliance_table(found)
+    yield None if freedoms is None else static_tables.freedom_stiffness_table(freedoms)
     yield static_tables.principal_table(found)
     yield static_tables.direction_table(found)
     yield static_tables.centre_table(found)
+    yield from static_tables.mass_tables(mass)
     yield None if sagging is None else deflection_table(sagging)
 
 

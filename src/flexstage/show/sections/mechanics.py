@@ -28,7 +28,15 @@ from flexstage.show.tables.lost_motion import (
     loss_table,
     parasitic_table,
 )
-from flexstage.show.tables.statics import centre_table, compliance_table, direction_table, principal_table, stiffness_table
+from flexstage.show.tables.statics import (
+    centre_table,
+    compliance_table,
+    direction_table,
+    freedom_stiffness_table,
+    mass_tables,
+    principal_table,
+    stiffness_table,
+)
 from flexstage.show.tables.units import lever_table, omitted_table, unit_table
 
 
@@ -84,12 +92,14 @@ def stiffness_section(analysis: Analysis) -> Section | None:
         [
             Prose("Stiffness of the platform with the strokes held, as seen at its reference point."),
             stiffness_table(statics),
+            *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
             Abreast((Picture(polar, caption), Abreast((principal_table(statics), centre_table(statics), *sag)))),
             *([] if analysis.units is None else [unit_table(analysis.units)]),
             fold(
-                "Compliance, stiffness by angle, springs of the lever units",
+                "Compliance, stiffness by angle, mass, springs of the lever units",
                 compliance_table(statics),
                 direction_table(statics),
+                *(() if analysis.mass is None else mass_tables(analysis.mass)),
                 None if analysis.units is None else lever_table(analysis.units),
             ),
         ],

@@ -1,12 +1,17 @@
-"""Tables of statics: stiffness, compliance, and stiffness by direction."""
+"""Tables of statics: stiffness, compliance, stiffness by freedom and by direction, mass."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
 
-from flexstage.analysis.statics import DirectionalStiffness, Statics
+from flexstage.analysis.mass_matrix import MassMatrix
+from flexstage.analysis.statics import DirectionalStiffness, FreedomStiffness, Statics, by_freedom
+from flexstage.base.labelled import Matrix
 from flexstage.show.display import align_numbers, number, preferred_unit
-from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table
+from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names, unit_row_table
 
 _LOAD = 100.0
 _STEP = 15
@@ -34,6 +39,45 @@ def compliance_table(statics: Statics) -> Table:
     '0.099083'
     """
     return matrix_table(f"Compliance at {_points(statics)}", statics.compliance)
+
+
+def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
+    """Stiffness by freedom: along the ideal motions left, then along what the links hold.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> table = freedom_stiffness_table(fs.freedom_stiffness(fs.statics(fs.lumped(stage)), fs.ideal(stage)))
+    >>> [row[0] for row in table.texts()[1:3]]
+    ['x, motion left', 'y, held by links']
+    """
+    left, rest = freedoms.motions, freedoms.constraints
+    told = (*(f"{name}, motion left" for name in left.rows), *(f"{name}, held by links" for name in rest.rows))
+    whole = by_freedom(np.concatenate([left.values, rest.values], axis=-2), (*left.rows, *rest.rows))
+    note = "Strokes held. Others free: what a push test measures; it includes that a motion left moves the point along other axes too."
+    locked = [f"{reason[:1].upper()}{reason[1:]}." for reason in sorted(set(freedoms.reasons.values()))]
+    heads = ("others free", "others held")
+    return unit_row_table(
+        f"Stiffness by freedom at {freedoms.point}", replace(whole, rows=told), heads=heads, first="freedom", notes=(note, *locked)
+    )
+
+
+def mass_tables(mass: MassMatrix) -> Iterator[Table]:
+    """Mass at the point: of its body with payloads alone, and of the whole stage as it is felt there.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> [table.title for table in mass_tables(fs.mass_matrix(stage, fs.lumped(stage)))]
+    ['Mass at platform, platform with payloads alone', 'Mass at platform, whole stage']
+    """
+    if mass.rigid is not None:
+        yield matrix_table(f"Mass at {mass.point}, {mass.body} with payloads alone", _short(mass.rigid))
+    if mass.reduced is not None:
+        note = "Statically condensed, strokes held: other masses follow as they do when the point moves slowly."
+        yield matrix_table(f"Mass at {mass.point}, whole stage", _short(mass.reduced), notes=[note])
+
+
+def _short(matrix: Matrix) -> Matrix:
+    return replace(matrix, rows=short_names(matrix.rows), columns=short_names(matrix.columns))
 
 
 def _points(statics: Statics) -> str:
