@@ -193,7 +193,7 @@ def test_what_the_stage_cannot_answer_fails_with_a_reason(stage):
     found = one(brittle, "safety", "at least 2")
     assert found.value is None
     assert not found.passed
-    assert "states no yield stress" in found.reason
+    assert "states no limit of stress" in found.reason
     planar = case("xy-stage")
     assert "is no ideal motion" in one(planar, "stroke.z", "at least 1 um").reason
     assert "does not determine" in one(case("xy-stage-floating"), "stroke.x", "at least 1 um").reason

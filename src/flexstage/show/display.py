@@ -79,6 +79,7 @@ _PREFERRED = {
 _FIELD_UNITS = {
     "mm": 1e3,
     "um": 1e6,
+    "urad": 1e6,
     "mH": 1e3,
     "deg": 180.0 / math.pi,
     "MPa": 1e-6,
@@ -86,6 +87,8 @@ _FIELD_UNITS = {
     "N/um": 1e-6,
     "uF": 1e6,
     "nm/Hz^0.5": 1e9,
+    "nrad/Hz^0.5": 1e9,
+    "uA/Hz^0.5": 1e6,
     "uV/Hz^0.5": 1e6,
     "um/s/Hz^0.5": 1e6,
     "um/s^2/Hz^0.5": 1e6,
