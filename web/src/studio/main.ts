@@ -1,0 +1,3 @@
+// The studio's page.
+
+import "./studio.css";
