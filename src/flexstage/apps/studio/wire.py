@@ -1,0 +1,122 @@
+"""Messages of the studio as JSON text: written from their classes, and read back with every mistake told."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import json
+import math
+import types
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, Literal, TypeAlias, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from flexstage.apps.studio import protocol
+from flexstage.apps.studio.protocol import Floats, Request, Said
+from flexstage.base.finding import refuse
+
+_ADVICE = "Reload the page: it is of another version than its server"
+_Kinds: TypeAlias = Mapping[str, type]
+
+
+def encode(message: Said | Request) -> str:
+    """The text of a message; numbers that are not finite become null."""
+    return json.dumps({"kind": type(message).__name__.lower(), **_plain(message)}, ensure_ascii=False, allow_nan=False)
+
+
+def decode(text: str | bytes) -> Request:
+    """The request in a text; raises `DesignError` where it is none."""
+    return _read(text, _kinds(protocol.Request))
+
+
+def decode_said(text: str | bytes) -> Said:
+    """What the server said, from its text; raises `DesignError` where that is none."""
+    return _read(text, _kinds(protocol.Said))
+
+
+def floats(values: Any) -> Floats:
+    """An array as it goes over the wire."""
+    found = np.ascontiguousarray(values, dtype="<f8")
+    return Floats(found.shape, base64.b64encode(found.tobytes()).decode("ascii"))
+
+
+def array(value: Floats) -> Any:
+    """The array that came over the wire."""
+    return np.frombuffer(base64.b64decode(value.data), dtype="<f8").reshape(value.shape)
+
+
+def _plain(value: Any) -> Any:
+    if is_dataclass(value):
+        return {each.name: _plain(getattr(value, each.name)) for each in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+@functools.cache
+def _kinds(union: Any) -> _Kinds:
+    return {each.__name__.lower(): each for each in get_args(union)}
+
+
+@functools.cache
+def _hints(kind: type) -> Mapping[str, Any]:
+    return get_type_hints(kind)
+
+
+def _read(text: str | bytes, kinds: _Kinds) -> Any:
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        raise refuse("message", "this is no JSON", _ADVICE) from None
+    kind = kinds.get(str(found.get("kind"))) if isinstance(found, dict) else None
+    if kind is None:
+        raise refuse("message", "its kind is not known here", _ADVICE)
+    return _value(kind, {key: item for key, item in found.items() if key != "kind"}, kind.__name__.lower())
+
+
+def _value(hint: Any, found: Any, where: str) -> Any:
+    origin, arguments = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return _of_union(arguments, found, where)
+    if origin is Literal:
+        return found if found in arguments else _wrong(where, found)
+    if origin is tuple:
+        return tuple(_value(arguments[0], item, f"{where}.{number}") for number, item in enumerate(_of(list, found, where)))
+    if origin is dict:
+        return {key: _value(arguments[1], item, f"{where}.{key}") for key, item in _of(dict, found, where).items()}
+    if is_dataclass(hint):
+        return _record(hint, found, where)
+    if hint is Any:
+        return found
+    if hint is float:
+        return float(found) if isinstance(found, (int, float)) and not isinstance(found, bool) else _wrong(where, found)
+    return found if type(found) is hint else _wrong(where, found)
+
+
+def _of_union(hints: tuple[Any, ...], found: Any, where: str) -> Any:
+    """Of a union: null, a text, or what is left."""
+    if found is None and type(None) in hints:
+        return None
+    rest = [hint for hint in hints if hint is not type(None) and (hint is not str or isinstance(found, str))]
+    return _value(str if str in rest else rest[-1], found, where)
+
+
+def _of(kind: type, found: Any, where: str) -> Any:
+    return found if isinstance(found, kind) else _wrong(where, found)
+
+
+def _record(kind: Any, found: Any, where: str) -> Any:
+    hints = _hints(kind)
+    if not isinstance(found, dict) or found.keys() != hints.keys():
+        raise refuse(where, f"its fields are not {', '.join(hints)}", _ADVICE)
+    return kind(**{name: _value(hint, found[name], f"{where}.{name}") for name, hint in hints.items()})
+
+
+def _wrong(where: str, found: Any) -> Any:
+    raise refuse(where, f"found {type(found).__name__} where something else is expected", _ADVICE)
