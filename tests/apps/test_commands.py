@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,8 +24,10 @@ from flexstage.apps.cli.commands import COMMANDS
 from flexstage.apps.cli.installation import self_test
 from flexstage.apps.doctor import Row, Verdict
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import case
 from flexstage.control.hysteresis.example import example_record
 from flexstage.experiment.formats.write import write
+from flexstage.mechanism.store import dump
 from tests.apps.command import Command, design_in
 from tests.models.stage_records import stage_record
 
@@ -135,11 +138,30 @@ def test_missed_requirements_change_the_exit_code_only_if_strict(flexstage: Comm
     design.write_text(design.read_text().replace('"at least 100 Hz"', '"at least 1000 Hz"'))
     ended = flexstage("analyse", "stage.toml")
     assert ended.code == 0
-    assert ended.out.splitlines()[0].startswith("Requirements")
+    assert ended.out.splitlines()[2].startswith("Requirements")
+    assert "Verdict: 7 of 8 requirements are met. Not met: frequency.platform.1." in ended.out
     strict = flexstage("analyse", "stage.toml", "--strict", "--json", "-")
     assert strict.code == 1
     assert [line["key"] for line in strict.document["requirements"] if not line["passed"]] == ["frequency.platform.1"]
     assert "1 of 8 requirements" in strict.err
+
+
+@pytest.mark.parametrize("name", ["double-triangle", "xy-stage-floating", "tilt-stage", "mirror-mount"])
+def test_the_short_form_fits_a_screen_and_ends_with_the_verdict(flexstage: Command, tmp_path: Path, name: str) -> None:
+    design_in(tmp_path, name)
+    short, whole = (flexstage("analyse", "stage.toml", *full).out for full in ([], ["--full"]))
+    assert len(short.splitlines()) <= 62
+    verdict, look, more = short.splitlines()[-3:]
+    assert verdict.startswith("Verdict: ")
+    assert look.startswith("  Look at ")
+    assert ("--full" in more, "--report" in more) == (True, True)
+    assert whole.splitlines()[-2:] == [verdict, look]
+    assert len(whole.splitlines()) > 2 * len(short.splitlines())
+
+
+def test_a_stage_of_which_nothing_is_required_is_not_judged(flexstage: Command, tmp_path: Path) -> None:
+    dump(replace(case("parallelogram"), requirements={}), tmp_path / "stage.toml")
+    assert "Verdict: No requirements are stated" in flexstage("analyse", "stage.toml").out
 
 
 def test_met_requirements_are_no_failure_if_strict(flexstage: Command) -> None:

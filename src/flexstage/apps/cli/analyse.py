@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis import complete
+from flexstage.analysis.cautions import caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
 from flexstage.base.document import Document, as_text
@@ -26,12 +27,15 @@ from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
 from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.overview import closing_text, overview_tables, stage_text
 from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table, unit_table
 
+_CAUTIONS = 8
 
-def analyse(
+
+def analyse(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
@@ -41,10 +45,12 @@ def analyse(
     csv: Csv = None,
     mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Show the tables of every analysis, not the short form.")] = False,
 ) -> None:
     """Analyse a stage: everything at once.
 
-    Requirements first, then kinematics, stiffness, lost motion, modes, response, workspace, drift, error budget.
+    Shown in short: requirements, strokes, stiffness, modes, lost motion, cautions, the verdict. With --full kinematics, workspace, drift
+    and error budget too; documents and reports are always whole.
 
     With --set, the key figures are shown as old, new and change, in the report too.
     """
@@ -57,7 +63,7 @@ def analyse(
     if json is not None:
         save(json, _json_text(analysis, compared), "--json")
     if STDOUT not in (json, str(report), str(mat)):
-        show(_tables(analysis, compared))
+        show(_tables(analysis, compared) if full else _short_tables(analysis, compared))
         print_missing(analysis.missing)
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
     if strict and missed:
@@ -85,13 +91,38 @@ def _json_text(analysis: Analysis, compared: Comparison | None) -> str:
     return as_text(envelope("analyse", analysis.mechanism, analysis.model, body)) + "\n"
 
 
+def _short_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
+    yield stage_text(analysis)
+    yield from _change_tables(analysis, compared)
+    yield from overview_tables(analysis)
+    yield from _short_caveats(analysis)
+    yield closing_text(analysis, whole=False)
+
+
+def _short_caveats(analysis: Analysis) -> Iterator[str]:
+    known = caveats(analysis.mechanism)
+    if known.cautions:
+        rest = len(known.cautions) - _CAUTIONS
+        more = [f"  {rest} more: --full"] if rest > 0 else []
+        yield "\n".join(["Cautions", "", *(f"  {each}" for each in known.cautions[:_CAUTIONS]), *more])
+    taken = len(known.defaults_of("analyse"))
+    if taken:
+        yield f"{taken} value{'' if taken == 1 else 's'} taken by default: --full."
+
+
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
+    yield stage_text(analysis)
     yield verdict_table(analysis.verdicts)
     yield from list_caveats("analyse", analysis.mechanism)
+    yield from _change_tables(analysis, compared)
+    yield from _analysis_tables(analysis)
+    yield closing_text(analysis, whole=True)
+
+
+def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table]:
     if compared is not None:
         yield set_table(compared.stated, analysis.mechanism, compared.addresses)
         yield change_table(compared.figures)
-    yield from _analysis_tables(analysis)
 
 
 def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:

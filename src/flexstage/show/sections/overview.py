@@ -13,7 +13,7 @@ from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Prose, Section, section
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 from flexstage.show.tables.change import change_table, set_table
-from flexstage.show.tables.requirements import is_met, margin_text, meaning, value_text
+from flexstage.show.tables.requirements import first_margin, is_met, margin_text, meaning, value_text, verdict_text
 
 _SILENT = 1e-9
 
@@ -30,7 +30,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
     if not verdicts:
         return None
     note = "Judged by the lumped model, whichever model the rest of this report uses."
-    return section("Requirements", [Prose(_verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
+    return section("Requirements", [Prose(verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
 
 
 def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
@@ -47,21 +47,6 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
     return section("Changes", [values, change_table(compared.figures)])
 
 
-def _verdict_text(verdicts: Sequence[Verdict]) -> str:
-    failed = [verdict for verdict in verdicts if not is_met(verdict)]
-    if failed:
-        names = ", ".join(verdict.requirement.key for verdict in failed)
-        return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
-    margins = {verdict.requirement.key: _margin(verdict) for verdict in verdicts}
-    least = min(margins, key=lambda key: margins[key])
-    which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
-    return f"{which}; the least margin is {percent(margins[least], 3)}, for {least}."
-
-
-def _margin(verdict: Verdict) -> float:
-    return float(first_design(np.atleast_1d(verdict.margin), 1)[0])
-
-
 def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
     ranked = sorted(verdicts, key=is_met)
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
@@ -72,7 +57,7 @@ def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
 def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
     good = is_met(verdict)
     mark = Mark.PASS if good else Mark.FAIL
-    margin = _margin(verdict)
+    margin = first_margin(verdict)
     bar = min(1.0, margin) if good and np.isfinite(margin) else None
     return (
         Cell("✓" if good else "✗", mark),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_t
 
 ELSEWHERE = "other units"
 _SHOWN = 1e-4
+_LARGEST = 3
+_NAMED, _MOST_NAMED = 0.02, 16
+"""Links of other units are named from this share of an actuator's loss on, and at most so many."""
 
 
 def loss_table(lost: LostMotion) -> Table:
-    """Gain and loss of every actuator, with the two links that cost most.
+    """Gain and loss of every actuator, with the links that cost most.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -36,7 +39,8 @@ def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
     own = _zero_if_noise(float(line[index]))
     others = np.delete(np.abs(line), index)
     least = max(NOISE, 0.02 * abs(own))
-    largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(own_budget(lost, name).items())[:2] if abs(share) > least)
+    ranked = _named_budget(lost, name).items()
+    largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(ranked)[:_LARGEST] if abs(share) > least)
     gain = float(first_design(lost.transfer.values, 2)[index, index])
     return (
         Cell(name, Mark.STRONG),
@@ -62,27 +66,12 @@ def own_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
     'pivot.rz'
     """
     shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
-    gathered = sum_by_unit(shares, actuator)
+    gathered = name_links(shares, actuator, lambda _: ELSEWHERE)
     return dict(sorted(gathered.items(), key=lambda item: -abs(round(item[1], 12))))
 
 
-def sum_by_unit(shares: Mapping[str, float], actuator: str) -> dict[str, float]:
-    """Shares by name with the actuator's own copy left out of the names and all other copies added up.
-
-    >>> sum_by_unit({"B1/front.rz": 1.0, "B2/front.rz": 2.0, "B3/front.rz": 3.0, "guide.y": 4.0}, "B1")
-    {'front.rz': 1.0, 'other units': 5.0, 'guide.y': 4.0}
-    """
-    result: dict[str, float] = {}
-    owner = actuator.rpartition("/")[0] if "/" in actuator else actuator
-    for name, share in shares.items():
-        copy, slash, own = name.partition("/")
-        key = own if slash and copy == owner else ELSEWHERE if slash else name
-        result[key] = result.get(key, 0.0) + share
-    return result
-
-
 def budget_table(lost: LostMotion) -> Table:
-    """Every actuator's loss divided among the links and axes of its unit; each column adds up to its loss.
+    """Every actuator's loss divided among links: its unit's by axis, other units' by name; each column adds up to its loss.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -90,23 +79,55 @@ def budget_table(lost: LostMotion) -> Table:
     >>> budget_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[-1][4]
     '3.368 %'
     """
-    names = lost.loss.rows
-    budgets = {name: own_budget(lost, name) for name in names}
-    notes = [f"Contributions below {percent(_SHOWN)} everywhere are gathered as the rest. Negative ones give back what others take."]
-    return make_table("Lost-motion budget", ["part.axis", *(Column(name) for name in names)], _share_rows(budgets, "loss"), notes=notes)
+    budgets = {name: _named_budget(lost, name) for name in lost.loss.rows}
+    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones give back what others take."]
+    return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)
+
+
+_OWN_AND_OTHERS = "Links without a unit's name are those of the actuator's own unit, those with one another unit's"
+
+
+def _named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
+    """An actuator's loss by link and axis of its own unit and by link of the others, largest first."""
+    shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
+    found = name_links(shares, actuator, lambda name: name.rpartition(".")[0] or name)
+    return dict(sorted(found.items(), key=lambda item: -abs(round(item[1], 9))))
+
+
+def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str], str]) -> dict[str, float]:
+    """Shares by name, the actuator's own copy left out of the names, those of other copies added up by `link`.
+
+    >>> name_links({"B1/front.rz": 1.0, "B2/front.ry": 2.0, "B2/front.rz": 3.0, "guide.y": 4.0}, "B1", lambda name: name.partition(".")[0])
+    {'front.rz': 1.0, 'B2/front': 5.0, 'guide.y': 4.0}
+    """
+    result: dict[str, float] = {}
+    owner = actuator.rpartition("/")[0] if "/" in actuator else actuator
+    for name, share in shares.items():
+        copy, slash, own = name.partition("/")
+        key = own if slash and copy == owner else link(name) if slash else name
+        result[key] = result.get(key, 0.0) + share
+    return result
 
 
 def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
-    """Rows by part, largest first, columns by actuator, what is small everywhere gathered, the sum last."""
+    """Rows by link, largest first, columns by actuator, what matters nowhere summed and counted, the sum last."""
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
-    kept = sorted((part for part in parts if size[part] >= _SHOWN), key=lambda part: -round(size[part], 9))
-    small = [part for part in parts if size[part] < _SHOWN]
+    ranked = sorted(parts, key=lambda part: -round(size[part], 9))
+    foreign = [part for part in ranked if "/" in part and _matters(part, columns)][:_MOST_NAMED]
+    kept = [part for part in ranked if size[part] >= _SHOWN and ("/" not in part or part in foreign)]
+    small = [part for part in ranked if part not in kept and size[part] >= NOISE]
     rows = [_share_row(part, [shares.get(part) for shares in columns.values()]) for part in kept]
     if small:
-        rows.append(_share_row("rest", [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
+        label = f"{len(small)} more, at most {percent(size[small[0]], 2)} each"
+        rows.append(_share_row(label, [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
     sums = [_zero_if_noise(sum(shares.values())) for shares in columns.values()]
     return [*rows, (Cell(total, Mark.STRONG), *(Cell(percent(value), Mark.STRONG) for value in sums))]
+
+
+def _matters(part: str, columns: Mapping[str, Mapping[str, float]]) -> bool:
+    """Whether a link takes so much of some actuator's whole that it is named."""
+    return any(abs(shares.get(part, 0.0)) >= max(_SHOWN, _NAMED * abs(sum(shares.values()))) for shares in columns.values())
 
 
 def _share_row(part: str, shares: Iterable[float | None]) -> tuple[Cell, ...]:
@@ -181,14 +202,15 @@ def energy_table(lost: LostMotion) -> Table:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
     >>> energy_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[1][0]
-    'other units'
+    'pivot'
     """
-    energies = energy_shares(lost)
+    values = first_design(lost.energy.values, 2)
+    energies = {name: name_links(_shares(lost.energy, values[:, column]), name, str) for column, name in enumerate(lost.energy.columns)}
     totals = first_design(lost.energy.values, 2).sum(axis=0)
     rows = _share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
     heads = ["part", *(Column(name) for name in lost.energy.columns)]
-    return make_table("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)])
+    return make_table("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
@@ -201,7 +223,8 @@ def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
     1.0
     """
     values = first_design(lost.energy.values, 2)
-    return {name: sum_by_unit(_shares(lost.energy, values[:, column]), name) for column, name in enumerate(lost.energy.columns)}
+    shares = {name: _shares(lost.energy, values[:, column]) for column, name in enumerate(lost.energy.columns)}
+    return {name: name_links(own, name, lambda _: ELSEWHERE) for name, own in shares.items()}
 
 
 def _shares(energy: Matrix, column: np.ndarray) -> dict[str, float]:

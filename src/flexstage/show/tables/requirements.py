@@ -50,6 +50,35 @@ def meaning(verdict: Verdict) -> str:
     return verdict.requirement.kind.meaning
 
 
+def verdict_text(verdicts: Sequence[Verdict]) -> str:
+    """How many requirements are met, and the least margin or those that are missed, in a sentence or two.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> verdict_text(judge(double_triangle()))
+    'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
+    """
+    failed = [verdict for verdict in verdicts if not is_met(verdict)]
+    if failed:
+        names = ", ".join(verdict.requirement.key for verdict in failed)
+        return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
+    margins = {verdict.requirement.key: first_margin(verdict) for verdict in verdicts}
+    least = min(margins, key=lambda key: margins[key])
+    which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
+    return f"{which}; the least margin is {percent(margins[least], 3)}, for {least}."
+
+
+def first_margin(verdict: Verdict) -> float:
+    """The margin of a requirement, of the first design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> round(first_margin(judge(double_triangle())[6]), 4)
+    0.0601
+    """
+    return float(first_design(np.atleast_1d(verdict.margin), 1)[0])
+
+
 def value_text(verdict: Verdict) -> str:
     """The value a requirement is judged by, in display units (first design).
 
@@ -88,7 +117,7 @@ def margin_text(verdict: Verdict) -> str:
     """
     if verdict.value is None:
         return "-"
-    margin = float(first_design(np.atleast_1d(verdict.margin), 1)[0])
+    margin = first_margin(verdict)
     if verdict.requirement.limit == 0.0:
         return quantity_text(margin, verdict.requirement.quantity)
     return f"{'+' if margin >= 0.0 else ''}{percent(margin, 3)}"

@@ -1,0 +1,240 @@
+"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, and the verdict with what to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from flexstage.analysis import measures
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.measures import MeasureKind
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.requirements import Verdict
+from flexstage.base.number import first_design
+from flexstage.show.display import NO_VALUE, align_numbers, format_value, number, percent
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.tables.lost_motion import loss_table
+from flexstage.show.tables.requirements import first_margin, is_met, margin_text, value_text, verdict_table, verdict_text
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+
+_DIGITS = 4
+_ROWS = 8
+_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [require] in the design file."
+
+
+def stage_text(analysis: Analysis) -> str:
+    """What was analysed: the stage, the model, its freedoms and what drives and reads it, in a line.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> stage_text(analyse(double_triangle(), Model.IDEAL))
+    'double triangle, ideal model: 6 freedoms (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
+    """
+    found = analysis.kinematics
+    free = f"{_count(found.mobility, 'freedom')} ({', '.join(found.coordinates)})" if found.coordinates else "no freedoms"
+    driven = [_count(len(found.actuators), "actuator")] if found.actuators or not found.thrusts else []
+    forced = [_count(len(found.thrusts), "force actuator")] if found.thrusts else []
+    things = ", ".join([free, *driven, *forced, _count(len(found.gauges), "gauge")])
+    return f"{analysis.mechanism.name or 'stage'}, {analysis.model.value} model: {things}"
+
+
+def _count(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"
+
+
+def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
+    """Requirements, the platform's axes and modes, lost motion, and what its parts bear."""
+    yield verdict_table(analysis.verdicts)
+    yield axis_table(analysis)
+    yield None if analysis.modes is None else _platform_modes(analysis.modes)
+    yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
+    yield _strength_text(analysis)
+
+
+def axis_table(analysis: Analysis) -> Table | None:
+    """The platform axis by axis: stroke and what ends it, stiffness, resolution; `None` where the model gives none of it.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> axis_table(analyse(double_triangle(), Model.MAPPED)).texts()[3]
+    ['z', '300 um', 'B4', '10.04 N/um', '10 nm']
+    """
+    strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
+    columns = {
+        "stroke, both ways": {name: text for name, (text, _) in strokes.items()},
+        "limited by": {name: cause for name, (_, cause) in strokes.items()},
+        "stiffness": stiffness,
+        "resolution": resolution,
+    }
+    told = {head: texts for head, texts in columns.items() if texts}
+    if not told:
+        return None
+    rows = [
+        (Cell(name, Mark.STRONG), *(Cell(texts[name]) if name in texts else Cell(NO_VALUE, Mark.FAINT) for texts in told.values()))
+        for name in COMPONENTS
+        if any(name in texts for texts in told.values())
+    ]
+    heads = [Column(head, numeric=head != "limited by") for head in told]
+    return make_table("Platform", ["along", *heads], rows, notes=[_axis_note(analysis)])
+
+
+def _axis_note(analysis: Analysis) -> str:
+    said = {
+        "Strokes: one axis at a time, lost motion made up by command": analysis.workspace is not None and analysis.lost_motion is not None,
+        "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
+        "Strokes: elastic motion, held for ever": analysis.reach is not None,
+        "Stiffness: against a load along that axis, strokes held, the others giving way": analysis.statics is not None,
+        "Resolution: all gauges a step off, signs at their worst": bool(_resolution(analysis)),
+    }
+    return "".join(f"{text}. " for text, there in said.items() if there).rstrip()
+
+
+def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
+    """Stroke both ways and what ends it, by coordinate."""
+    if analysis.workspace is not None:
+        single = analysis.workspace.corrected or analysis.workspace.single
+        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single.limiting
+    elif analysis.reach is not None:
+        names, values, causes = analysis.reach.coordinates, first_design(analysis.reach.held, 1), analysis.reach.limited_by
+    else:
+        return {}
+    return {
+        name: (NO_VALUE if np.isnan(value) else _shown(value, name, TWIST_UNITS), cause or "no limit stated")
+        for name, value, cause in zip(names, np.real(values), causes, strict=True)
+    }
+
+
+def _stiffness(analysis: Analysis) -> Mapping[str, str]:
+    """One over the diagonal of the compliance, by axis; nothing where an axis gives way freely."""
+    if analysis.statics is None:
+        return {}
+    compliance = np.diagonal(np.real(first_design(analysis.statics.compliance.values, 2)))
+    units = [f"{top}/{bottom}" for top, bottom in zip(WRENCH_UNITS, TWIST_UNITS, strict=True)]
+    return {
+        name: format_value(1.0 / float(each), unit, _DIGITS)
+        for name, each, unit in zip(COMPONENTS, compliance, units, strict=True)
+        if each > 0.0
+    }
+
+
+def _resolution(analysis: Analysis) -> Mapping[str, str]:
+    found = None if analysis.workspace is None else analysis.workspace.resolution
+    if found is None:
+        return {}
+    worst = np.real(first_design(found.worst, 1))
+    return {name: _shown(value, name, TWIST_UNITS) for name, value in zip(COMPONENTS, worst, strict=True) if value > 0.0}
+
+
+def _shown(value: float, name: str, units: tuple[str, ...]) -> str:
+    return format_value(float(value), units[COMPONENTS.index(name)], _DIGITS)
+
+
+def _platform_modes(modes: Modes) -> Table | None:
+    if not modes.platform:
+        return None
+    frequencies, shares = first_design(modes.frequencies, 1), first_design(modes.share, 1)
+    texts = align_numbers([float(frequencies[index]) for index in modes.platform], _DIGITS)
+    rows = [
+        (Cell(str(index + 1), Mark.STRONG), Cell(text), Cell(modes.names[index]), Cell(percent(float(shares[index]), 3)))
+        for index, text in zip(modes.platform, texts, strict=True)
+    ]
+    beside = [number(float(frequencies[index]), _DIGITS) for index in sorted(modes.local)[:1]]
+    notes = [
+        f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {each} Hz."
+        for each in beside
+    ]
+    return make_table("Platform modes", [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share")], rows, notes=notes)
+
+
+def _first_rows(table: Table) -> Table:
+    """The table without its notes, and without rows beyond some; how many those are is said."""
+    rest = len(table.rows) - _ROWS
+    notes = (f"{_count(rest, 'further row')}: --full.",) if rest > 0 else ()
+    return Table(table.title, table.columns, table.rows[:_ROWS], notes, table.provenance)
+
+
+def _strength_text(analysis: Analysis) -> str | None:
+    reach = analysis.workspace
+    buckling = analysis.buckling if reach is None else reach.buckling
+    said: list[str] = []
+    if reach is not None and reach.stress is not None and reach.stress.links:
+        said.append(f"least safety factor {_first(reach.stress.least, 4)} against yield, in {reach.stress.weakest}")
+    if buckling is not None:
+        said.append(f"load factor of buckling {_first(buckling.least, 4)}")
+    return f"Strength: {', '.join(said)}." if said else None
+
+
+def _first(values: object, digits: int) -> str:
+    return number(float(np.ravel(np.real(np.asarray(values)))[0]), digits)
+
+
+def closing_text(analysis: Analysis, *, whole: bool) -> str:
+    """The verdict: how many requirements are met, the least margin, what to look at, and what else there is to see.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> print(closing_text(analyse(double_triangle()), whole=True))
+    Verdict: All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.
+      Look at frequency.platform.1, 106.01 Hz (at least 100 Hz, +6.01 %): mode 1, tilt.
+    """
+    more = "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
+    if not analysis.verdicts:
+        return f"Verdict: {_NOTHING_ASKED}{more}"
+    worst = min(analysis.verdicts, key=_rank)
+    asked = worst.requirement
+    why = worst.reason.rstrip(".") or _cause(analysis, worst)
+    look = f"Look at {asked.key}, {value_text(worst)} ({asked.text}, {margin_text(worst)}){f': {why}' if why else ''}."
+    return f"Verdict: {verdict_text(analysis.verdicts)}\n  {look}{more}"
+
+
+def _rank(verdict: Verdict) -> tuple[bool, float]:
+    """Missed before met, least margin first, unknown before all."""
+    margin = first_margin(verdict)
+    return is_met(verdict), -np.inf if np.isnan(margin) else margin
+
+
+def _cause(analysis: Analysis, verdict: Verdict) -> str:
+    """What decides a measure, where the analysis tells."""
+    find = _CAUSES.get(verdict.requirement.kind)
+    return "" if find is None else find(analysis, verdict.requirement.name)
+
+
+def _stroke_cause(analysis: Analysis, name: str) -> str:
+    strokes = _strokes(analysis)
+    return f"limited by {strokes[name][1]}" if name in strokes else ""
+
+
+def _platform_mode_cause(analysis: Analysis, name: str) -> str:
+    places = () if analysis.modes is None else analysis.modes.platform
+    return _mode_cause(analysis, str(places[int(name) - 1] + 1)) if int(name) <= len(places) else ""
+
+
+def _mode_cause(analysis: Analysis, name: str) -> str:
+    known = analysis.modes is not None and int(name) <= len(analysis.modes.names)
+    return f"mode {name}, {analysis.modes.names[int(name) - 1]}" if known and analysis.modes is not None else ""
+
+
+def _loss_cause(analysis: Analysis, name: str) -> str:
+    lost = analysis.lost_motion
+    if lost is None:
+        return ""
+    losses = np.abs(np.diagonal(first_design(lost.loss.values, 2)))
+    owner = name or lost.loss.rows[int(np.argmax(np.round(losses, 9)))]
+    largest = loss_table(lost).rows[lost.loss.rows.index(owner)][-1].text
+    return f"{owner}, {largest}" if largest else owner
+
+
+def _safety_cause(analysis: Analysis, _: str) -> str:
+    stress = None if analysis.workspace is None else analysis.workspace.stress
+    return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
+
+
+_CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
+    measures.stroke: _stroke_cause,
+    measures.frequency: _mode_cause,
+    measures.platform_frequency: _platform_mode_cause,
+    measures.loss: _loss_cause,
+    measures.own_loss: _loss_cause,
+    measures.safety: _safety_cause,
+}
