@@ -6,7 +6,7 @@ export type Packed = string;
 
 export type Kind = "ground" | "body" | "platform" | "hinge" | "drive" | "gauge" | "stop";
 
-/** Something that is drawn and can be picked; its index in `StageData.parts` is its part number. */
+/** Something that is drawn and can be picked; `B1/front foot` is the ground behind a link. Its index in `StageData.parts` is its part number. */
 export interface Part {
   /** `B1/front`, `platform.plate`, `x1`. */
   name: string;
@@ -25,24 +25,36 @@ export interface Part {
   facts: [string, string][];
 }
 
-/** Triangles and sharp edges; every vertex lies between the two bodies of its part, at one of the stations. */
+/** Triangles and sharp edges; every vertex lies on a carrier, which is a piece between two bodies, at one of the stations along it. */
 export interface Mesh {
   /** Float32, 3 a vertex [m]. */
   points: Packed;
-  /** Int8, 3 a vertex: outward normals times 127. */
-  normals: Packed;
   /** Uint16, one a vertex: index of `StageData.parts`. */
   part: Packed;
+  /** Uint16, one a vertex: index of `carriers` and `ends`. */
+  carrier: Packed;
   /** Uint16, one a vertex: index of a row of `stations`. */
   station: Packed;
-  /** Uint32, 3 a triangle: vertices, counter-clockwise from outside. */
-  triangles: Packed;
-  /** Uint32, 2 an edge: vertices. */
-  edges: Packed;
+  /** Uint16, 2 a carrier: its first and second body; the same twice for what is rigid. */
+  carriers: Packed;
+  /** Float32, 6 a carrier: where it meets its first and its second body [m]. */
+  ends: Packed;
   /** Float32, 5 a station: share of the second body, deflection for a unit offset and for a unit turn of the second end, and the slopes of both. */
   stations: Packed;
-  /** Float32, 6 a part: where it meets its first and its second body [m]. */
-  ends: Packed;
+  /** Of what the indices are: Uint16 or Uint32. */
+  indices: "u2" | "u4";
+  /** 3 a triangle: vertices, counter-clockwise from outside. */
+  triangles: Packed;
+  /** 2 an edge: vertices. */
+  edges: Packed;
+}
+
+/** A name beside a point of the stage, which moves with the mean of two bodies. */
+export interface Label {
+  text: string;
+  kind: Kind;
+  point: [number, number, number];
+  bodies: [number, number];
 }
 
 export type MotionGroup = "mode" | "stroke" | "axis" | "deflection";
@@ -64,7 +76,7 @@ export interface Motion {
   reach: number;
   /** Whether the scale of `twists` is physical: then an exaggeration is said, else the drawn displacement. */
   scaled: boolean;
-  /** Float32, one a part: share of the strain energy in it, NaN where there is none to know. */
+  /** Float32, one an entry of `StageData.links`: share of the strain energy in it, NaN where it is not known. */
   energy?: Packed;
 }
 
@@ -81,6 +93,9 @@ export interface StageData {
   /** Point of the platform about which its twist is told [m]. */
   reference: [number, number, number];
   parts: Part[];
+  labels: Label[];
+  /** Part numbers of hinges and actuators: what strain energy is told of. */
+  links: number[];
   mesh: Mesh;
   motions: Motion[];
   /** What is not shown, and why. */

@@ -22,7 +22,7 @@ def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[F
     """
     lines = line_numbers(text)
     for finding in findings:
-        line = _line(finding.where, lines)
+        line = line_of(finding.where, lines)
         yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}: line {line}: {finding.where}")
 
 
@@ -48,8 +48,12 @@ def _address(name: str) -> str:
     return ".".join(step.strip("\"'") for step in _STEP.findall(name))
 
 
-def _line(address: str, lines: Mapping[str, int]) -> int | None:
-    """The line of an address, or of the nearest table around it."""
+def line_of(address: str, lines: Mapping[str, int]) -> int | None:
+    """The line of an address, or of the nearest table around it; `None` where the text has neither.
+
+    >>> line_of("parts.neck.thickness", {"parts.neck": 3}), line_of("gravity", {})
+    (3, None)
+    """
     while address:
         if address in lines:
             return lines[address]

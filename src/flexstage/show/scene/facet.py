@@ -38,11 +38,20 @@ SHARP.flags.writeable = False
 
 @dataclass(frozen=True)
 class Paint:
-    """What the facets of one solid have in common: its kind, the bodies that carry it, its name (`B1/front`, `platform.plate`)."""
+    """What the facets of one solid have in common: its kind, the bodies that carry it, its name (`B1/front`, `platform.plate`).
+
+    A solid that is drawn as a piece of something else says of `what`.
+    """
 
     kind: Kind
     carriers: tuple[str, str]
     name: str = ""
+    what: str = ""
+
+    @property
+    def thing(self) -> str:
+        """The name of what is shown."""
+        return self.what or self.name
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,17 +92,18 @@ def cross(first: Array, second: Array) -> Array:
     return first[..., _NEXT] * second[..., _LAST] - first[..., _LAST] * second[..., _NEXT]
 
 
-def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: bool = True) -> list[Facet]:
+def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: bool = True, shares: Array | None = None) -> list[Facet]:
     """The skin through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first; end faces where `closed`.
 
-    The bodies' shares run from 0 at the first ring to 1 at the last. With `round_section` edges along the skin show as outlines only.
+    The bodies' `shares` (s,) run from 0 at the first ring to 1 at the last, evenly if they are not said. With `round_section` edges along
+    the skin show as outlines only.
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> len(loft(np.stack([square, square + [0, 0, 1.0]]), Paint(Kind.BODY, ("a", "a"))))
     6
     """
     count, sides = rings.shape[:2]
-    share = np.linspace(0.0, 1.0, count)
+    share = np.linspace(0.0, 1.0, count) if shares is None else shares
     facets: list[Facet] = []
     for level in range(count - 1):
         quads = [_quad(rings, level, side) for side in range(sides)]

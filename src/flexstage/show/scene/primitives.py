@@ -50,8 +50,10 @@ def part_section(part: Part) -> tuple[float, float]:
     return first_value(end.height), first_value(end.width)
 
 
-def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
+def part_facets(part: Part, paint: Paint, marker: float, *, steps: int = 1) -> list[Facet]:
     """Facets of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
+
+    No ring of them is farther from the next one than the part's length over `steps`.
 
     >>> from flexstage.show.scene.facet import Kind
     >>> from flexstage.parts.rod import Rod
@@ -60,10 +62,24 @@ def part_facets(part: Part, paint: Paint, marker: float) -> list[Facet]:
     """
     own = inner(part)
     if not isinstance(own, Shaped):
-        return loft(extrude(0.5 * marker * np.array([-1.0, 1.0]), [rectangle(marker, marker)] * 2), paint)
-    stations, sections = zip(*own.silhouette, strict=True)
-    sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
-    return loft(extrude(np.array(stations), [_ring(each, sides) for each in sections]), paint, round_section=own.throat.is_round)
+        ends = 0.5 * marker * np.array([-1.0, 1.0])
+        rings, round_section, stations = extrude(ends, [rectangle(marker, marker)] * 2), False, ends
+    else:
+        sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
+        stations = np.array([station for station, _ in own.silhouette])
+        rings = extrude(stations, [_ring(section, sides) for _, section in own.silhouette])
+        round_section = own.throat.is_round
+    rings, shares = _more_rings(rings, (stations - stations[0]) / (stations[-1] - stations[0]), steps)
+    return loft(rings, paint, round_section=round_section, shares=shares)
+
+
+def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
+    """Rings (s, k, 3) at their shares (s,) and, where two are farther apart than 1 / steps, rings between them; and all shares."""
+    counts = np.maximum(1, np.ceil(np.diff(shares) * steps - 1e-9)).astype(int)
+    places = np.concatenate([number + np.arange(count) / count for number, count in enumerate(counts)] + [[len(counts)]])
+    first = np.minimum(places.astype(int), len(counts) - 1)
+    weight = (places - first)[:, None, None]
+    return (1.0 - weight) * rings[first] + weight * rings[first + 1], np.interp(places, np.arange(len(shares)), shares)
 
 
 def _ring(section: Section, sides: int) -> Array:

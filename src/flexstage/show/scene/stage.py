@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -26,29 +27,34 @@ _ARROW = 0.11
 
 @dataclass(frozen=True)
 class Label:
-    """A name at a point of the stage, shown in the colour of its kind."""
+    """A name at a point of the stage, shown in the colour of its kind; it moves with the mean of two `bodies`."""
 
     text: str
     point: tuple[float, float, float]
     kind: Kind
+    bodies: tuple[str, str] = (GROUND, GROUND)
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Facets in depth `order` and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
+    """Facets and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
 
     `references` are the bodies' reference points (3,), about which their twists turn them.
     """
 
     facets: tuple[Facet, ...]
-    order: Partition | None
     labels: tuple[Label, ...]
     references: dict[str, Array]
     size: float
 
+    @cached_property
+    def order(self) -> Partition | None:
+        """The facets in depth order, worked out when it is asked for: pictures need it, and it takes most of their time."""
+        return partition(self.facets, self.size)
 
-def scene(mechanism: Mechanism) -> Scene:
-    """The scene of the first design of a description.
+
+def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
+    """The scene of the first design of a description; hinges are divided into `steps` along their length, so that they can be bent.
 
     Bodies without outlines are bars between their joints; where a joint lies off its body's outline a thin line joins them. Ground is shown
     at each link that is fixed to it. Superelements are bars between their ports.
@@ -62,11 +68,11 @@ def scene(mechanism: Mechanism) -> Scene:
     facets = [facet for body in assembly.bodies.values() for facet in _body(body, joints.get(body.name, []), size)]
     facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
-    facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size)]
+    facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size, steps)]
     facets += [facet for element in assembly.superelements.values() for facet in _superelement(element, size)]
     facets += [facet for name, sight in _sights(assembly) for facet in _gauge(name, sight, size)]
     references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
-    return Scene(tuple(facets), partition(facets, size), tuple(_labels(assembly, size)), references, size)
+    return Scene(tuple(facets), tuple(_labels(assembly, size)), references, size)
 
 
 def displace(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> list[Facet]:
@@ -213,13 +219,14 @@ def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iter
             yield line(np.stack([joint, nearest]), paint)
 
 
-def _link(link: PlacedLink, assembly: Assembly, size: float) -> list[Facet]:
+def _link(link: PlacedLink, assembly: Assembly, size: float, steps: int) -> list[Facet]:
     ends = _ends(link, assembly)
     frame = _frame(link.frame)
     forward = bool((ends[1] - ends[0]) @ frame.rotation[:, 0] >= 0.0)
     carriers = link.joins if forward else (link.joins[1], link.joins[0])
-    paint = Paint(Kind.DRIVE if is_actuator(link.part) else Kind.HINGE, carriers, link.name)
-    facets = [_place(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size)]
+    kind, fineness = (Kind.DRIVE, 1) if is_actuator(link.part) else (Kind.HINGE, steps)
+    paint = Paint(kind, carriers, link.name)
+    facets = [_place(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size, steps=fineness)]
     if GROUND in link.joins:
         facets += _foot(f"{link.name} foot", ends[link.joins.index(GROUND)], frame, (*part_section(link.part), _MARKER * size))
     return facets
@@ -251,7 +258,7 @@ def _gauge(name: str, sight: Sight, size: float) -> list[Facet]:
     thick, thin, none = circle(0.022 * size, 10), circle(0.008 * size, 10), circle(1e-4 * size, 10)
     paint = Paint(Kind.GAUGE, (sight.base, sight.base), name)
     facets = loft(extrude(np.array([head, tip]), [thick, none]), paint, round_section=True)
-    facets += loft(extrude(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{name} shaft"), round_section=True)
+    facets += loft(extrude(np.array([shaft, head]), [thin, thin]), replace(paint, name=f"{name} shaft", what=name), round_section=True)
     return [_place(facet, _frame(sight.frame)) for facet in facets]
 
 
@@ -262,10 +269,10 @@ def _sights(assembly: Assembly) -> Iterator[tuple[str, Sight]]:
 
 def _labels(assembly: Assembly, size: float) -> Iterator[Label]:
     for name, link in assembly.actuators.items():
-        yield Label(name, _point(assembly.links[link].frame.position), Kind.DRIVE)
+        yield Label(name, _point(assembly.links[link].frame.position), Kind.DRIVE, assembly.links[link].joins)
     for name, sight in _sights(assembly):
         frame = _frame(sight.frame)
-        yield Label(name, _point(frame.position - _ARROW * size * frame.rotation[:, 0]), Kind.GAUGE)
+        yield Label(name, _point(frame.position - _ARROW * size * frame.rotation[:, 0]), Kind.GAUGE, (sight.base, sight.base))
 
 
 def _point(position: Array) -> tuple[float, float, float]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.modes import Modes
-from flexstage.base.number import Array
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.show.display import number
@@ -22,7 +21,7 @@ from flexstage.show.scene.stage import Scene, largest_motion
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.response import response_table
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.show.viewer.motions import body_twists
 
 _SHAPES = 6
 _REACH = 0.07
@@ -60,31 +59,6 @@ def _shapes(modes: Modes, model: LinearModel, kinematics: Kinematics, seen: Scen
             picture = moved_picture(seen, twists, _REACH * seen.size / largest, width=THIRD)
             caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz"
             yield Picture(to_svg(picture, f"mode{index + 1}", caption), caption)
-
-
-def body_twists(model: LinearModel, kinematics: Kinematics, shape: Array, bodies: tuple[str, ...]) -> dict[str, Array]:
-    """Twists (6,) of the bodies in a shape (n,) of the model's coordinates (first design).
-
-    A model that knows the platform only moves the other bodies as the ideal kinematics do.
-
-    >>> import flexstage as fs
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> stage = double_triangle()
-    >>> twists = body_twists(fs.mapped(stage), fs.ideal(stage), np.eye(6)[2], ("platform", "B4/pole"))
-    >>> twists["platform"].round(9).tolist(), float(twists["B4/pole"][2].round(9))
-    ([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 1.0)
-    """
-    known = {channel.name: index for index, channel in enumerate(model.outputs)}
-    output = first_design(model.output, 2)
-    result: dict[str, Array] = {}
-    for body in bodies:
-        names = [f"{body}.{component}" for component in COMPONENTS]
-        if all(name in known for name in names):
-            result[body] = output[[known[name] for name in names]] @ shape
-        elif names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
-            rows = [kinematics.body_coordinates.index(name) for name in names]
-            result[body] = first_design(kinematics.bodies, 2)[rows] @ shape
-    return result
 
 
 def response_section(analysis: Analysis) -> Section | None:

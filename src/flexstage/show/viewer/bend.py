@@ -1,0 +1,72 @@
+"""How a link bends between its ends: shares of the motions of its two bodies along its length, true in place and slope at both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.parts.part import Part, inner
+from flexstage.parts.shape import Shaped
+
+COLUMNS = 5
+_INTERVALS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Bend:
+    """Deflections of a straight part by the offset and by the turn of its second end, its first one held, along its length from 0 to 1.
+
+    `values` (n, 5) at `shares` (n,): the share itself (of elongation and twist), deflections for an offset and for a turn of one, and the
+    slopes of both: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
+    """
+
+    shares: Array
+    values: Array
+
+    def at(self, shares: Array) -> Array:
+        """The values (k, 5) at shares (k,)."""
+        return np.stack([np.interp(shares, self.shares, column) for column in self.values.T], axis=-1)
+
+
+def bend_of(part: Part | None) -> Bend:
+    """The bend of a part: of a beam of its sections, loaded at its ends alone; without a shape, of a beam of one section.
+
+    Curvature goes with (a + b s) / I(s), I the least second moment of area, constant between stations; a and b follow from the ends. A part
+    of one section bends as the cubic of Hermite. Shear is left out.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> bend_of(Leaf("steel", 0.02, 0.001, 0.01)).at(np.array([0.5, 1.0])).round(4).tolist()
+    [[0.5, 0.5, -0.125, 1.5, -0.25], [1.0, 1.0, 0.0, 0.0, 1.0]]
+    """
+    own = None if part is None else inner(part)
+    shares = np.linspace(0.0, 1.0, _INTERVALS + 1)
+    return _bend(shares, _flexibility(own, shares) if isinstance(own, Shaped) and not own.is_prismatic else np.ones(_INTERVALS))
+
+
+def _flexibility(part: Shaped, shares: Array) -> Array:
+    """1 / I in the middle of each interval of shares (n + 1,), over the largest: heights and widths are straight between stations."""
+    stations, sections = zip(*part.silhouette, strict=True)
+    places = stations[0] + 0.5 * (shares[1:] + shares[:-1]) * (stations[-1] - stations[0])
+    height, width = (np.interp(places, stations, [getattr(each, name) for each in sections]) for name in ("height", "width"))
+    moment = height**4 if part.throat.is_round else height * width * np.minimum(height, width) ** 2
+    return np.min(moment) / moment
+
+
+def _bend(shares: Array, flexibility: Array) -> Bend:
+    """The bend of a beam with this flexibility (n,) between shares (n + 1,)."""
+    step = np.diff(shares)
+    curvatures = np.stack([flexibility, flexibility * 0.5 * (shares[1:] + shares[:-1])])
+    slopes = _sum(curvatures * step)
+    deflections = _sum(slopes[:, :-1] * step + 0.5 * curvatures * step**2)
+    ends = np.stack([deflections[:, -1], slopes[:, -1]])
+    by_offset, by_turn = np.linalg.solve(ends, np.eye(2)).T
+    rows = [shares, by_offset @ deflections, by_turn @ deflections, by_offset @ slopes, by_turn @ slopes]
+    values = np.stack(rows, axis=-1)
+    values[0], values[-1] = [0.0] * COLUMNS, [1.0, 1.0, 0.0, 0.0, 1.0]  # exactly, whatever the sums round to
+    return Bend(shares, values)
+
+
+def _sum(steps: Array) -> Array:
+    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=-1)], axis=-1)

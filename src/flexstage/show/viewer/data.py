@@ -1,0 +1,216 @@
+"""All that a viewer shows of a stage, as one value, and as JSON whose arrays are base64: the same for pages, notebooks and the studio."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.modes import Modes
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.store.lines import line_numbers
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+from flexstage.show.scene.facet import Kind
+from flexstage.show.scene.stage import Label, Scene, scene
+from flexstage.show.viewer.bend import Bend, bend_of
+from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
+from flexstage.show.viewer.motions import Motion, Skeleton, axis_motions, deflections, mode_motions, stroke_motions
+from flexstage.show.viewer.parts import Describer, Thing
+
+FORMAT = 1
+_STEPS = 12
+_MODES = 12
+
+
+@dataclass(frozen=True, eq=False)
+class StageData:
+    """A stage as a viewer shows it: its mesh, the things that it consists of by part number, and its motions.
+
+    `bodies` are in the order of twists, the ground first; `size` is the diagonal of the box around everything and `centre` (3,) its middle
+    [m]; `reference` (3,) is the platform's. `links` are the part numbers that a motion's strain energy is told of. `notes` say what is not
+    shown, and why.
+    """
+
+    name: str
+    size: float
+    centre: Array
+    bodies: tuple[str, ...]
+    reference: Array
+    things: tuple[Thing, ...]
+    labels: tuple[Label, ...]
+    mesh: Mesh
+    motions: tuple[Motion, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def links(self) -> tuple[int, ...]:
+        """Part numbers of hinges and actuators."""
+        return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
+
+    def reach(self, motion: Motion) -> float:
+        """Largest displacement [m] of any vertex in a motion."""
+        moved = self.mesh.displacement(motion.twists)
+        return float(np.sqrt(np.max(np.sum(moved**2, axis=1), initial=0.0)))
+
+    def document(self) -> dict[str, Any]:
+        """Plain values with the names that the page knows (`web/src/viewer/types.ts`)."""
+        return {
+            "format": FORMAT,
+            "name": self.name,
+            "size": self.size,
+            "centre": self.centre.tolist(),
+            "bodies": list(self.bodies),
+            "platform": self.bodies.index(PLATFORM) if PLATFORM in self.bodies else 0,
+            "reference": self.reference.tolist(),
+            "parts": [_part(thing) for thing in self.things],
+            "labels": [self._label(each) for each in self.labels],
+            "links": list(self.links),
+            "mesh": _mesh(self.mesh),
+            "motions": [self._motion(each) for each in self.motions],
+            "notes": list(self.notes),
+        }
+
+    def text(self) -> str:
+        """The document as JSON: the same bytes for the same stage."""
+        return json.dumps(self.document(), separators=(",", ":"), allow_nan=False)
+
+    def _label(self, label: Label) -> dict[str, Any]:
+        bodies = [self.bodies.index(name) for name in label.bodies]
+        return {"text": label.text, "kind": label.kind.value, "point": list(label.point), "bodies": bodies}
+
+    def _motion(self, motion: Motion) -> dict[str, Any]:
+        said: dict[str, Any] = {"group": motion.group.value, "name": motion.name, "label": motion.label}
+        if motion.frequency is not None:
+            said["frequency"] = motion.frequency
+        if motion.remark:
+            said["remark"] = motion.remark
+        said |= {"twists": packed(motion.twists, "<f4"), "reach": float(f"{self.reach(motion):.6g}"), "scaled": motion.frequency is None}
+        if motion.energy is not None:
+            shares = [motion.energy.get(self.things[number].name, np.nan) for number in self.links]
+            said["energy"] = packed(np.array(shares), "<f4")
+        return said
+
+
+def stage_data(
+    mechanism: Mechanism,
+    *,
+    model: LinearModel | None = None,
+    kinematics: Kinematics | None = None,
+    found: Modes | None = None,
+    text: str = "",
+    count: int = _MODES,
+) -> StageData:
+    """What a viewer shows of a stage, of the first design of a batch.
+
+    `model`, `kinematics` and its modes are worked out (lumped, ideal, those of the platform) where they are not given; what the stage does
+    not have is left out, with its reason among the notes. `text` is that of the design's file, whose lines things are found at. `count` is
+    how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
+    """
+    seen, assembly = scene(mechanism, steps=_STEPS), expand(mechanism)
+    bodies, kinds = body_names(assembly.bodies), thing_kinds(seen.facets)
+    describer = Describer(mechanism, assembly, line_numbers(text))
+    numbers = {name: number for number, name in enumerate(bodies)}
+    things = tuple(describer.thing(name, kind, (numbers[ends[0]], numbers[ends[1]])) for name, (kind, ends) in kinds.items())
+    mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
+    bones = Skeleton(seen.references)
+    notes: list[str] = []
+    motions = tuple(_motions(mechanism, (model, kinematics, found), bones, count, notes))
+    low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
+    reference = seen.references.get(PLATFORM, np.zeros(3))
+    return StageData(
+        mechanism.name or "stage",
+        _size(seen, low, high),
+        0.5 * (low + high),
+        bodies,
+        reference,
+        things,
+        seen.labels,
+        mesh,
+        motions,
+        tuple(notes),
+    )
+
+
+def _size(seen: Scene, low: Array, high: Array) -> float:
+    return float(np.sqrt(np.sum((high - low) ** 2))) or seen.size
+
+
+def _bends(assembly: Assembly) -> Mapping[str, Bend]:
+    """How links with a shape of their own bend, by name; one value for all links of one part."""
+    kinds = {id(link.part): link.part for link in assembly.links.values()}
+    known = {key: bend_of(part) for key, part in kinds.items()}
+    return {name: known[id(link.part)] for name, link in assembly.links.items()}
+
+
+def _motions(
+    mechanism: Mechanism,
+    given: tuple[LinearModel | None, Kinematics | None, Modes | None],
+    bones: Skeleton,
+    count: int,
+    notes: list[str],
+) -> Iterator[Motion]:
+    """All motions that the stage has; what it has not goes to the notes."""
+    model, kinematics, found = given
+    try:
+        kinematics = kinematics or ideal(mechanism)
+        model = model or lumped(mechanism)
+    except DesignError as error:
+        notes += [f"no motions: {finding}" for finding in error.findings]
+        if kinematics is not None:
+            yield from axis_motions(kinematics, bones)
+        return
+    for name, source in (
+        ("modes", lambda: mode_motions(model, kinematics, found or platform_modes(mechanism, model), bones, count)),
+        ("strokes", lambda: stroke_motions(model, kinematics, bones)),
+        ("axes", lambda: axis_motions(kinematics, bones)),
+        ("deflections", lambda: deflections(mechanism, model, kinematics, bones)),
+    ):
+        try:
+            yield from tuple(source())
+        except DesignError as error:
+            notes += [f"no {name}: {finding}" for finding in error.findings]
+
+
+def _part(thing: Thing) -> dict[str, Any]:
+    said: dict[str, Any] = {"name": thing.name, "kind": thing.kind.value, "what": thing.what, "address": thing.address}
+    if thing.unit:
+        said["unit"] = thing.unit
+    if thing.line is not None:
+        said["line"] = thing.line
+    return said | {"bodies": list(thing.bodies), "facts": [list(fact) for fact in thing.facts]}
+
+
+def _mesh(mesh: Mesh) -> dict[str, Any]:
+    wide = "<u4" if len(mesh.points) > 0xFFFF else "<u2"
+    return {
+        "points": packed(mesh.points, "<f4"),
+        "part": packed(mesh.part, "<u2"),
+        "carrier": packed(mesh.carrier, "<u2"),
+        "station": packed(mesh.station, "<u2"),
+        "carriers": packed(mesh.bodies, "<u2"),
+        "ends": packed(mesh.ends, "<f4"),
+        "stations": packed(mesh.stations, "<f4"),
+        "indices": "u4" if wide == "<u4" else "u2",
+        "triangles": packed(mesh.triangles, wide),
+        "edges": packed(mesh.edges, wide),
+    }
+
+
+def packed(values: Array | Sequence[float], form: str) -> str:
+    """Base64 of the bytes of values in a form such as `<f4`.
+
+    >>> packed([1.0], "<f4")
+    'AACAPw=='
+    """
+    return base64.b64encode(np.ascontiguousarray(values).astype(form).tobytes()).decode("ascii")

@@ -1,0 +1,162 @@
+"""What a stage can be seen to do: its modes, the stroke of each actuator, ideal motions of its platform, deflections under dead load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.base.number import Array, first_design
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, part_deformation
+from flexstage.show.display import format_value, number, to_typography
+from flexstage.spatial.frame import COMPONENTS
+
+_UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
+_UNIT_MOTION = 1e-6
+
+
+class Group(Enum):
+    """What kind of motion it is."""
+
+    MODE = "mode"
+    STROKE = "stroke"
+    AXIS = "axis"
+    DEFLECTION = "deflection"
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground's first.
+
+    `name` is unique in its group, `remark` says more; `frequency` [Hz] is that of a mode. `energy` is the share of the strain energy by
+    link, and of all else that is elastic by its name; empty where it is not known. The size of a motion means something but for modes.
+    """
+
+    group: Group
+    name: str
+    label: str
+    twists: Array
+    remark: str = ""
+    frequency: float | None = None
+    energy: Mapping[str, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """The bodies of a stage by name, without the ground, and their reference points (3,), at which models tell their twists."""
+
+    references: Mapping[str, Array]
+
+    def at_origin(self, twists: Mapping[str, Array]) -> Array:
+        """Twists (b + 1, 6) at the stage's origin, the ground's first; bodies that are not named stand still."""
+        rows = np.zeros((len(self.references) + 1, 6))
+        for place, (name, point) in enumerate(self.references.items(), start=1):
+            if name in twists:
+                rows[place] = np.real(twists[name])
+                rows[place, :3] += np.cross(point, rows[place, 3:])
+        return rows
+
+
+def body_twists(
+    model: LinearModel, kinematics: Kinematics, shape: Array, bodies: Sequence[str], inputs: Array | None = None
+) -> dict[str, Array]:
+    """Twists (6,) of the bodies in a shape (n,) of the model's coordinates, under `inputs` (m,) if there are any (first design).
+
+    A model that knows the platform only moves the other bodies as the ideal kinematics do.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> twists = body_twists(fs.mapped(stage), fs.ideal(stage), np.eye(6)[2], ("platform", "B4/pole"))
+    >>> twists["platform"].round(9).tolist(), float(twists["B4/pole"][2].round(9))
+    ([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 1.0)
+    """
+    known = {channel.name: index for index, channel in enumerate(model.outputs)}
+    seen = first_design(model.output, 2) @ shape
+    seen = seen if inputs is None else seen + first_design(model.feedthrough, 2) @ inputs
+    result: dict[str, Array] = {}
+    for body in bodies:
+        names = [f"{body}.{component}" for component in COMPONENTS]
+        if all(name in known for name in names):
+            result[body] = seen[[known[name] for name in names]]
+        elif names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
+            rows = [kinematics.body_coordinates.index(name) for name in names]
+            result[body] = first_design(kinematics.bodies, 2)[rows] @ shape
+    return result
+
+
+def mode_motions(model: LinearModel, kinematics: Kinematics, found: Modes, bones: Skeleton, count: int) -> Iterator[Motion]:
+    """The lowest modes, mass-normalised, and those of the platform that lie higher."""
+    frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
+    last = max((*found.platform, -1)) + 1
+    for index in range(min(len(found.names), max(count, last))):
+        if index >= count and index not in found.platform:
+            continue
+        twists = body_twists(model, kinematics, shapes[:, index], tuple(bones.references))
+        frequency = float(frequencies[index])
+        label = f"{index + 1}  {number(frequency)} Hz  {found.names[index]}"
+        remark = "a mode of the platform" if index in found.platform else "a mode beside those of the platform"
+        energy = _energy(model, shapes[:, index])
+        yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
+
+
+def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, float] | None:
+    """Shares of the strain energy by contribution, of the first design; `None` where there is none."""
+    given = None if inputs is None else inputs[:, None]
+    deformed = {name: first_design(each, 2)[:, 0] for name, each in part_deformation(model, motion[:, None], given).items()}
+    parts = {name: float(each @ first_design(model.stiffness[name].law, 2) @ each) for name, each in deformed.items()}
+    total = sum(parts.values())
+    return {name: each / total for name, each in parts.items()} if total > 0.0 else None
+
+
+def stroke_motions(model: LinearModel, kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
+    """What a micrometre of each actuator's stroke, a newton of its force or an ampere of its current does at rest, all others held."""
+    names = model.actuators
+    columns = model.input_index(names)
+    moved = first_design(displacement(model, model.input_matrix[..., columns]), 2)
+    for place, name in enumerate(names):
+        unit = model.inputs[columns[place]].unit
+        amount = _UNIT_STROKES.get(unit, 1.0)
+        inputs = np.zeros(len(model.inputs))
+        inputs[columns[place]] = amount
+        shape = amount * moved[:, place]
+        twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references), inputs))
+        text = to_typography(format_value(amount, unit))
+        yield Motion(Group.STROKE, name, f"{name}  {text}", twists, energy=_energy(model, shape, inputs))
+
+
+def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
+    """Ideal motions of the platform by a micrometre or a microradian along each of its coordinates, and the strokes that they take."""
+    bodies, strokes = first_design(kinematics.bodies, 2), first_design(kinematics.actuation, 2)
+    rows = {name: place for place, name in enumerate(kinematics.body_coordinates)}
+    for place, coordinate in enumerate(kinematics.coordinates):
+        unit = "rad" if coordinate.startswith("r") else "m"
+        known = [name for name in bones.references if f"{name}.x" in rows]
+        twists = {name: _UNIT_MOTION * bodies[[rows[f"{name}.{each}"] for each in COMPONENTS], place] for name in known}
+        taken = [
+            f"{name} {format_value(_UNIT_MOTION * float(stroke), 'm')}"
+            for name, stroke in zip(kinematics.actuators, strokes[:, place], strict=True)
+            if abs(stroke) > 1e-9
+        ]
+        text = f"{coordinate}  {format_value(_UNIT_MOTION, unit)}"
+        remark = f"strokes: {', '.join(taken)}" if taken else ""
+        yield Motion(Group.AXIS, coordinate, to_typography(text), bones.at_origin(twists), to_typography(remark))
+
+
+def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
+    """What own weight, payloads and stated forces do at rest, strokes held; causes without any are left out.
+
+    Raises `DesignError` where what is not held would fall.
+    """
+    for name, load in dead_loads(mechanism, model).items():
+        shape = first_design(displacement(model, load[..., None]), 2)[:, 0]
+        if np.any(shape):
+            twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references)))
+            yield Motion(Group.DEFLECTION, name, name, twists, "strokes held", energy=_energy(model, shape))

@@ -1,0 +1,103 @@
+"""What is drawn, thing by thing: its name, its unit, where it stands in the design, and its data in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement
+from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.locate import link_path, unit_of_copy
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.pattern import copy_names
+from flexstage.mechanism.store.lines import line_of
+from flexstage.parts.part import inner
+from flexstage.show.display import field_unit, format_value, number, to_typography
+from flexstage.show.scene.facet import Kind
+from flexstage.show.scene.primitives import first_value
+from flexstage.show.tables.description import kind_name
+
+_FOOT = " foot"
+Fact = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Something that is drawn and can be pointed at: `what` it is, the `unit` it is in, its `address` in a design file, its `line` there.
+
+    `facts` are pairs of a name and a value with its unit.
+    """
+
+    name: str
+    kind: Kind
+    bodies: tuple[int, int]
+    what: str
+    unit: str
+    address: str
+    line: int | None
+    facts: tuple[Fact, ...]
+
+
+class Describer:
+    """Says of what is drawn, by name, what it is; data of a part that several links have are worked out once."""
+
+    def __init__(self, mechanism: Mechanism, assembly: Assembly, lines: Mapping[str, int]) -> None:
+        self._mechanism = mechanism
+        self._assembly = assembly
+        self._lines = lines
+        self._copies = unit_of_copy(mechanism)
+        self._gauges = {name: key for key in mechanism.gauges for name in copy_names(key)}
+        self._owners = {address: body for body, item in assembly.bodies.items() for address in item.solids}
+        self._facts: dict[int, tuple[Fact, ...]] = {}
+
+    def thing(self, name: str, kind: Kind, bodies: tuple[int, int]) -> Thing:
+        """The thing of that name, which scene and description share."""
+        what, address, facts = self._said(name)
+        unit = name.rpartition("/")[0]
+        line = line_of(address, self._lines) if address else None
+        return Thing(name, kind, bodies, what, unit if unit in self._copies else "", address, line, facts)
+
+    def _said(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
+        """What it is, its address and its facts."""
+        links = {**self._assembly.links, **self._assembly.superelements}
+        if (link := links.get(name) or links.get(name.removesuffix(_FOOT))) is not None:
+            return "ground" if name.endswith(_FOOT) else kind_name(link.part), self._link_address(link), self._link_facts(link)
+        if (gauge := self._assembly.gauges.get(name)) is not None:
+            return gauge.gauge.kind, f"gauges.{self._gauges.get(name, name)}", self._data(gauge.gauge)
+        if name in self._assembly.bodies:
+            return "body", self._body_address(name), self._body_facts(name)
+        placed = self._owners.get(name)
+        solids = self._assembly.ground if placed is None else self._assembly.bodies[placed].solids
+        solid = solids[name].solid
+        drawn, _, own = name.rpartition(".")
+        facts = self._data(solid) + (() if placed is None else (("body", placed), *self._body_facts(placed)))
+        return type(solid).__name__.lower(), f"{self._body_address(drawn)}.solids.{own}", facts
+
+    def _link_address(self, link: PlacedLink | PlacedSuperelement) -> str:
+        described = link.described if isinstance(link, PlacedLink) else link
+        return ".".join(link_path(self._mechanism, described.drawn.removeprefix("links.")))
+
+    def _body_address(self, name: str) -> str:
+        copy, _, own = name.rpartition("/")
+        return f"units.{self._copies[copy]}.bodies.{own}" if copy in self._copies else f"bodies.{name}"
+
+    def _link_facts(self, link: PlacedLink | PlacedSuperelement) -> tuple[Fact, ...]:
+        return (("part", link.link.part), ("joins", " – ".join(link.joins)), *self._data(inner(link.part)))
+
+    def _body_facts(self, name: str) -> tuple[Fact, ...]:
+        mass = self._assembly.bodies[name].mass
+        return () if mass is None else (("mass", format_value(first_value(mass.mass), "kg")),)
+
+    def _data(self, record: object) -> tuple[Fact, ...]:
+        if id(record) not in self._facts:
+            self._facts[id(record)] = tuple(_numbers(record))
+        return self._facts[id(record)]
+
+
+def _numbers(record: object) -> Iterator[Fact]:
+    """The single numbers of a description, under the names that they are set by; places and matrices are seen or looked up."""
+    for address, value, node in node_of(type(record)).numbers(record):
+        if "." not in address or address.startswith("profile."):
+            form = field_unit(node.quantity)
+            text = number(first_value(value) * form.factor)
+            yield address.replace("_", " "), to_typography(text if form.unit == "1" else f"{text} {form.unit}")
