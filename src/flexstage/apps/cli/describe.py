@@ -19,8 +19,10 @@ from flexstage.cases.registry import case as shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dumps, load, shipped_catalogue
+from flexstage.mechanism.store import dumps, loads, shipped_catalogue
 from flexstage.mechanism.store import schema as design_schema
+from flexstage.mechanism.store.file import read_text
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
@@ -99,8 +101,9 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
     """
     require_writable([("--json", json)], design)
     try:
-        mechanism = change(load(design), changes or ())
-        require(model_findings(mechanism))
+        text = read_text(design)
+        mechanism = change(loads(text, where=str(design), folder=design.parent), changes or ())
+        require(with_lines(model_findings(mechanism), text, str(design)))
     except DesignError as error:
         if json is not None:
             write(json, as_text(check_document(None, error.findings)) + "\n", "--json")

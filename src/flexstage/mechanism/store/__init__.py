@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from flexstage.base.finding import DesignError
@@ -13,7 +11,6 @@ from flexstage.base.store import write
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.mount import STAGES
 from flexstage.mechanism.store.anchor import anchor_paths, beside, outline_text
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
@@ -53,12 +50,7 @@ def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path 
         mechanism = drawn if folder is None else anchor_paths(drawn, folder)
         return require_valid(mechanism) if checked else mechanism
     except DesignError as error:
-        carried = [finding.where.startswith(f"{STAGES}.") for finding in error.findings]
-        lines = with_lines(itertools.compress(error.findings, carried), text, where)
-        raise DesignError(
-            next(lines) if of_stage else replace(finding, where=f"{where}: {finding.where}")
-            for finding, of_stage in zip(error.findings, carried, strict=True)
-        ) from None
+        raise DesignError(with_lines(error.findings, text, where)) from None
 
 
 def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[str, str] | None = None) -> Path:

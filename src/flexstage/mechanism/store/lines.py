@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from flexstage.base.finding import Finding
 
 _HEAD = re.compile(r"\s*\[\[?(?P<name>[^\]]+)\]\]?\s*(#.*)?$")
 _KEY = re.compile(r"\s*(?P<name>(?:[\w-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*(?:[\w-]+|\"[^\"]*\"|'[^']*'))*)\s*=")
 _STEP = re.compile(r"[\w-]+|\"[^\"]*\"|'[^']*'")
+_PLACE = re.compile(r"(?P<file>.*?): (?:at )?line (?P<line>\d+)(?:, column (?P<column>\d+))?(?:: (?P<address>.*))?", re.DOTALL)
+_OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?")
 
 
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
@@ -24,6 +26,58 @@ def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[F
     for finding in findings:
         line = line_of(finding.where, lines)
         yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}: line {line}: {finding.where}")
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where a finding points: the address alone, and the line and column of the file if it says them."""
+
+    address: str
+    line: int | None = None
+    column: int | None = None
+
+
+def spot_of(finding: Finding, where: str) -> Spot:
+    """Where in the file `where` a finding points; the whole of its own words where that is another file.
+
+    >>> spot_of(Finding("stage.toml: line 2: place.B1.unit", "it is lost", "Find it"), "stage.toml")
+    Spot(address='place.B1.unit', line=2, column=None)
+    """
+    found = _PLACE.fullmatch(finding.where)
+    if found is None or found["file"] != where:
+        return Spot(finding.where.removeprefix(f"{where}: "))
+    return Spot(found["address"] or "", int(found["line"]), None if found["column"] is None else int(found["column"]))
+
+
+def line_of(address: str, lines: Mapping[str, int]) -> int | None:
+    """The line of an address, or of the nearest table around it; of a link the line that draws it. `None` where the text has neither.
+
+    >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "place.B1": 9}), line_of("gravity", {})
+    (4, None)
+    """
+    around = (table for each in _ways(address.replace('"', ""), lines) for table in _tables(each) if table != "tags")
+    return next((lines[table] for table in around if table in lines), None)
+
+
+def _tables(address: str) -> Iterator[str]:
+    """An address and the tables around it, from the inside out."""
+    while address:
+        yield address
+        address = address.rpartition(".")[0]
+
+
+def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
+    """An address, and for that of a link in a unit or a copy (`B4/pivot.at`) what it may be in the file, the nearest first."""
+    found = _OWNER.fullmatch(address)
+    if found is None:
+        yield from (address, address.removeprefix("tags."), f"bodies.{address}", f"links.{address}")
+        return
+    owner, name, rest = found["owner"], found["name"], found["rest"]
+    link = f".links.{name}"
+    drawn = [each for each in lines if each.startswith("units.") and each.endswith(link)]
+    unit = f"units.{owner}{link}" if f"units.{owner}{link}" in drawn else drawn[0] if len(drawn) == 1 else None
+    yield from (each for each in (f"change.{address}", f"place.{owner}") if each in lines and unit is None)
+    yield from (f"{unit}.{rest}" if rest else unit,) if unit else (f"place.{owner}",)
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
@@ -46,16 +100,3 @@ def line_numbers(text: str) -> Mapping[str, int]:
 
 def _address(name: str) -> str:
     return ".".join(step.strip("\"'") for step in _STEP.findall(name))
-
-
-def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """The line of an address, or of the nearest table around it; `None` where the text has neither.
-
-    >>> line_of("parts.neck.thickness", {"parts.neck": 3}), line_of("gravity", {})
-    (3, None)
-    """
-    while address:
-        if address in lines:
-            return lines[address]
-        address = address.rpartition(".")[0]
-    return None
