@@ -28,8 +28,12 @@ from flexstage.cases.registry import case
 from flexstage.control.hysteresis.example import example_record
 from flexstage.experiment.formats.write import write
 from flexstage.mechanism.store import dump
+from flexstage.show.command import answer
+from flexstage.show.render import to_rich
+from flexstage.show.table import Table
 from tests.apps.command import Command, design_in
 from tests.models.stage_records import stage_record
+from tests.show.widths import broken
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [each.name for each in COMMANDS]
@@ -59,7 +63,9 @@ def test_help_of_each_command_has_an_example(flexstage: Command, name: str) -> N
 
 
 @pytest.mark.parametrize("example", EXAMPLES)
-def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
+def test_examples_run_and_their_tables_fit_a_terminal(
+    flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, example: str
+) -> None:
     words = shlex.split(example.partition(" > ")[0])
     if words[1] == "new":
         (tmp_path / "stage.toml").unlink()
@@ -71,8 +77,11 @@ def test_examples_run(flexstage: Command, tmp_path: Path, example: str) -> None:
         (tmp_path / "study.toml").write_text(STUDY)
     if words[1] == "hysteresis":
         write(tmp_path / "stack.csv", example_record())
-    ended = flexstage(*words[1:])
+    shown: list[Table] = []
+    monkeypatch.setattr(answer, "to_rich", lambda table, width: [shown.append(table), *to_rich(table, width)][1:])
+    ended = flexstage(*words[1:], *(["--full"] if words[1] == "analyse" else []))
     assert ended.code == 0, ended.err
+    assert [(width, table.title, *found[:5]) for width in (60, 80, 100, 120) for table in shown if (found := broken(table, width))] == []
     assert ended.out or "Wrote" in ended.err
 
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flexstage.analysis.complete import Analysis, Model
 from flexstage.analysis.lost_motion import lost_motion
@@ -26,8 +28,8 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.display import to_typography
 from flexstage.show.page import Abreast, Folded
-from flexstage.show.render import to_html, to_rich
-from flexstage.show.table import Mark, Table, record_table, row_table
+from flexstage.show.render import fold, to_html, to_rich
+from flexstage.show.table import Column, Mark, Table, make_table, record_table, row_table
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
@@ -36,6 +38,7 @@ from flexstage.show.tables.strength import buckling_table
 from flexstage.show.tables.workspace import clearance_table, map_error_table
 from flexstage.spatial.frame import COMPONENTS
 from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
+from tests.show.widths import broken, printed
 
 TITLES = {
     "kinematics": "Actuator mapping R_a",
@@ -128,7 +131,29 @@ def test_renderers_show_the_same_cells(name: str) -> None:
     table = mode_table(loss)
     page = html.unescape(to_html(table))
     assert all(to_typography(cell.text) in page for row in table.rows for cell in row)
-    assert to_rich(table).row_count == len(table.rows)
+    (shown,) = (each for each in to_rich(table, 1000) if hasattr(each, "row_count"))
+    assert shown.row_count == len(table.rows)
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 1000])
+def test_tables_too_wide_go_on_below_with_their_rows_named_anew(width: int) -> None:
+    table = make_table(
+        "Errors",
+        ["along", *(Column(head, "nm") for head in ("lost motion", "quantisation", "crosstalk", "root sum square"))],
+        [(axis, *("-0.00012345",) * 4) for axis in "xyz"],
+        notes=["Largest errors over x +-50 um, y +-50 um, all at once."],
+    )
+    lines = printed(table, width)
+    assert broken(table, width) == []
+    assert sum(line.count("-0.00012345") for line in lines) == 12
+    assert [line.split()[0] for line in lines if "-0.0" in line] == list("xyz") * {40: 2, 60: 2, 80: 1, 1000: 1}[width]
+
+
+@given(st.text("ab1 ./", max_size=60), st.integers(2, 80))
+def test_folded_lines_have_all_of_the_text(text: str, width: int) -> None:
+    lines = fold(text, width)
+    assert "".join("".join(lines).split()) == "".join(text.split())
+    assert all(fold(line, width) == [line] for line in lines)
 
 
 def test_html_escapes_what_users_write() -> None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import functools
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import jinja2
+from rich.cells import cell_len
 
 from flexstage.base.text import printable
 from flexstage.show.display import to_typography
-from flexstage.show.table import Mark, Table
+from flexstage.show.table import Column, Mark, Table
 
 _STYLES = {
     Mark.STRONG: "bold",
@@ -50,29 +54,131 @@ def _anchor(title: str) -> str:
     return "".join(sign if sign.isalnum() else "-" for sign in title.lower()).strip("-")
 
 
-def to_rich(table: Table) -> Any:
-    """The table as a `rich.table.Table` for the terminal.
+_GAP = 3
+_NARROWEST = 40
+_CAPTION = 80
+_BREAKS = re.compile(r"(?<!\d) +(?!m\b|\[)| +(?=[+-]?\d|to |and |\()")
+_INNER_BREAKS = re.compile(r"(?<=[./,_-])(?=[A-Za-z])")
+
+
+@dataclass(frozen=True)
+class _Span:
+    """How wide a column is at least, its words whole, and at most, its lines whole."""
+
+    least: int
+    most: int
+
+
+def to_rich(table: Table, width: int) -> Iterator[Any]:
+    """What is printed of a table on so many columns of the terminal: its title, the table, its notes.
+
+    Texts are broken between words, never within, and numbers stay with their units. Columns for which there is no place stand in a table
+    below, their rows named anew.
 
     >>> from flexstage.show.table import make_table
-    >>> to_rich(make_table("Masses", ["body"], [("platform",)])).row_count
-    1
+    >>> [type(each).__name__ for each in to_rich(make_table("Masses", ["body"], [("platform",)]), 80)]
+    ['Text', 'Table']
     """
+    from rich.text import Text
+
+    width = max(width, _NARROWEST)
+    spans = [_span(table, index) for index in range(len(table.columns))]
+    if _total(each.least for each in spans) > width:
+        spans = [_span(table, index, longest=width // 3) for index in range(len(table.columns))]
+    panels = [_fit(panel, width) for panel in _panels(spans, width)]
+    if table.title:
+        yield Text(_fill(table.title, width), style="bold")
+    for panel in panels:
+        yield _rich_table(table, panel)
+    if table.notes:
+        wide = max((_total(panel.values()) for panel in panels), default=0)
+        notes = "\n".join(table.notes)
+        yield Text(_fill(notes, min(width, max(wide, _CAPTION))), style="dim")
+
+
+def _rich_table(table: Table, widths: Mapping[int, int]) -> Any:
+    """The columns that are named, each so wide."""
     from rich import box
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    caption = Text(printable("\n".join(table.notes), keep="\n"), style="dim", justify="left") if table.notes else None
-    result = RichTable(
-        title=Text(printable(table.title), style="bold"),
-        title_justify="left",
-        caption=caption,
-        caption_justify="left",
-        box=box.SIMPLE_HEAD,
-        pad_edge=False,
-    )
-    for column in table.columns:
-        head = Text(printable(f"{column.head}\n[{column.unit}]" if column.unit else column.head, keep="\n"))
-        result.add_column(head, justify="right" if column.numeric else "left", overflow="fold")
+    result = RichTable(box=box.SIMPLE_HEAD, pad_edge=False)
+    for index, width in widths.items():
+        column = table.columns[index]
+        justify = "right" if column.numeric else "left"
+        result.add_column(Text(_head_text(column, width)), justify=justify, width=width, no_wrap=True, overflow="crop")
     for row in table.rows:
-        result.add_row(*(Text(printable(cell.text, keep="\n"), style=_STYLES.get(cell.mark, "")) for cell in row))
+        result.add_row(*(Text(_fill(row[index].text, width), style=_STYLES.get(row[index].mark, "")) for index, width in widths.items()))
     return result
+
+
+def _span(table: Table, index: int, longest: int | None = None) -> _Span:
+    """A column's span; names longer than the `longest` may be broken within."""
+    column = table.columns[index]
+    texts = [column.head, *(printable(row[index].text, keep="\n") for row in table.rows)]
+    unit = cell_len(f"[{column.unit}]") if column.unit else 0
+    most = max((cell_len(line) for text in texts for line in text.splitlines()), default=0)
+    words = [word for text in texts for word in _words(text)]
+    if longest is not None:
+        words = [piece for word in words for piece in (_INNER_BREAKS.split(word) if cell_len(word) > longest else [word])]
+    return _Span(max(*map(cell_len, words), unit), max(most, unit))
+
+
+def _words(text: str) -> list[str]:
+    """Words of a text; a number and its unit are one."""
+    return [word for line in text.splitlines() for word in _BREAKS.split(line)]
+
+
+def _panels(spans: Sequence[_Span], width: int) -> list[dict[int, _Span]]:
+    """The columns in as many tables as the width asks for; the first column, which names the rows, stands in each."""
+    panels: list[dict[int, _Span]] = []
+    for index, span in enumerate(spans):
+        if panels and _total([*(each.least for each in panels[-1].values()), span.least]) <= width:
+            panels[-1][index] = span
+        else:
+            panels.append({0: spans[0], index: span})
+    return panels[1:] if len(panels) > 1 and len(panels[0]) == 1 and len(spans) > 1 else panels
+
+
+def _total(widths: Iterable[int]) -> int:
+    widths = list(widths)
+    return sum(widths) + _GAP * (len(widths) - 1) + 2
+
+
+def _fit(spans: Mapping[int, _Span], width: int) -> dict[int, int]:
+    """Widths of columns that fit, taken from the widest that can give."""
+    found = {index: span.most for index, span in spans.items()}
+    while _total(found.values()) > width:
+        able = [index for index, span in spans.items() if found[index] > span.least]
+        if not able:
+            break
+        found[max(able, key=lambda index: found[index])] -= 1
+    return found
+
+
+def _head_text(column: Column, width: int) -> str:
+    head = _fill(column.head, width)
+    return f"{head}\n[{printable(column.unit)}]" if column.unit else head
+
+
+def _fill(text: str, width: int) -> str:
+    """The text on lines of so many cells, broken between words, within long names after a dot or a slash."""
+    return "\n".join(line for each in printable(text, keep="\n").split("\n") for line in fold(each, width))
+
+
+def fold(text: str, width: int) -> list[str]:
+    """A line on lines of so many cells, broken between words; names that are longer after a dot or a slash, numbers never from their units.
+
+    >>> fold("at least 50 um at parts.neck.thickness", 15)
+    ['at least 50 um', 'at parts.neck.', 'thickness']
+    """
+    lines = [""]
+    pieces = [(" ", word) for word in _BREAKS.split(text)] if cell_len(text) > width else [("", text)]
+    for gap, word in pieces:
+        for number, piece in enumerate(_INNER_BREAKS.split(word) if cell_len(word) > width else [word]):
+            joint = gap if number == 0 and lines[-1] else ""
+            if lines[-1] and cell_len(lines[-1] + joint + piece) > width:
+                lines.append(piece)
+            else:
+                lines[-1] += joint + piece
+    return lines

@@ -20,12 +20,13 @@ from flexstage.models.theory import Model
 from flexstage.show.command.output import STDOUT, announce, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
 from flexstage.show.document import envelope
-from flexstage.show.render import to_rich
+from flexstage.show.render import fold, to_rich
 from flexstage.show.sheets import to_csv
 from flexstage.show.table import Table
 
 _UNFOLDED = 1000
 _LONGEST = 200
+_HANG = 2
 
 
 def answer(  # noqa: PLR0913 (all that a command can ask for)
@@ -94,14 +95,27 @@ def show(shown: Iterable[Table | str | None]) -> None:
     Tables have the terminal's width; where the output is no terminal they are not folded and have no escape codes.
     """
     console = Console(file=sys.stdout, highlight=False, markup=False)
-    if not console.is_terminal:
-        console.width = _UNFOLDED
+    width = console.width if console.is_terminal else _UNFOLDED
+    console.width = max(width, _UNFOLDED)
     for number, each in enumerate(each for each in shown if each is not None):
-        lines = printable(each, keep="\n").splitlines() if isinstance(each, str) else _render(console, each)
+        lines = _fold_lines(each, width) if isinstance(each, str) else _render(console, each, width)
         print_styled("\n".join(["", *lines][number == 0 :]).rstrip("\n") + "\n")
 
 
-def _render(console: Console, table: Table) -> list[str]:
+def _fold_lines(text: str, width: int) -> list[str]:
+    """Lines of a text, on a terminal no wider than it, what follows of one further in."""
+    lines = printable(text, keep="\n").splitlines()
+    return lines if width == _UNFOLDED else [part for line in lines for part in _hang(line, width)]
+
+
+def _hang(line: str, width: int) -> list[str]:
+    start = line[: len(line) - len(line.lstrip())]
+    first, *rest = fold(line.lstrip(), max(width - len(start) - _HANG, _HANG))
+    return [start + first, *(f"{start}{' ' * _HANG}{each}" for each in rest)]
+
+
+def _render(console: Console, table: Table, width: int) -> list[str]:
     with console.capture() as captured:
-        console.print(to_rich(table))
+        for each in to_rich(table, width):
+            console.print(each)
     return [line.rstrip() for line in captured.get().splitlines()]
