@@ -34,14 +34,14 @@ def imposed(stage: fs.Mechanism) -> fs.Mechanism:
     return replace(stage, parts=parts)
 
 
-@examples(60, 600)
+@examples(30, 600)
 @given(actuated_platforms())
 def test_shares_add_up_with_imposed_strokes(stage: fs.Mechanism) -> None:
     defect, norm = _defect(imposed(stage))
     assert defect <= 1e-11 * norm
 
 
-@examples(60, 600)
+@examples(30, 600)
 @given(actuated_platforms())
 def test_imposed_strokes_are_the_limit_of_stiff_stacks(stage: fs.Mechanism) -> None:
     """Static gains of platform and gauges, and their response, tend to those of stacks locked along their axes."""

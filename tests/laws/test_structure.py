@@ -74,7 +74,7 @@ def grouped(mechanism, turn, shift):
     )
 
 
-@examples(25, 1000)
+@examples(12, 1000)
 @given(mechanisms(), turns())
 def test_links_may_join_bodies_of_placed_copies(mechanism, where):
     stage = grouped(mechanism, *where)
@@ -120,7 +120,7 @@ def reflected(body, axis):
     return replace(body, centre=point(body.centre), reference=point(body.reference), inertia=inertia)
 
 
-@examples(25, 1000)
+@examples(12, 1000)
 @given(mechanisms(), turns(), st.sampled_from(Normal))
 def test_a_mirrored_stage_has_the_reflected_matrices(mechanism, where, normal):
     axis = "xyz".index(normal.value)
