@@ -1,0 +1,88 @@
+// The head of the page: file, what changed, undo and save, the state of connection and engine, and what a person is told.
+
+import type { Engine, State } from "../protocol";
+import { byId, digits, fill, h } from "./dom";
+import type { Editor } from "./editor";
+import type { Studio } from "./studio";
+
+const TOLD = 6000; // ms that a notice stays
+
+export class Header {
+  private engine: Engine | null = null;
+  private timer = 0;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly editor: Editor,
+  ) {
+    byId("undo").addEventListener("click", () => void this.undo());
+    byId("redo").addEventListener("click", () => void this.redo());
+    byId("save").addEventListener("click", () => void this.save());
+    studio.state.watch((state) => state && this.show(state));
+    studio.connection.state.watch(() => this.tell());
+    studio.connection.on("engine", (said) => ((this.engine = said), this.tell()));
+    studio.notice.watch(({ text, bad }) => this.say(text, bad));
+    this.tell();
+  }
+
+  private show(state: State): void {
+    fill(byId("file"), state.file.split(/[\\/]/).at(-1) ?? state.file);
+    byId("file").title = `${state.name}: ${state.file}`;
+    fill(byId("changed"), state.saved ? "saved" : state.changed ? `${state.changed} changed` : "text changed");
+    byId<HTMLButtonElement>("undo").disabled = !state.undo;
+    byId<HTMLButtonElement>("redo").disabled = !state.redo;
+    byId<HTMLButtonElement>("save").disabled = state.saved;
+    document.title = `${state.saved ? "" : "• "}${state.name} – flexstage studio`;
+  }
+
+  private tell(): void {
+    const words = { opens: "connects…", open: "", lost: "connection lost; trying again", refused: "the server does not let this page in: open the address it printed" };
+    const link = this.studio.connection.state.value;
+    const engine = this.engine;
+    const left = engine?.seconds ? `, ${digits(engine.seconds, 2)} s` : "";
+    const busy = engine && engine.state !== "ready" ? `${engine.text || engine.state}${left}` : "ready";
+    const place = byId("engine");
+    place.className = link !== "open" || engine?.state === "ended" ? "pill poor" : engine && engine.state !== "ready" ? "pill fair" : "pill good";
+    fill(place, words[link] || busy);
+  }
+
+  private say(text: string, bad: boolean): void {
+    const place = byId("notice");
+    clearTimeout(this.timer);
+    place.hidden = text === "";
+    place.className = bad ? "poor" : "";
+    fill(place, text);
+    if (text) this.timer = setTimeout(() => this.studio.notice.set({ text: "", bad: false }), TOLD) as unknown as number;
+  }
+
+  async undo(): Promise<void> {
+    this.editor.flush();
+    await this.studio.ask({ kind: "undo" });
+  }
+
+  async redo(): Promise<void> {
+    await this.studio.ask({ kind: "redo" });
+  }
+
+  async save(over = false): Promise<void> {
+    this.editor.flush();
+    const said = await this.studio.ask({ kind: "save", over });
+    if (said.kind === "refusal" && said.stale) this.differs();
+    else if (said.kind !== "refusal") this.studio.tell("Saved.");
+  }
+
+  /** The file on disk changed since it was read. */
+  private differs(): void {
+    const place = byId("notice");
+    clearTimeout(this.timer);
+    const hide = (act: () => void) => (): void => ((place.hidden = true), act());
+    place.hidden = false;
+    fill(
+      place,
+      "Another program changed the file since it was read. ",
+      h("button", { type: "button", click: hide(() => void this.save(true)) }, "write over it"),
+      " ",
+      h("button", { type: "button", click: hide(() => void this.studio.ask({ kind: "reload" })) }, "take the file's text (undo brings yours back)"),
+    );
+  }
+}

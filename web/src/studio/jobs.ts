@@ -1,0 +1,102 @@
+// Commands that run beside: what they take, how far they are, and their results.
+
+import type { Jobs, JobState, Run } from "../protocol";
+import { byId, digits, fill, h } from "./dom";
+import type { Studio } from "./studio";
+
+type Command = Run["command"];
+
+interface Form {
+  title: string;
+  about: string;
+  study: string | null;
+  record: boolean;
+}
+
+const SWEEP = `# Which numbers vary, over which range, and what is worked out. See docs: studies.
+[vary]
+"parts.neck.thickness" = ["1.4 mm", "1.7 mm"]
+`;
+const OPTIMISE = `# Which numbers are free, and what is to become best.
+[vary]
+"parts.neck.thickness" = ["1.4 mm", "1.7 mm"]
+
+[objective]
+maximise = "frequency.platform.1"
+`;
+
+const FORMS: Record<Command, Form> = {
+  sweep: { title: "Sweep", about: "Computes many designs and shows what varies with what.", study: SWEEP, record: false },
+  optimise: { title: "Optimise", about: "Finds the best design within ranges and limits.", study: OPTIMISE, record: false },
+  verify: { title: "Verify", about: "Compares theory with finite elements, hinges first.", study: null, record: false },
+  identify: { title: "Identify", about: "Finds the modes in a record of a test.", study: null, record: true },
+  loop: { title: "Loop", about: "Closes the control loop; without a set-up the usual one.", study: "", record: false },
+  analyse: { title: "Report", about: "Writes the report: everything at once, with the turning model, in one file.", study: null, record: false },
+};
+
+export class JobsPane {
+  private readonly root = byId("pane-jobs");
+  private readonly list = h("div", { id: "jobs" });
+  private readonly form = h("div", {});
+  private readonly studies = new Map<Command, string>();
+  private finished = new Set<number>();
+
+  constructor(private readonly studio: Studio) {
+    fill(this.root, this.form, this.list);
+    const buttons = Object.entries(FORMS).map(([name, each]) => h("button", { type: "button", title: each.about, click: () => this.offer(name as Command) }, each.title));
+    fill(byId("commands"), ...buttons);
+    studio.connection.on("jobs", (said) => this.show(said));
+    fill(this.list, h("p", { className: "quiet" }, "No jobs yet."));
+  }
+
+  /** What a command takes; one that takes nothing starts at once. */
+  offer(name: Command): void {
+    const form = FORMS[name];
+    this.studio.tab.set("jobs");
+    if (name === "analyse") return void this.run({ kind: "run", command: name, study: null, record: null, options: [] });
+    const study = form.study === null ? null : h("textarea", { rows: 9, spellcheck: false, ariaLabel: "study", value: this.studies.get(name) ?? form.study });
+    const record = form.record ? h("input", { type: "text", required: true, placeholder: "record.mat", ariaLabel: "record" }) : null;
+    const options = h("input", { type: "text", placeholder: "--modes 12", ariaLabel: "options" });
+    const start = (event: Event): void => {
+      event.preventDefault();
+      if (study) this.studies.set(name, study.value);
+      void this.run({ kind: "run", command: name, study: study?.value.trim() ? study.value : null, record: record?.value || null, options: options.value.split(/\s+/).filter(Boolean) });
+    };
+    fill(
+      this.form,
+      h("form", { className: "run", submit: start }, h("h3", {}, form.title), h("p", { className: "quiet" }, form.about), study, record && h("label", {}, "record's file ", record), h("label", {}, "options ", options), h("button", { type: "submit" }, `Start ${form.title.toLowerCase()}`)),
+    );
+    (study ?? record ?? options).focus();
+  }
+
+  private async run(question: Omit<Run, "id">): Promise<void> {
+    const said = await this.studio.ask(question);
+    if (said.kind === "done") fill(this.form);
+    else if (said.kind === "refusal") fill(this.form, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${each.what} ${each.advice}`)));
+  }
+
+  private show(said: Jobs): void {
+    fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each)));
+    for (const each of said.jobs) {
+      if (each.state !== "done" || this.finished.has(each.job)) continue;
+      this.finished.add(each.job);
+      this.studio.tell(`${each.command} is done.`);
+    }
+  }
+
+  private job(each: JobState): HTMLElement {
+    const isLive = each.state === "waits" || each.state === "runs";
+    const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
+    const cancel = h("button", { type: "button", click: () => this.studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
+    const open = each.report && h("a", { href: each.report, target: "_blank", rel: "noopener" }, "open the report");
+    const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
+    return h(
+      "article",
+      { className: `job ${each.state}` },
+      h("h3", {}, `${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, open),
+      isLive && bar,
+      h("p", {}, each.text),
+      each.said.length > 0 && h("pre", {}, each.said.join("\n")),
+    );
+  }
+}

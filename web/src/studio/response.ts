@@ -1,0 +1,175 @@
+// Frequency responses: the present design's solid, the one it is compared with dashed; a click near a peak plays that mode.
+
+import uPlot from "uplot";
+import type { AlignedData, Axis, Options, Scale, Series } from "uplot";
+import "uplot/dist/uPlot.min.css";
+import type { Curve, Figures, ModeShape } from "../protocol";
+import { floats } from "./floats";
+import { byId, digits, fill, framewise, h } from "./dom";
+import type { Studio } from "./studio";
+
+const NEAR = 24; // pixels between a click and the mode that is meant
+
+export class Responses {
+  private readonly root = h("div", { id: "curves" });
+  private readonly input = h("select", { ariaLabel: "input", change: () => this.choose() });
+  private readonly output = h("select", { ariaLabel: "output", change: () => this.choose() });
+  private readonly told = h("span", { className: "quiet cursor" });
+  private readonly redraw = framewise(() => this.draw());
+  private plots: uPlot[] = [];
+  private channels = "";
+
+  constructor(private readonly studio: Studio) {
+    const bar = h("div", { className: "bar" }, h("h2", {}, "Response"), h("label", {}, "from ", this.input), h("label", {}, "to ", this.output), this.told);
+    fill(byId("response"), bar, this.root);
+    studio.figures.watch(this.redraw);
+    studio.mode.watch(this.redraw);
+    studio.against.watch(this.redraw);
+    studio.state.watch(() => this.offer());
+    new ResizeObserver(this.redraw).observe(this.root);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", this.redraw);
+  }
+
+  private offer(): void {
+    const state = this.studio.state.value;
+    const channels = JSON.stringify([state?.inputs, state?.outputs]);
+    if (!state || channels === this.channels) return;
+    this.channels = channels;
+    for (const [select, names] of [[this.input, state.inputs], [this.output, state.outputs]] as const) {
+      select.replaceChildren(new Option("as chosen", ""), ...names.map((each) => new Option(each)));
+    }
+  }
+
+  private choose(): void {
+    const inputs = this.input.value ? [this.input.value] : [];
+    const outputs = this.output.value ? [this.output.value] : [];
+    this.studio.connection.newest("respond", { kind: "respond", inputs, outputs, low: null, high: null });
+  }
+
+  private draw(): void {
+    for (const each of this.plots) each.destroy();
+    this.plots = [];
+    const present = this.studio.figures.value;
+    if (!present?.frequency || !present.curves.length || this.root.clientWidth < 40) {
+      fill(this.root, h("p", { className: "quiet" }, present?.missing["curves"] ?? present?.missing["response"] ?? "No response yet."));
+      return;
+    }
+    const other = this.studio.kept.get(this.studio.against.value)?.figures ?? null;
+    const before = other === present ? null : other;
+    fill(this.root);
+    const height = Math.max(this.root.clientHeight, 150);
+    const phase = Math.round(0.34 * height);
+    this.plots = [this.plot(present, before, "magnitude", height - phase), this.plot(present, before, "phase", phase)];
+  }
+
+  private plot(present: Figures, before: Figures | null, what: "magnitude" | "phase", height: number): uPlot {
+    const curves = present.curves.slice(0, 4);
+    const old = curves.map((each) => before?.curves.find((one) => one.input === each.input && one.output === each.output) ?? null);
+    const [along, ...values] = aligned(present, before, curves, old, what);
+    const series: Series[] = [{}, ...curves.map((each, at) => line(each, at, false)), ...old.filter((each) => each !== null).map((each, at) => line(each, at, true))];
+    const options: Options = {
+      width: this.root.clientWidth,
+      height,
+      legend: { show: false },
+      cursor: { sync: { key: "response" }, points: { size: 6 }, drag: { x: false, y: false } },
+      scales: { x: { time: false, distr: 3 }, y: scale(what) },
+      axes: [axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360] } : {}) }],
+      series,
+      hooks: { draw: [(plot) => this.modes(plot, what)], setCursor: [(plot) => this.tell(plot, curves)], ready: [(plot) => this.listen(plot)] },
+    };
+    return new uPlot(options, [along, ...values] as AlignedData, this.root);
+  }
+
+  private listen(plot: uPlot): void {
+    plot.over.addEventListener("click", () => this.play(plot));
+  }
+
+  /** The platform's modes, else all that are listed. */
+  private listed(): ModeShape[] {
+    const modes = this.studio.figures.value?.modes ?? [];
+    const own = modes.filter((each) => each.platform);
+    return own.length ? own : modes;
+  }
+
+  private play(plot: uPlot): void {
+    const at = plot.cursor.left ?? -1;
+    const distances = this.listed().map((each) => ({ each, away: Math.abs(plot.valToPos(each.frequency, "x") - at) }));
+    const [nearest] = distances.sort((one, other) => one.away - other.away);
+    if (nearest && nearest.away < NEAR) this.studio.mode.set(nearest.each.number);
+  }
+
+  private modes(plot: uPlot, what: string): void {
+    const { ctx, bbox } = plot;
+    const style = getComputedStyle(this.root);
+    ctx.save();
+    let free = -1e9;
+    for (const mode of this.listed()) {
+      const x = plot.valToPos(mode.frequency, "x", true);
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      const isPlaying = mode.number === this.studio.mode.value;
+      ctx.strokeStyle = style.getPropertyValue(isPlaying ? "--accent" : "--edge");
+      ctx.lineWidth = (isPlaying ? 2 : 1) * devicePixelRatio;
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+      if (what !== "magnitude" || x < free) continue;
+      ctx.fillStyle = style.getPropertyValue(isPlaying ? "--accent" : "--quiet");
+      ctx.font = `${10 * devicePixelRatio}px sans-serif`;
+      ctx.fillText(String(mode.number), x + 2 * devicePixelRatio, bbox.top + 10 * devicePixelRatio);
+      free = x + 14 * devicePixelRatio;
+    }
+    ctx.restore();
+  }
+
+  private tell(plot: uPlot, curves: Curve[]): void {
+    const at = plot.cursor.idx;
+    const along = at === null || at === undefined ? undefined : plot.data[0][at];
+    const [magnitude, phase] = this.plots;
+    if (at === null || at === undefined || along === undefined || !magnitude || !phase) return;
+    const values = curves.map((each, n) => `${each.output}/${each.input} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`);
+    fill(this.told, `${digits(along)} Hz: ${values.join(";  ")}`);
+    this.told.title = this.told.textContent ?? "";
+  }
+}
+
+/** All curves along the present frequencies; the older ones by the nearest of their own. */
+function aligned(present: Figures, before: Figures | null, curves: Curve[], old: (Curve | null)[], what: "magnitude" | "phase"): number[][] {
+  const along = present.frequency ? floats(present.frequency) : [];
+  const theirs = before?.frequency ? floats(before.frequency) : [];
+  const others = old.filter((each) => each !== null).map((each) => interpolated(along, theirs, floats(each[what])));
+  return [along, ...curves.map((each) => floats(each[what])), ...others];
+}
+
+/** Values of a curve at other places, straight between its own; outside of them nothing. */
+function interpolated(along: number[], own: number[], values: number[]): number[] {
+  let at = 0;
+  return along.map((place) => {
+    while (at < own.length - 2 && (own[at + 1] ?? 0) < place) at += 1;
+    const [low, high] = [own[at] ?? NaN, own[at + 1] ?? NaN];
+    const share = (place - low) / (high - low);
+    const inside = share >= -1e-9 && share <= 1 + 1e-9;
+    return inside ? (1 - share) * (values[at] ?? NaN) + share * (values[at + 1] ?? NaN) : (null as unknown as number);
+  });
+}
+
+const colour = (at: number): (() => string) => () => getComputedStyle(document.documentElement).getPropertyValue(`--curve-${at % 4}`);
+
+function line(curve: Curve, at: number, isOld: boolean): Series {
+  return { label: `${curve.output}/${curve.input}`, stroke: colour(at), width: isOld ? 1 : 1.6, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
+}
+
+function scale(what: string): Scale {
+  return what === "magnitude" ? { distr: 3 } : { auto: true };
+}
+
+function axis(size: number, values: Axis["values"]): Axis {
+  const ink = (): string => getComputedStyle(document.documentElement).getPropertyValue("--quiet");
+  const edge = (): string => getComputedStyle(document.documentElement).getPropertyValue("--faint");
+  return { stroke: ink, size, font: "10px sans-serif", grid: { stroke: edge, width: 1 }, ticks: { show: false }, ...(values ? { values } : {}) };
+}
+
+/** Powers of ten and what lies between as far as there is room. */
+function spell(_: uPlot, splits: number[]): string[] {
+  return splits.map((each) => (each === null ? "" : digits(each, 3)));
+}

@@ -1,0 +1,161 @@
+// The middle: the turning stage, its tools, and arrows over it. Without WebGL the words say so, and everything else lives.
+
+import type { Scene } from "../protocol";
+import type { Controller, Picked, StageData } from "../viewer/types";
+import { view } from "../viewer";
+import { Arrows } from "./arrows";
+import { byId, fill, h } from "./dom";
+import type { Studio } from "./studio";
+
+const VIEWS = ["iso", "top", "front", "right"] as const;
+
+export class StageView {
+  readonly arrows: Arrows;
+  private readonly told = byId("told");
+  private readonly units = h("select", { ariaLabel: "Show one unit alone", change: () => this.viewer?.isolate(this.units.value || null) });
+  private readonly cut = h("select", { ariaLabel: "Section", change: () => this.section() });
+  private readonly depth = h("input", { type: "range", min: 0, max: 1, step: 0.005, value: "0.5", ariaLabel: "Place of the section", hidden: true, input: () => this.section() });
+  private readonly toggles = new Map<string, HTMLButtonElement>();
+  private isOld = false;
+  private second: Controller | null = null;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly picked: (name: Picked | null) => void,
+  ) {
+    this.arrows = new Arrows(byId("views"), studio);
+    studio.connection.on("scene", (said) => this.take(said));
+    studio.scene.watch((data) => data && this.show(data));
+    studio.link.watch((name) => this.viewer?.select(name));
+    studio.against.watch(() => this.ghost());
+    studio.keptOne.watch(() => this.ghost());
+    fill(this.told, "The picture follows the figures.");
+  }
+
+  private get viewer(): Controller | null {
+    return this.studio.viewer.value;
+  }
+
+  private take(said: Scene): void {
+    const held = this.studio.scene.value;
+    const data = said.data as StageData;
+    this.studio.scene.set(said.whole || held === null ? data : { ...held, ...data });
+  }
+
+  private show(data: StageData): void {
+    this.isOld = false;
+    if (this.viewer === null) this.begin(data);
+    else if (this.viewer.alive) this.viewer.replace(data);
+    this.second?.replace(data);
+    this.offerUnits(data);
+    this.ghost();
+  }
+
+  private begin(data: StageData): void {
+    const made = this.attempt(data);
+    if (made === null || !made.alive) return this.without();
+    fill(this.told);
+    this.studio.viewer.set(made);
+    this.tools();
+    made.onPick((picked) => this.picked(picked));
+    made.select(this.studio.link.value);
+  }
+
+  private attempt(data: StageData): Controller | null {
+    try {
+      return view(byId("view"), data, { controls: false });
+    } catch (error) {
+      console.warn("the viewer does not start:", error);
+      return null;
+    }
+  }
+
+  private without(): void {
+    document.body.classList.add("flat");
+    fill(this.told, "This browser gives no WebGL: the stage is not drawn. Numbers, figures, responses and the file work without it; links are chosen under Part.");
+  }
+
+  private tools(): void {
+    this.cut.append(new Option("no section", ""), ...["x", "y", "z"].map((axis) => new Option(`cut ${axis}`, axis)));
+    fill(
+      byId("tools"),
+      this.button("fit", "Fit (F)", () => this.fit()),
+      ...VIEWS.map((name) => this.button(name, name, () => this.viewer?.look(name))),
+      this.toggle("platform", "see through the platform (G)", (on) => this.viewer?.ghostPlatform(on)),
+      this.toggle("names", "names (L)", (on) => this.viewer?.showLabels(on)),
+      this.units,
+      this.cut,
+      this.depth,
+      this.toggle("old", "the old design solid, the new one as its ghost (C)", (on) => this.swap(on)),
+    );
+  }
+
+  private button(text: string, title: string, act: () => void): HTMLButtonElement {
+    return h("button", { type: "button", title, click: act }, text);
+  }
+
+  private toggle(text: string, title: string, act: (on: boolean) => void): HTMLButtonElement {
+    const made = this.button(text, title, () => {
+      const on = made.getAttribute("aria-pressed") !== "true";
+      made.setAttribute("aria-pressed", String(on));
+      act(on);
+    });
+    made.setAttribute("aria-pressed", "false");
+    this.toggles.set(text, made);
+    return made;
+  }
+
+  /** Presses one of the tools, as its key does. */
+  press(name: string): void {
+    this.toggles.get(name)?.click();
+  }
+
+  fit(): void {
+    this.viewer?.fit(this.studio.link.value ?? undefined);
+  }
+
+  private offerUnits(data: StageData): void {
+    const units = [...new Set(data.parts.map((each) => each.unit).filter((each) => each !== undefined))];
+    if (this.units.options.length === units.length + 1) return;
+    this.units.replaceChildren(new Option("all units", ""), ...units.map((each) => new Option(each)));
+  }
+
+  private section(): void {
+    const axis = (this.cut.value || null) as "x" | "y" | "z" | null;
+    this.depth.hidden = axis === null;
+    this.viewer?.section(axis, Number(this.depth.value));
+  }
+
+  /** The stage that is compared with; none where it is the present one. */
+  private other(): StageData | null {
+    const kept = this.studio.kept.get(this.studio.against.value)?.scene ?? null;
+    return kept === this.studio.scene.value ? null : kept;
+  }
+
+  private ghost(): void {
+    const { viewer } = this;
+    if (!viewer?.alive) return;
+    const other = this.other();
+    viewer.showGhost(this.isOld ? this.studio.scene.value : other);
+    const button = this.toggles.get("old");
+    if (button) button.disabled = other === null && !this.isOld;
+  }
+
+  private swap(toOld: boolean): void {
+    const data = toOld ? this.other() : this.studio.scene.value;
+    if (!data) return;
+    this.isOld = toOld;
+    this.viewer?.replace(data);
+    this.ghost();
+    byId("stage").classList.toggle("shows-old", toOld);
+  }
+
+  /** Shows a second picture beside the first, or takes it away. */
+  beside(on: boolean): Controller | null {
+    const place = byId("second");
+    place.hidden = !on;
+    const data = this.studio.scene.value;
+    if (on && !this.second && data && this.viewer?.alive) this.second = view(place, data, { controls: false });
+    return on ? this.second : null;
+  }
+}

@@ -1,0 +1,72 @@
+// What all panes share: the connection, the newest of every kind of result, and what is selected.
+
+import type { Figures, Motion, Reach, Said, Slopes, State, Verdicts } from "../protocol";
+import type { Controller, StageData } from "../viewer/types";
+import { Cell } from "./cell";
+import type { Connection, Question } from "./connection";
+
+export class Studio {
+  readonly state = new Cell<State | null>(null);
+  readonly figures = new Cell<Figures | null>(null);
+  readonly verdicts = new Cell<Verdicts | null>(null);
+  readonly reach = new Cell<Reach | null>(null);
+  readonly slopes = new Cell<Slopes | null>(null);
+  readonly motion = new Cell<Motion | null>(null);
+  readonly scene = new Cell<StageData | null>(null);
+  /** The link that is selected (`B1/front`). */
+  readonly link = new Cell<string | null>(null);
+  /** The number of the mode that plays; null: the stage is still, or jogged. */
+  readonly mode = new Cell<number | null>(null);
+  /** The pane of the right column. */
+  readonly tab = new Cell<string>("figures");
+  /** A line of the text to go to, with a count so that the same line can be asked for twice. */
+  readonly line = new Cell<{ line: number; focus: boolean }>({ line: 0, focus: false });
+  /** The design that the present one is compared with: "" is the file. */
+  readonly against = new Cell<string>("");
+  /** What a person is told: text, and whether it is bad. */
+  readonly notice = new Cell<{ text: string; bad: boolean }>({ text: "", bad: false });
+  readonly viewer = new Cell<Controller | null>(null);
+  /** Results of the file and of pinned designs that this page has seen, by name ("" is the file). */
+  readonly kept = new Map<string, { scene: StageData | null; figures: Figures | null }>();
+  readonly keptOne = new Cell<number>(0);
+
+  constructor(readonly connection: Connection) {
+    connection.on("state", (said) => this.state.set(said));
+    connection.on("figures", (said) => this.figures.set(said));
+    connection.on("verdicts", (said) => this.verdicts.set(said));
+    connection.on("reach", (said) => this.reach.set(said));
+    connection.on("slopes", (said) => this.slopes.set(said));
+    connection.on("motion", (said) => this.motion.set(said));
+    connection.on("refusal", (said) => this.tell(said.problems.map((each) => [each.where, each.what, each.advice].filter(Boolean).join(": ")).join(" "), true));
+    this.figures.watch(() => this.keepFile());
+    this.scene.watch(() => this.keepFile());
+  }
+
+  ask(question: Question): Promise<Said> {
+    return this.connection.ask(question);
+  }
+
+  tell(text: string, bad = false): void {
+    if (text) this.notice.set({ text, bad });
+  }
+
+  /** Whether a pane of results may show this: it belongs to the text as it is. */
+  isPresent(revision: number): boolean {
+    return revision === this.state.value?.revision;
+  }
+
+  goto(line: number | null | undefined, focus = true): void {
+    if (line) this.line.set({ line, focus });
+  }
+
+  /** Keeps the present results under a name. */
+  keep(name: string): void {
+    this.kept.set(name, { scene: this.scene.value, figures: this.figures.value });
+    this.keptOne.set(this.keptOne.value + 1);
+  }
+
+  private keepFile(): void {
+    const state = this.state.value;
+    if (state && state.saved && state.sound) this.keep("");
+  }
+}
