@@ -32,20 +32,21 @@ export class VerdictTable {
   }
 
   private row(each: Judgement): HTMLElement {
-    const margin = each.margin ?? 0;
-    const bar = h("span", { className: "margin" }, h("i", {}));
-    bar.style.setProperty("--margin", String(Math.max(-1, Math.min(1, 2 * margin))));
-    const known = each.value === null ? each.reason || "not known" : shown(each.value, each);
     const moved = change(each.value, each.old);
-    const title = `${each.text}${each.point ? ` (${each.point})` : ""}${each.old === null ? "" : `; in the file ${shown(each.old, each)}`}`;
+    const title = `${each.key}: ${each.text}${each.point ? ` (${each.point})` : ""}${moved ? `; in the file ${shown(each.old, each)}, now ${moved}` : ""}`;
     return h(
       "tr",
       { className: each.value === null ? "unknown" : each.passed ? "good" : "poor", title, click: () => this.studio.goto(each.line, false) },
       h("th", { scope: "row" }, h("b", { ariaLabel: each.passed ? "met" : "not met" }, each.value === null ? "?" : each.passed ? "✓" : "✗"), ` ${each.key}`),
-      h("td", { className: "number" }, known, moved ? h("small", { className: "quiet" }, ` ${moved}`) : null),
-      h("td", { className: "quiet limit" }, short(each)),
-      h("td", { className: "number" }, bar, each.margin === null ? "" : percent(each.margin) || "0 %"),
+      ...(each.value === null ? [h("td", { className: "reason", colSpan: 3 }, `${short(each)}: ${each.reason || "not known"}`)] : this.cells(each)),
     );
+  }
+
+  private cells(each: Judgement): HTMLElement[] {
+    const bar = h("span", { className: "margin" }, h("i", {}));
+    bar.style.setProperty("--margin", String(Math.max(-1, Math.min(1, 2 * (each.margin ?? 0)))));
+    const margin = each.margin === null ? "" : percent(each.margin) || "0 %";
+    return [h("td", { className: "number" }, shown(each.value, each)), h("td", { className: "quiet limit" }, short(each)), h("td", { className: "number" }, bar, margin)];
   }
 }
 

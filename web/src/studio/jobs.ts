@@ -39,7 +39,7 @@ export class JobsPane {
   private readonly list = h("div", { id: "jobs" });
   private readonly form = h("div", {});
   private readonly studies = new Map<Command, string>();
-  private finished = new Set<number>();
+  private live = new Set<number>();
 
   constructor(private readonly studio: Studio) {
     fill(this.root, this.form, this.list);
@@ -77,15 +77,12 @@ export class JobsPane {
 
   private show(said: Jobs): void {
     fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each)));
-    for (const each of said.jobs) {
-      if (each.state !== "done" || this.finished.has(each.job)) continue;
-      this.finished.add(each.job);
-      this.studio.tell(`${each.command} is done.`);
-    }
+    for (const each of said.jobs) if (this.live.has(each.job) && isOver(each)) this.studio.tell(`${each.command}: ${each.state}.`, each.state === "failed");
+    this.live = new Set(said.jobs.filter((each) => !isOver(each)).map((each) => each.job));
   }
 
   private job(each: JobState): HTMLElement {
-    const isLive = each.state === "waits" || each.state === "runs";
+    const isLive = !isOver(each);
     const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
     const cancel = h("button", { type: "button", click: () => this.studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
     const open = each.report && h("a", { href: each.report, target: "_blank", rel: "noopener" }, "open the report");
@@ -100,3 +97,5 @@ export class JobsPane {
     );
   }
 }
+
+const isOver = (each: JobState): boolean => each.state !== "waits" && each.state !== "runs";

@@ -59,6 +59,7 @@ export class Responses {
     fill(this.root);
     const height = Math.max(this.root.clientHeight, 150);
     const phase = Math.round(0.34 * height);
+    this.name(present, before);
     this.plots = [this.plot(present, before, "magnitude", height - phase), this.plot(present, before, "phase", phase)];
   }
 
@@ -82,6 +83,7 @@ export class Responses {
 
   private listen(plot: uPlot): void {
     plot.over.addEventListener("click", () => this.play(plot));
+    plot.over.addEventListener("mouseleave", this.redraw);
   }
 
   /** The platform's modes, else all that are listed. */
@@ -120,6 +122,12 @@ export class Responses {
       free = x + 14 * devicePixelRatio;
     }
     ctx.restore();
+  }
+
+  /** Which curve is which. */
+  private name(present: Figures, before: Figures | null): void {
+    const names = present.curves.slice(0, 4).flatMap((each, at) => [h("i", { className: `curve-${at}` }), `${each.output}/${each.input}`]);
+    fill(this.told, ...names, ...(before ? [h("i", { className: "dashed" }), this.studio.against.value || "file"] : []));
   }
 
   private tell(plot: uPlot, curves: Curve[]): void {
