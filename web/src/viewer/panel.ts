@@ -1,0 +1,127 @@
+// The list of motions, the player's sliders and the buttons beside the picture.
+
+import { AMPLITUDES, type Player } from "./player";
+import type { Motion, MotionGroup, StageData } from "./types";
+
+const HEADS: Readonly<Record<MotionGroup, string>> = {
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load",
+};
+
+/** What the buttons do; the viewer gives it. */
+export interface Acts {
+  choose(motion: Motion | null): void;
+  play(): void;
+  scrub(phase: number): void;
+  amplify(step: number): void;
+  fit(): void;
+  toggle(what: Toggle): boolean;
+  turn(): void;
+}
+
+export type Toggle = "platform" | "names" | "energy" | "section" | "unit" | "ghost";
+const TOGGLES: readonly [Toggle, string, string][] = [
+  ["platform", "Platform", "Draw the platform translucent, or not (G)"],
+  ["names", "Names", "Names of actuators and gauges (L)"],
+  ["energy", "Energy", "Paint links by their share of the strain energy (E)"],
+  ["section", "Section", "Cut the stage open (S); again: another plane"],
+  ["unit", "Unit", "Show the unit of the picked part alone (I)"],
+];
+
+function button(text: string, title: string, act: () => void): HTMLButtonElement {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = text;
+  made.title = title;
+  made.addEventListener("click", act);
+  return made;
+}
+
+function slider(name: string, most: number, step: string, act: (value: number) => void): [HTMLLabelElement, HTMLInputElement] {
+  const label = document.createElement("label"), input = document.createElement("input");
+  input.type = "range";
+  input.min = "0";
+  input.max = String(most);
+  input.step = step;
+  input.setAttribute("aria-label", name);
+  input.addEventListener("input", () => act(Number(input.value)));
+  label.textContent = name;
+  return [label, input];
+}
+
+export class Panel {
+  readonly element = document.createElement("div");
+  private readonly list = document.createElement("ul");
+  private readonly words = document.createElement("div");
+  private readonly notes = document.createElement("div");
+  private readonly play: HTMLButtonElement;
+  private readonly phase: HTMLInputElement;
+  private readonly amplitude: HTMLInputElement;
+  private readonly toggles = new Map<Toggle, HTMLButtonElement>();
+  private readonly buttons = new Map<Motion | null, HTMLButtonElement>();
+
+  constructor(private readonly acts: Acts) {
+    this.element.className = "panel";
+    this.list.className = "motions";
+    this.words.className = "words";
+    const player = document.createElement("div"), tools = document.createElement("div");
+    player.className = "play";
+    tools.className = "tools";
+    const [phaseName, phase] = slider("Phase", 1, "0.005", (value) => acts.scrub(value));
+    const [amplitudeName, amplitude] = slider("Amplitude", AMPLITUDES.length - 1, "1", (value) => acts.amplify(value));
+    [this.phase, this.amplitude] = [phase, amplitude];
+    player.append(phaseName, phase, amplitudeName, amplitude, this.words);
+    this.play = button("Pause", "Play or hold (space)", () => acts.play());
+    tools.append(this.play, button("Fit", "Show all (F)", () => acts.fit()), button("View", "Next standard view (V)", () => acts.turn()));
+    for (const [what, text, title] of TOGGLES) {
+      const made = button(text, title, () => this.press(what));
+      made.setAttribute("aria-pressed", "false");
+      this.toggles.set(what, made);
+      tools.append(made);
+    }
+    this.element.append(this.list, player, tools, this.notes);
+  }
+
+  press(what: Toggle): void {
+    this.toggles.get(what)?.setAttribute("aria-pressed", String(this.acts.toggle(what)));
+  }
+
+  replace(data: StageData): void {
+    this.buttons.clear();
+    const rows: HTMLLIElement[] = [this.row(null, "At rest")];
+    let group: MotionGroup | null = null;
+    for (const motion of data.motions) {
+      if (motion.group !== group) {
+        group = motion.group;
+        const head = document.createElement("li");
+        head.className = "head";
+        head.textContent = HEADS[group];
+        rows.push(head);
+      }
+      rows.push(this.row(motion, motion.label));
+    }
+    this.list.replaceChildren(...rows);
+    this.notes.replaceChildren(...data.notes.map((note) => {
+      const line = document.createElement("p");
+      line.className = "note";
+      line.textContent = note;
+      return line;
+    }));
+  }
+
+  private row(motion: Motion | null, text: string): HTMLLIElement {
+    const made = document.createElement("li");
+    const press = button(text, motion?.remark ?? "", () => this.acts.choose(motion));
+    this.buttons.set(motion, press);
+    made.append(press);
+    return made;
+  }
+
+  update(player: Player): void {
+    for (const [motion, each] of this.buttons) each.setAttribute("aria-pressed", String(motion === player.motion));
+    this.play.textContent = player.playing ? "Pause" : "Play";
+    this.phase.value = String(player.phase);
+    const place = AMPLITUDES.findIndex((each) => each >= player.amplitude - 1e-9);
+    this.amplitude.value = String(place < 0 ? AMPLITUDES.length - 1 : place);
+    this.words.textContent = [player.words, player.motion?.remark].filter(Boolean).join("; ");
+  }
+}
