@@ -14,7 +14,7 @@ const folder = (path) => given ?? join(here, "..", "src", "flexstage", path);
 const common = {
   absWorkingDir: here,
   bundle: true,
-  charset: "utf8",
+  charset: "ascii",
   format: "iife",
   legalComments: "none", // whole licences stand beside each bundle, and on top of the one that pages carry
   logLevel: "warning",

@@ -245,6 +245,10 @@ from flexstage.show.sheets import (
     to_pandas as to_pandas,
     to_xarray as to_xarray,
 )
+from flexstage.show.viewer.view import (
+    View as View,
+    view as view,
+)
 
 __version__: str
 HOMES: dict[str, str]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Annotated, Any, TypeAlias
 
 from flexstage.base.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
@@ -250,6 +251,10 @@ class Mechanism(InNotebook, Description):
     numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
     stops: Mapping[str, Stop] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
+
+    def view(self, *, motion: str = "mode 1") -> Any:
+        """The stage as it turns and moves, for a notebook or a page of its own: `flexstage.view`, which stands above all descriptions."""
+        return import_module("flexstage.show.viewer.view").view(self, motion=motion)
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:

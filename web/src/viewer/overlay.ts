@@ -46,8 +46,8 @@ export class Overlay {
     this.names.hidden = !shown;
   }
 
-  /** Puts names, axes and scale where they belong; `moved` says where the point of a label is now. */
-  update(camera: Camera, width: number, height: number, moved: (label: Label) => Vector3): void {
+  /** Puts names, axes and scale where they belong; `moved` says where the point of a label is now; null: it is not shown. */
+  update(camera: Camera, width: number, height: number, moved: (label: Label) => Vector3 | null): void {
     if (!this.names.hidden) this.placeNames(camera, width, height, moved);
     const turn = camera.eye.quaternion.clone().invert();
     AXES.forEach(([, axis], at) => {
@@ -63,10 +63,13 @@ export class Overlay {
     this.scale.textContent = length >= 1 ? `${+length.toPrecision(2)} m` : length >= 1e-3 ? `${+(1e3 * length).toPrecision(2)} mm` : `${+(1e6 * length).toPrecision(2)} µm`;
   }
 
-  private placeNames(camera: Camera, width: number, height: number, moved: (label: Label) => Vector3): void {
+  private placeNames(camera: Camera, width: number, height: number, moved: (label: Label) => Vector3 | null): void {
     const taken: [number, number][] = [];
     for (const [label, element] of this.labels) {
-      const [x, y] = camera.project(moved(label));
+      const point = moved(label);
+      element.hidden = point === null;
+      if (point === null) continue;
+      const [x, y] = camera.project(point);
       let [left, top] = [x * width, y * height];
       for (let tries = 0; tries < 6 && taken.some(([a, b]) => Math.abs(a - left) < 22 && Math.abs(b - top) < 14); tries++) top += 14;
       taken.push([left, top]);

@@ -78,10 +78,12 @@ export class Player {
   }
 }
 
-/** Three digits. */
+/** Three digits, whole thousands apart. */
 export function written(value: number): string {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(value))));
-  const rounded = digits > 6 ? value.toExponential(2) : Number(value.toPrecision(3)).toFixed(Math.min(digits, 6));
-  return digits > 6 ? rounded : rounded.replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "").replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f");
+  if (digits > 6) return value.toExponential(2);
+  const [whole = "", part = ""] = Number(value.toPrecision(3)).toFixed(digits).split(".");
+  const decimals = part.replace(/0+$/, "");
+  return whole.replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f") + (decimals && `.${decimals}`);
 }

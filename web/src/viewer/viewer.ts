@@ -465,16 +465,16 @@ export class Viewer implements Controller {
     this.renderer.render(this.over, this.camera.eye);
   }
 
-  /** Where the point of a label is now: it moves with the mean of its bodies. */
-  private labelled(label: Label): Vector3 {
-    const point = new Vector3(...label.point), { twists, factor } = this.player;
-    if (!twists) return point;
-    const shift = new Vector3();
-    for (const body of label.bodies) {
-      const [x, y, z, a, b, c] = twists.subarray(6 * body, 6 * body + 6) as unknown as [number, number, number, number, number, number];
-      shift.add(new Vector3(a, b, c).cross(point).add(new Vector3(x, y, z)));
+  /** Where the point of a label is now, which moves with the mean of its bodies; null where what it names is not shown. */
+  private labelled(label: Label): Vector3 | null {
+    if (this.unit !== null && label.text !== this.unit && !label.text.startsWith(`${this.unit}/`)) return null;
+    const rest = new Vector3(...label.point), { twists, factor } = this.player;
+    const point = rest.clone();
+    for (const body of twists ? label.bodies : []) {
+      const [x, y, z, a, b, c] = twists!.subarray(6 * body, 6 * body + 6) as unknown as [number, number, number, number, number, number];
+      point.addScaledVector(new Vector3(a, b, c).cross(rest).add(new Vector3(x, y, z)), 0.5 * factor);
     }
-    return point.addScaledVector(shift, 0.5 * factor);
+    return this.plane.x * point.x + this.plane.y * point.y + this.plane.z * point.z > this.plane.w ? null : point;
   }
 
   // What is where.

@@ -100,4 +100,4 @@ def _numbers(record: object) -> Iterator[Fact]:
         if "." not in address or address.startswith("profile."):
             form = field_unit(node.quantity)
             text = number(first_value(value) * form.factor)
-            yield address.replace("_", " "), to_typography(text if form.unit == "1" else f"{text} {form.unit}")
+            yield address.replace("_", " ").replace(".", " "), to_typography(text if form.unit == "1" else f"{text} {form.unit}")
