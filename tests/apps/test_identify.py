@@ -94,7 +94,7 @@ def test_the_report_stands_alone(recorded: Command, tmp_path: Path) -> None:
         assert f"<h2>{title}</h2>" in page
     assert "http://" not in page.replace("http://www.w3.org", "")
     drawn = pictures(page)
-    assert len(drawn) == 6 + 4  # shapes; responses, estimators, coherence, stabilisation
+    assert len(drawn) == 1 + 6 + 4  # the stage; shapes; responses, estimators, coherence, stabilisation
     for each in drawn:
         ET.fromstring(each)  # noqa: S314  our own text
     assert "NaN" not in page
@@ -106,7 +106,7 @@ def test_the_report_of_a_comparison(recorded: Command, tmp_path: Path) -> None:
     assert ended.code == 0, ended.err
     page = (tmp_path / "compared.html").read_text()
     assert page.index("<h2>Theory and experiment</h2>") < page.index("<h2>Modes found</h2>")
-    assert len(pictures(page)) == 6 + 5
+    assert len(pictures(page)) == 1 + 6 + 5
 
 
 def test_compare_gives_a_document(recorded: Command) -> None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import flexstage
 from flexstage.base.digest import digest
-from flexstage.control.sections import error_section, frequency_section, loop_section, time_section
+from flexstage.control.sections import error_section, frequency_section, headline, loop_section, time_section
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.page import Head, page
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 
 
 def loop_report(found: LoopStudy) -> str:
-    """A loop as a page of HTML: block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
+    """A loop as a page of HTML: verdict, block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
     mechanism = found.settled.mechanism
     origin = (
         ("physics", digest(mechanism, physics=True)[:16]),
@@ -20,10 +22,12 @@ def loop_report(found: LoopStudy) -> str:
         ("flexstage", flexstage.__version__),
     )
     sections = (
-        caveat_section(mechanism, found.cautions),
+        stage_section(scene(mechanism)),
         loop_section(found),
+        caveat_section(mechanism, found.cautions),
         frequency_section(found),
         time_section(found),
         error_section(found),
     )
-    return page(Head(mechanism.name or "stage", "Control loop", origin), [each for each in sections if each is not None])
+    head = Head(mechanism.name or "stage", f"Control loop, {found.setup.model.value} model", origin, headline(found))
+    return page(head, [each for each in sections if each is not None])

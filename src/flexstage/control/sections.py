@@ -21,7 +21,7 @@ from flexstage.control.study.study import LoopStudy
 from flexstage.control.tables import count_modes, law_table, loop_table, margin_table, step_table, tracking_table
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Block, Fact, Facts, Picture, Section, fold, section
+from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Section, fold, section
 from flexstage.show.table import matrix_table
 
 _GOAL = 2.0
@@ -34,6 +34,18 @@ def loop_section(found: LoopStudy) -> Section | None:
     caption = "The loop of Fig. 9 of Shin & Moon. Shaded: what the computer does, sample by sample."
     blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found), law_table(found)]
     return section("The loop", blocks)
+
+
+def headline(found: LoopStudy) -> Headline:
+    """Whether the loop is stable, and how much room it has."""
+    if found.margins is None:
+        return Headline("Open loop.")
+    stable = found.stability.stable
+    phases = {each.channel: float(np.rad2deg(each.phase.value)) for each in found.margins.channels}
+    least = min(phases, key=lambda name: phases[name])
+    return Headline(
+        f"The loop is {'stable' if stable else 'unstable'}; the least phase margin is {number(phases[least], 3)} deg, of {least}.", stable
+    )
 
 
 def _facts(found: LoopStudy) -> Iterator[Fact]:

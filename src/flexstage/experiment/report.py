@@ -17,9 +17,11 @@ from flexstage.experiment.sections import (
 )
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.page import Head, Section, page
-from flexstage.show.scene.stage import scene
+from flexstage.show.display import NO_VALUE, number, percent
+from flexstage.show.page import Head, Headline, Section, page
+from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 
 
 def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
@@ -30,20 +32,45 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
     >>> identify_report(identification((one_mode_record(),)))[:15]
     '<!doctype html>'
     """
-    return _page("Modes identified in a test", mechanism, seen, _sections(seen, mechanism, shapes))
+    drawn = None if mechanism is None else scene(mechanism)
+    return _page("Modes identified in a test", _found_headline(seen), mechanism, seen, [_stage(drawn), *_sections(seen, drawn, shapes)])
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
     """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
-    return _page("Theory and experiment", mechanism, seen, [compare_section(found), *_sections(seen, mechanism, shapes)])
+    drawn = scene(mechanism)
+    sections = [stage_section(drawn), compare_section(found), *_sections(seen, drawn, shapes)]
+    return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections)
 
 
-def _sections(seen: Identification, mechanism: Mechanism | None, shapes: StageShapes | None) -> list[Section | None]:
-    drawn = None if mechanism is None or shapes is None else measured_shape_section(seen.found, shapes, scene(mechanism))
-    return [found_section(seen), drawn, response_data_section(seen), coherence_section(seen), stabilisation_section(seen.found)]
+def _found_headline(seen: Identification) -> Headline:
+    """How many modes were found, and between which frequencies."""
+    found = seen.found.frequencies
+    ends = f", {number(float(found[0]), 4)} to {number(float(found[-1]), 4)} Hz" if len(found) else ""
+    return Headline(f"{len(found)} {'mode' if len(found) == 1 else 'modes'} found{ends}.")
 
 
-def _page(kind: str, mechanism: Mechanism | None, seen: Identification, sections: list[Section | None]) -> str:
+def _compared_headline(found: Compared) -> Headline:
+    """How many of theory's modes the experiment shows, and how far off theory is at most."""
+    seen = [mode for mode in found.modes if mode.difference is not None]
+    said = f"{len(seen)} of {len(found.modes)} modes of the platform are found in the experiment"
+    if not seen:
+        return Headline(f"{said}.", good=False)
+    worst = max(seen, key=lambda mode: abs(mode.difference or 0.0))
+    off = NO_VALUE if worst.difference is None else percent(worst.difference, 3)
+    return Headline(f"{said}; theory is at most {off} off, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes))
+
+
+def _stage(drawn: Scene | None) -> Section | None:
+    return None if drawn is None else stage_section(drawn)
+
+
+def _sections(seen: Identification, drawn: Scene | None, shapes: StageShapes | None) -> list[Section | None]:
+    measured = None if drawn is None or shapes is None else measured_shape_section(seen.found, shapes, drawn)
+    return [found_section(seen), measured, response_data_section(seen), coherence_section(seen), stabilisation_section(seen.found)]
+
+
+def _page(kind: str, said: Headline, mechanism: Mechanism | None, seen: Identification, sections: list[Section | None]) -> str:
     sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
     named = ", ".join(each for each in sources if each) or "record"
     origin = [("record", named), ("model", "measured"), ("flexstage", flexstage.__version__)]
@@ -51,4 +78,4 @@ def _page(kind: str, mechanism: Mechanism | None, seen: Identification, sections
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named
     known = None if mechanism is None else caveat_section(mechanism)
-    return page(Head(title, kind, tuple(origin)), [each for each in (known, *sections) if each is not None])
+    return page(Head(title, kind, tuple(origin), said), [each for each in (*sections[:2], known, *sections[2:]) if each is not None])

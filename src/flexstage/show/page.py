@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import base64
+import functools
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import resources
@@ -78,12 +81,21 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Headline:
+    """What a page comes to, in one line; `good` says whether that is well, absent where nothing was asked."""
+
+    text: str
+    good: bool | None = None
+
+
+@dataclass(frozen=True)
 class Head:
-    """What stands on top of a page: the title, what kind of page it is, and what it was made from, as pairs of a name and a value."""
+    """What stands on top of a page: title, kind of page and headline; at its end, what it was made from, as pairs of a name and a value."""
 
     title: str
     kind: str
     origin: tuple[tuple[str, str], ...]
+    headline: Headline | None = None
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
@@ -109,8 +121,21 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 def page(head: Head, sections: Sequence[Section]) -> str:
     """The whole page as HTML; every text that comes in is escaped, SVG is taken as it is.
 
+    Of scripts the browser runs the page's own alone, and it may load nothing: the page's policy says so.
+
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True
     """
-    style = resources.files("flexstage.show").joinpath("static/report.css").read_text(encoding="utf-8")
-    return printable(templates().page(head, sections, style), keep="\n\t")
+    style, script = (_static(name) for name in ("report.css", "report.js"))
+    return printable(templates().page(head, sections, style, script, _policy(script)), keep="\n\t")
+
+
+def _policy(*scripts: str) -> str:
+    """What the browser may do: run these scripts, apply styles inside, show pictures inside; load nothing."""
+    sums = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(each.encode()).digest()).decode()}'" for each in scripts)
+    return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; img-src data: blob:"
+
+
+@functools.cache
+def _static(name: str) -> str:
+    return resources.files("flexstage.show").joinpath(f"static/{name}").read_text(encoding="utf-8")

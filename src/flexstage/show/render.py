@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,7 +32,7 @@ def to_html(table: Table) -> str:
 
     >>> from flexstage.show.table import make_table
     >>> to_html(make_table("a < b", ["x"], [("1",)]))
-    '<table><caption>a &lt; b</caption><thead><tr><th>x</th></tr></thead><tbody><tr><td>1</td></tr></tbody></table>'
+    '<table><caption>a &lt; b</caption><thead><tr><th scope="col">x</th></tr></thead><tbody><tr><th scope="row">1</th></tr></tbody></table>'
     """
     return str(templates().table(table))
 
@@ -42,7 +42,7 @@ def templates() -> Any:
     """The macros of `static/page.html`: every text that comes in is typeset and escaped."""
     loader = jinja2.PackageLoader("flexstage.show", "static")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, finalize=_typeset)
-    environment.filters |= {"anchor": _anchor, "kind": lambda block: type(block).__name__.lower()}
+    environment.filters |= _FILTERS
     return environment.get_template("page.html").module
 
 
@@ -53,6 +53,26 @@ def _typeset(value: Any) -> Any:
 def _anchor(title: str) -> str:
     return "".join(sign if sign.isalnum() else "-" for sign in title.lower()).strip("-")
 
+
+_WORDY = 28
+"""Signs in a cell beside a name from which a table does not fit a narrow screen; its rows are stacked there."""
+_LONG = 12
+"""Signs in a name from which it may be broken where the screen is narrow."""
+
+
+def _has_long_names(table: Table) -> bool:
+    return any(len(row[0].text) > _LONG for row in table.rows if row)
+
+
+def _is_wordy(table: Table) -> bool:
+    return any(len(cell.text) > _WORDY for row in table.rows for cell in row[1:])
+
+
+def _kind(block: object) -> str:
+    return type(block).__name__.lower()
+
+
+_FILTERS: dict[str, Callable[..., Any]] = {"anchor": _anchor, "kind": _kind, "wordy": _is_wordy, "named": _has_long_names}
 
 _GAP = 3
 _NARROWEST = 40

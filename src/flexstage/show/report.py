@@ -12,16 +12,16 @@ from flexstage.show.sections.accuracy import drift_section, error_section
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.dynamics import mode_section, response_section
 from flexstage.show.sections.mechanics import kinematics_section, lost_motion_section, stiffness_section
-from flexstage.show.sections.overview import change_section, requirement_section, summary_section
+from flexstage.show.sections.overview import change_section, headline, requirement_section, summary_section
 from flexstage.show.sections.reach import strength_section, workspace_section
 from flexstage.show.sections.sources import description_section, limit_section, reference_section
-from flexstage.show.sections.stage import stage_section
+from flexstage.show.sections.stage import drawing_section, stage_section
 
 
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
-    """The analysis of a stage as a self-contained HTML page: verdicts first, pictures inline, nothing loaded from anywhere, no date.
+    """The analysis of a stage as a self-contained HTML page: verdict and stage first, nothing loaded, no date.
 
-    With `compared`, the values that were set and what that did stand after the verdicts, as old, new and change.
+    With `compared`, the values that were set and what that did stand after the requirements, as old, new and change.
     Results that the model or the stage does not give are left out, with the reasons under "Limits". One design; of a
     batch the first is shown.
 
@@ -33,11 +33,12 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     mechanism = analysis.mechanism
     seen = scene(mechanism)
     sections = (
+        stage_section(seen),
         requirement_section(analysis),
         caveat_section(mechanism),
         change_section(analysis, compared),
         summary_section(analysis),
-        stage_section(mechanism, seen),
+        drawing_section(mechanism, seen),
         kinematics_section(analysis),
         stiffness_section(analysis),
         lost_motion_section(analysis),
@@ -61,4 +62,5 @@ def _head(analysis: Analysis) -> Head:
         ("document", digest(analysis.mechanism)[:16]),
         ("flexstage", flexstage.__version__),
     )
-    return Head(analysis.mechanism.name or "stage", "Analysis of a flexure stage", origin)
+    kind = f"Analysis of a flexure stage, {analysis.model.value} model"
+    return Head(analysis.mechanism.name or "stage", kind, origin, headline(analysis))

@@ -8,16 +8,18 @@ import flexstage
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.page import Head, Section, page
+from flexstage.show.page import Head, Headline, Section, page
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 
 
-def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], cautions: tuple[Finding, ...] = ()) -> str:
-    """Sections of the solid model as a page of HTML, after cautions about the description and `cautions` about the result.
+def solid_report(mechanism: Mechanism, said: Headline, sections: Iterable[Section | None], cautions: tuple[Finding, ...] = ()) -> str:
+    """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, cautions, the others.
 
-    Sections that are absent are left out.
+    `cautions` are those about the result; those about the description stand with them. Sections that are absent are left out.
 
-    >>> solid_report(Mechanism("stage"), [None])[:15]
+    >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'
     """
     origin = (
@@ -26,5 +28,7 @@ def solid_report(mechanism: Mechanism, sections: Iterable[Section | None], cauti
         ("document", digest(mechanism)[:16]),
         ("flexstage", flexstage.__version__),
     )
-    head = Head(mechanism.name or "stage", "A flexure stage as solids", origin)
-    return page(head, [each for each in (caveat_section(mechanism, cautions), *sections) if each is not None])
+    head = Head(mechanism.name or "stage", "A flexure stage as solids", origin, said)
+    first, *rest = sections
+    shown = (stage_section(scene(mechanism)), first, caveat_section(mechanism, cautions), *rest)
+    return page(head, [each for each in shown if each is not None])

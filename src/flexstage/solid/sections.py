@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from flexstage.analysis.trust import Trust
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, section
+from flexstage.show.page import Abreast, Block, Folded, Headline, Picture, Prose, Section, section
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import centre_table, direction_table, principal_table, stiffness_table
 from flexstage.solid.skin_figures import png_picture, skin_figure
@@ -107,6 +108,15 @@ def _stress_picture(stage: SolidStage) -> Picture:
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
     caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
     return png_picture(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), caption)
+
+
+def verification_headline(found: Verification) -> Headline:
+    """On how many figures of the widest group that was compared, the stage where it was, theory will do; and how far off it is at most."""
+    name, rows = list(found.groups.items())[-1]
+    good = [row for row in rows if row.trust in {Trust.EITHER, Trust.THEORY}]
+    off = max((row for row in rows if row.difference is not None), key=lambda row: abs(row.difference or 0.0), default=None)
+    most = "" if off is None else f"; at most it is {100.0 * abs(off.difference or 0.0):.2g} % off, in {off.figure}"
+    return Headline(f"{name.capitalize()}: theory will do for {len(good)} of {len(rows)} figures{most}.", len(good) == len(rows))
 
 
 def verification_section(found: Verification) -> Section | None:

@@ -6,8 +6,9 @@ import flexstage
 from flexstage.control.hysteresis.figures import stack_figure
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.control.hysteresis.tables import plays_table, stack_table
+from flexstage.show.display import percent
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Head, Picture, Prose, page, section
+from flexstage.show.page import Head, Headline, Picture, Prose, page, section
 from flexstage.show.tables.caveats import caution_table
 
 _METHOD = (
@@ -27,10 +28,12 @@ def hysteresis_report(test: StackTest) -> str:
     drawn = to_svg(stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the volts of the inverse")
     caption = "Grey the record, blue the model and its error; green the volts that the inverse gives for the recorded strokes."
     sections = [
-        section("Cautions", [caution_table(test.hysteresis.cautions)]),
         section("Hysteresis", [Picture(drawn, caption), stack_table(test), Prose(_METHOD)]),
+        section("Cautions", [caution_table(test.hysteresis.cautions)]),
         section("Model", [plays_table(test)]),
     ]
     named = test.source or "record"
     origin = (("record", named), ("model", "measured"), ("flexstage", flexstage.__version__))
-    return page(Head(named, "Hysteresis of a stack", origin), [each for each in sections if each is not None])
+    width, error = (percent(each, 3) for each in (test.hysteresis.width, test.hysteresis.rms))
+    said = Headline(f"Loops are {width} of the stroke wide; the model follows them to {error}, rms.")
+    return page(Head(named, "Hysteresis of a stack", origin, said), [each for each in sections if each is not None])

@@ -69,7 +69,7 @@ def compact_svg(text: str, name: str, description: str) -> str:
     """matplotlib's SVG without header, metadata, unused identifiers and digits nobody sees; repeated styles become classes.
 
     >>> compact_svg('<?xml version="1.0"?><svg width="72pt" viewBox="0 0 72 72"><g id="a"><path d="M 1.23456 2"/></g></svg>', "f", "a path")
-    '<svg viewBox="0 0 72 72" role="img" aria-label="a path" style="max-width:96px"><path d="M1.2 2"/></svg>'
+    '<svg viewBox="0 0 72 72" role="img" aria-label="a path" style="--width:96px;max-width:96px"><path d="M1.2 2"/></svg>'
     """
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<\?xml.*?\?>|<!DOCTYPE.*?>", "", text, flags=re.DOTALL)
     body = body[body.index("<svg") :].replace("xlink:href", "href")
@@ -86,7 +86,8 @@ def compact_svg(text: str, name: str, description: str) -> str:
     body = _drop_empty(re.sub(r">\s+<", "><", body))
     body, classes = _classes(body, name)
     width = round(float(box.split()[2]) * 96.0 / 72.0)
-    head = f'<svg viewBox="{_shorten_numbers(box)}" role="img" aria-label="{_attribute(description)}" style="max-width:{width}px">'
+    size = f"--width:{width}px;max-width:{width}px"
+    head = f'<svg viewBox="{_shorten_numbers(box)}" role="img" aria-label="{_attribute(description)}" style="{size}">'
     return printable(f"{head}{classes}{body.strip()}</svg>", keep="\n\t")
 
 

@@ -10,27 +10,40 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison
 from flexstage.analysis.requirements import Verdict
 from flexstage.show.display import format_value, number, percent
-from flexstage.show.page import Fact, Facts, Prose, Section, section
+from flexstage.show.page import Fact, Facts, Headline, Prose, Section, section
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 from flexstage.show.tables.change import change_table, set_table
-from flexstage.show.tables.requirements import first_margin, is_met, margin_text, meaning, value_text, verdict_text
+from flexstage.show.tables.requirements import answer_text, first_margin, is_met, margin_text, meaning, value_text, verdict_text
 
 _SILENT = 1e-9
 
 
-def requirement_section(analysis: Analysis) -> Section | None:
-    """Verdicts first, those that fail before the others; `None` without requirements.
+def headline(analysis: Analysis) -> Headline:
+    """How many requirements are met, and the worst margin.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
-    >>> requirement_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].text
+    >>> headline(analyse(double_triangle(), Model.IDEAL)).text
     'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
     """
     verdicts = analysis.verdicts
     if not verdicts:
+        return Headline("No requirements are stated.")
+    return Headline(verdict_text(verdicts), all(map(is_met, verdicts)))
+
+
+def requirement_section(analysis: Analysis) -> Section | None:
+    """Verdicts with their values, those that fail before the others; `None` without requirements.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> requirement_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].texts()[1][:5]
+    ['stroke.x', '74.4 um', 'at least 50 um', '+48.8 %', 'met']
+    """
+    if not analysis.verdicts:
         return None
     note = "Judged by the lumped model, whichever model the rest of this report uses."
-    return section("Requirements", [Prose(verdict_text(verdicts)), _verdict_table(verdicts), Prose(note)])
+    return section("Requirements", [_verdict_table(analysis.verdicts), Prose(note)])
 
 
 def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
@@ -50,7 +63,7 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
 def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
     ranked = sorted(verdicts, key=is_met)
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
-    heads = ["", "requirement", "what it means", Column("demand"), Column("value"), Column("margin")]
+    heads = ["requirement", Column("value"), "demand", Column("margin"), "verdict", "what it means"]
     return make_table("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
 
 
@@ -60,12 +73,12 @@ def _verdict_row(verdict: Verdict) -> tuple[Cell, ...]:
     margin = first_margin(verdict)
     bar = min(1.0, margin) if good and np.isfinite(margin) else None
     return (
-        Cell("✓" if good else "✗", mark),
         Cell(verdict.requirement.key, Mark.STRONG),
-        Cell(meaning(verdict)),
+        Cell(value_text(verdict), Mark.PLAIN if good else Mark.FAIL),
         Cell(verdict.requirement.text),
-        Cell(value_text(verdict)),
         Cell(margin_text(verdict), mark, bar),
+        Cell(answer_text(verdict), mark),
+        Cell(meaning(verdict)),
     )
 
 

@@ -19,24 +19,33 @@ _SIDES = (
 )
 
 
-def stage_section(mechanism: Mechanism, seen: Scene) -> Section | None:
-    """Pictures of the stage and what it consists of; `seen` is its scene.
+def stage_section(seen: Scene) -> Section | None:
+    """The stage as it is seen first, from its scene.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.scene.stage import scene
-    >>> stage_section(double_triangle(), scene(double_triangle())).title
+    >>> stage_section(scene(double_triangle())).title
     'The stage'
     """
     corner = to_svg(stage_picture(seen), "corner", "The stage from above its front corner")
+    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
+    return section("The stage", [Picture(corner, caption), Legend(legend(seen))])
+
+
+def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
+    """The stage from three sides, its plan, and what it consists of; `seen` is its scene.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.scene.stage import scene
+    >>> drawing_section(double_triangle(), scene(double_triangle())).title
+    'Drawings and composition'
+    """
     sides = tuple(_side(seen, *each) for each in _SIDES)
     plan = to_svg(plan_figure(mechanism, seen), "plan", "Dimensioned plan of the stage")
-    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
     plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])
     return section(
-        "The stage",
+        "Drawings and composition",
         [
-            Picture(corner, caption),
-            Legend(legend(seen)),
             Abreast((sides[0], Abreast(sides[1:]))),
             Picture(plan, plan_caption),
             composition_table(mechanism),

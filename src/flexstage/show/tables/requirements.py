@@ -60,7 +60,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     """
     failed = [verdict for verdict in verdicts if not is_met(verdict)]
     if failed:
-        names = ", ".join(verdict.requirement.key for verdict in failed)
+        names = ", ".join(f"{each.requirement.key} ({'unknown' if each.value is None else margin_text(each)})" for each in failed)
         return f"{len(verdicts) - len(failed)} of {len(verdicts)} requirements are met. Not met: {names}."
     margins = {verdict.requirement.key: first_margin(verdict) for verdict in verdicts}
     least = min(margins, key=lambda key: margins[key])
@@ -131,5 +131,16 @@ def _row(verdict: Verdict) -> tuple[Cell, ...]:
         Cell(verdict.requirement.text),
         Cell(value_text(verdict)),
         Cell(margin_text(verdict), mark),
-        Cell("met" if good else "withheld" if verdict.reason.startswith("withheld") else "not met", mark),
+        Cell(answer_text(verdict), mark),
     )
+
+
+def answer_text(verdict: Verdict) -> str:
+    """A verdict in words.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.judge import judge
+    >>> answer_text(judge(double_triangle())[6])
+    'met'
+    """
+    return "met" if is_met(verdict) else "withheld" if verdict.reason.startswith("withheld") else "not met"

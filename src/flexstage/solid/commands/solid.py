@@ -23,7 +23,7 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, Report, o
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
-from flexstage.show.page import Section
+from flexstage.show.page import Headline, Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
@@ -38,7 +38,7 @@ from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.read import Solids, solids
 from flexstage.solid.report import solid_report
 from flexstage.solid.resolution import Converged, Resolution
-from flexstage.solid.sections import hinge_section, stage_solid_section, unit_section, verification_section
+from flexstage.solid.sections import hinge_section, stage_solid_section, unit_section, verification_headline, verification_section
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -84,8 +84,9 @@ class _Request:
 
 @dataclass(frozen=True)
 class _Result:
-    """Results of the solid model that stand in one document, their tables, and sections of a report; cautions about them."""
+    """Results of the solid model that stand in one document, their tables; headline and sections of a report; cautions about them."""
 
+    said: Headline
     results: tuple[Any, ...]
     tables: Callable[[], Iterator[Table | None]]
     sections: Callable[[], Iterator[Section | None]]
@@ -117,7 +118,7 @@ def solid(  # noqa: PLR0913 (its options)
     with progress_bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
-        save(report, solid_report(mechanism, found.sections(), found.cautions), "--report")
+        save(report, solid_report(mechanism, found.said, found.sections(), found.cautions), "--report")
     answer(
         "solid",
         mechanism,
@@ -160,7 +161,7 @@ def verify(
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
         sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
-        save(report, solid_report(mechanism, sections, cautions), "--report")
+        save(report, solid_report(mechanism, verification_headline(found), sections, cautions), "--report")
     print_missing(found.reasons)
     answer("verify", mechanism, lambda: found, lambda: _verification_tables(found), json=json, csv=csv, cautions=cautions, beside=(report,))
 
@@ -234,11 +235,13 @@ def _hinges(asked: _Request, shown: ProgressBar) -> Hinges:
 
 def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
     found = solid_hinges(mechanism, _hinges(asked, shown))
+    cautions = _inexact_hinges(found)
     return _Result(
+        said=Headline(f"{len(found)} distinct hinges, {len(cautions) or 'none'} of them less exact than was asked.", not cautions),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([hinge_section(found)]),
-        cautions=_inexact_hinges(found),
+        cautions=cautions,
     )
 
 
@@ -252,6 +255,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
             yield stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
 
     return _Result(
+        said=_accuracy_headline(found, asked.resolution),
         results=(found, {"units": found.result}),
         tables=tables,
         sections=lambda: iter([unit_section(found)]),
@@ -272,6 +276,7 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
     return _Result(
+        said=_accuracy_headline(found, asked.resolution),
         results=(found, stage),
         tables=tables,
         sections=lambda: iter([stage_solid_section(found)]),
@@ -290,13 +295,23 @@ def _inexact_hinges(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
 
 def _accuracy_cautions(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
     """A caution where the error estimated is not as small as was asked; where it is, it is told."""
-    size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
-    text = f"the error estimated of finite elements is {size} at order {found.order}"
+    text = _accuracy_text(found)
     if found.error <= asked.accuracy:
         print_note(f"{what}: {text}")
         return ()
     more = found.stopped or (f"Ask for --order {found.order + 1}" if asked.order is not None else "This is the highest order")
     return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % was asked", more.rstrip(".")),)
+
+
+def _accuracy_text(found: Converged[Any]) -> str:
+    size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
+    return f"the error estimated of finite elements is {size} at order {found.order}"
+
+
+def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
+    """How exact a result is, against what was asked."""
+    said = _accuracy_text(found)
+    return Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
 
 
 def _verification_tables(found: verification.Verification) -> Iterator[Table]:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 import flexstage
+from flexstage.analysis.requirements import Verdict
 from flexstage.base.digest import digest
+from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Head, Picture, Section, page, section
+from flexstage.show.page import Head, Headline, Picture, Section, page, section
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.studies.optimisation.figures import convergence_figure, front_figure
 from flexstage.studies.optimisation.result import Front, Optimum
 from flexstage.studies.optimisation.tables import front_tables, optimise_tables
@@ -29,22 +35,40 @@ def optimise_report(found: Optimum) -> str:
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     sections: list[Section | None] = [
-        caveat_section(study.design, cautions),
+        stage_section(scene(study.design)),
         section("Objective", [objective, search]),
+        caveat_section(study.design, cautions),
         section("Variables", [variables]),
         section("Limits", [limits, *rest[:-1]]),
         section("Starts", rest[-1:]),
     ]
-    return page(_head(study, "An optimisation"), [each for each in sections if each is not None])
+    return page(_head(study, "An optimisation", _headline(found)), [each for each in sections if each is not None])
 
 
 def front_report(found: Front) -> str:
     """A front as a page of HTML."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
-    sections = [caveat_section(found.study.design, loaded_findings(found.study)), section("Front", [picture, *front_tables(found)])]
-    return page(_head(found.study, "A front of two objectives"), [each for each in sections if each is not None])
+    sections = [
+        stage_section(scene(found.study.design)),
+        section("Front", [picture, *front_tables(found)]),
+        caveat_section(found.study.design, loaded_findings(found.study)),
+    ]
+    said = Headline(f"{len(found.points)} designs, none of them better than another in both objectives.")
+    return page(_head(found.study, "A front of two objectives", said), [each for each in sections if each is not None])
 
 
-def _head(study: Study, kind: str) -> Head:
+def _headline(found: Optimum) -> Headline:
+    """The objective before and after, and how many limits are kept."""
+    asked, point = found.wanted.objectives[0], found.final
+    if point is None:
+        return Headline(f"No design was found: {found.failure}.", good=False)
+    before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
+    limits = zip(found.limits, point.values[len(found.wanted.objectives) :], strict=True)
+    kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
+    told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
+    return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))
+
+
+def _head(study: Study, kind: str, said: Headline) -> Head:
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
-    return Head(study.name, kind, origin)
+    return Head(study.name, kind, origin, said)

@@ -7,14 +7,17 @@ import numpy as np
 import flexstage
 from flexstage.base.digest import digest
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Block, Head, Picture, Section, page, section
+from flexstage.show.page import Block, Head, Headline, Picture, Section, page, section
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.interaction_figures import pairs_figure, strongest_figure
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.result import Sweep
+from flexstage.studies.sweeps.store import Results
 from flexstage.studies.sweeps.tables import failure_table, pair_table, response_table, share_table, variable_table
 
 _STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
@@ -23,22 +26,34 @@ _STRONGEST = "The strongest pairs: where lines are not parallel, one variable de
 
 
 def sweep_report(sweep: Sweep) -> str:
-    """A sweep as a page of HTML: what was varied, distributions, main effects, shares of variance, designs as lines."""
+    """A sweep as a page of HTML: distributions first, what was varied, main effects, shares of variance, designs as lines."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
         effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
         designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     sections: list[Section | None] = [
+        stage_section(scene(study.design)),
+        section("Responses", [response_table(study, results, found), designs]),
         caveat_section(study.design, loaded_findings(study)),
         section("What was varied", [variable_table(study, results)]),
-        section("Responses", [response_table(study, results, found), designs]),
         section("Effects", [share_table(found), effects]),
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
-    return page(Head(study.name, "A sweep of designs", origin), [each for each in sections if each is not None])
+    head = Head(study.name, "A sweep of designs", origin, _headline(study, results))
+    return page(head, [each for each in sections if each is not None])
+
+
+def _headline(study: Study, results: Results) -> Headline:
+    """How many designs there are, and how many keep all limits."""
+    count, failed = len(results.designs), len(results.failures)
+    said = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
+    if not study.limits or not count:
+        return Headline(f"{said}.")
+    kept = int(np.sum(study.feasible(results.responses)))
+    return Headline(f"{said}; {kept} keep all limits.", kept > 0)
 
 
 def _parallel(study: Study, found: Effects) -> str:

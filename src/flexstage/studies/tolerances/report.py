@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import flexstage
 from flexstage.base.digest import digest
+from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Head, Picture, Section, page, section
+from flexstage.show.page import Head, Headline, Picture, Section, page, section
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import stage_section
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.tables import failure_table
 from flexstage.studies.tolerances.figures import crosstalk_figure, crosstalk_title, distributions_figure, shares_figure, yields_figure
@@ -20,26 +23,37 @@ _MATRIX = "Mean and deviation over the copies, row unit per unit of command; the
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """A tolerance study as a page of HTML: what scatters, yields, distributions, contributions, allowances, crosstalk."""
+    """A tolerance study as a page of HTML: yields first, what scatters, distributions, contributions, allowances, crosstalk."""
     study, said = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     yields = Picture(to_svg(yields_figure(found), "yields", "yields of the specification's lines"), _YIELDS) if said.lines else None
     shares = Picture(to_svg(shares_figure(found), "shares", "shares of the variance"), _SHARES)
     sections: list[Section | None] = [
+        stage_section(scene(study.design)),
+        section("Yield", [yield_table(found), yields]),
         caveat_section(study.design, loaded_findings(study)),
         section("What scatters", [scatter_table(found)]),
-        section("Yield", [yield_table(found), yields]),
         section("Responses", [spread_table(found), drawn if study.measures else None]),
         section("What does it", [share_table(found), shares if study.measures else None]),
         section("What is allowed", [allowance_table(found)] if said.lines else []),
-        *(_crosstalk(found, number) for number in range(len(said.crosstalk))),
+        *(_crosstalk(found, index) for index in range(len(said.crosstalk))),
         section("Copies without values", [failure_table(found.results)] if found.results.failures else []),
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
-    return page(Head(study.name, "Tolerances", origin), [each for each in sections if each is not None])
+    return page(Head(study.name, "Tolerances", origin, _headline(found)), [each for each in sections if each is not None])
 
 
-def _crosstalk(found: Toleranced, number: int) -> Section | None:
-    crosstalk = found.summary.crosstalk[number]
+def _headline(found: Toleranced) -> Headline:
+    """The yield of all lines together, and the line that the fewest copies keep."""
+    kept = found.summary.together
+    if kept is None:
+        return Headline(f"{found.summary.copies} copies; no line says what a good one is.")
+    said = f"{number(100.0 * kept.share, 4)} % of {kept.copies} copies keep every line"
+    worst = min(found.summary.lines, key=lambda line: line.kept.share)
+    return Headline(f"{said}; the fewest, {number(100.0 * worst.kept.share, 4)} %, keep {worst.column}.", kept.kept == kept.copies)
+
+
+def _crosstalk(found: Toleranced, index: int) -> Section | None:
+    crosstalk = found.summary.crosstalk[index]
     picture = to_svg(crosstalk_figure(crosstalk), f"crosstalk-{crosstalk.kind}", "pose errors per command")
     return section(f"Crosstalk, {crosstalk_title(crosstalk)}", [crosstalk_table(found, crosstalk), Picture(picture, _MATRIX)])
