@@ -11,7 +11,6 @@ from flexstage.analysis.cautions import cautions, defaults
 from flexstage.analysis.seating import seated, seating
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance, stiffness
-from flexstage.beams.contact import hertz
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import Force, Link, Mechanism
@@ -21,7 +20,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.contact import Contact, Seat
+from flexstage.parts.contact import Contact, Seat, hertz
 from flexstage.parts.material import Material, Paired
 
 STEEL = Material(young=210e9, poisson=0.3, density=7850.0, yield_stress=1.0e9)

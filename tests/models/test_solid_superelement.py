@@ -81,6 +81,9 @@ def test_what_cannot_be_exported_is_told(tmp_path):
         export_superelement(forked(), "fork", tmp_path / "fork.mat")
 
 
-def test_a_stage_of_superelements_has_no_solid_model(found):
-    with pytest.raises(DesignError, match="superelement has no shape"):
-        model(exported(found[0]), cache=None)
+def test_a_stage_of_it_is_the_same_read_as_solids(found):
+    """What is exported is taken as it is stated: the chain from a solid to a file and back into a stage of solids is closed."""
+    part, lumps, _ = found
+    solid = model(exported(part), KEPT, cache=None)
+    np.testing.assert_allclose(static_gain(solid, TWIST, WRENCH).values, static_gain(lumps, TWIST, WRENCH).values, rtol=1e-6, atol=1e-14)
+    np.testing.assert_allclose(eigen(solid).values, eigen(lumps).values, rtol=1e-6)

@@ -10,13 +10,12 @@ import numpy as np
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, first_design
-from flexstage.beams.contact import Hertz, contact_stiffness, hertz
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.models.linear.undetermined import require_known
-from flexstage.parts.contact import Contact
+from flexstage.parts.contact import Contact, Hertz, contact_stiffness, hertz
 from flexstage.parts.material import Material
 from flexstage.spatial.frame import FORCES
 

@@ -9,14 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Number
+from flexstage.parts.shape import rectangle_torsion
 
 PARABOLIC = 6.0 / 5.0
 """Shear factor of a rectangle from the energy of the parabolic shear stress (Castigliano); that of the notch formulas."""
-
-_ODD = np.arange(1.0, 8.0, 2.0)
-_ODD_FIFTH_POWERS = 1.00452376279513961613
-"""Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,22 +76,6 @@ def circle(diameter: Number, shear: Number) -> Section:
     area = 0.25 * np.pi * diameter * diameter
     inertia = area * diameter * diameter / 16.0
     return Section(thickness=diameter, width=diameter, area=area, inertia_y=inertia, inertia_z=inertia, torsion=2.0 * inertia, shear=shear)
-
-
-def rectangle_torsion(thickness: Number, width: Number) -> Array:
-    """Saint-Venant torsion constant J [m^4] of a rectangle, either side the longer, correct to rounding.
-
-    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
-    section 109). The sum is (31/32) zeta(5) less a series in exp(-n pi c / a), of which four terms leave out less than 1e-17.
-
-    >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
-    (0.140577015, 33.1233)
-    """
-    tall = np.real(width) < np.real(thickness)
-    short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
-    decay = np.exp(-np.pi * (long / short)[..., None] * _ODD)
-    series = _ODD_FIFTH_POWERS - np.sum(2.0 * decay / (1.0 + decay) / _ODD**5, axis=-1)
-    return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
 
 
 def cowper_rectangle(poisson: Number) -> Number:

@@ -30,7 +30,9 @@ from flexstage.base.quantity import (
 from flexstage.parts.actuator import ChargedActuator, StrokeActuator
 from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.stated import is_even, symmetry_findings, turns_into_itself
+from flexstage.parts.mass import tensor
+from flexstage.parts.material import Material
+from flexstage.parts.stated import Stated, is_even, point_masses, symmetry_findings, turns_into_itself
 
 _Along: TypeAlias = Annotated[Number, STIFFNESS, POSITIVE]
 _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS, POSITIVE]
@@ -48,6 +50,16 @@ class BetweenFaces(StrokeActuator):
     matrix: _Matrix | None
     compliance: _Matrix | None
     free: tuple[Freedom, ...]
+    mass: Number
+
+    @property
+    def carried(self) -> Array:
+        """Half of its mass (..., 12, 12) at each face, both at its centre."""
+        return point_masses(0.5 * self.mass, 0.5 * self.mass)
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """Its 6x6, and half of its mass at each face."""
+        return Stated(self.between, self.carried)
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -132,6 +144,22 @@ class Amplified(BetweenFaces, ChargedActuator):
         if self.deformation is None:
             return np.eye(6)[0]
         return stack(self.deformation) / np.asarray(self.stroke)[..., None]
+
+    @property
+    def carried(self) -> Array:
+        """Half of its mass and of its inertia (..., 12, 12) at each face, both at its centre.
+
+        >>> Amplified(stroke=1e-4, mass=2.0).carried.diagonal()[:4].tolist()
+        [1.0, 1.0, 1.0, 0.0]
+        """
+        lumps = super().carried
+        if self.inertia is None:
+            return lumps
+        own = 0.5 * tensor(self.inertia)
+        result = np.zeros((*np.broadcast_shapes(lumps.shape[:-2], own.shape[:-2]), 12, 12), dtype=np.result_type(lumps, own)) + lumps
+        for start in (3, 9):
+            result[..., start : start + 3, start : start + 3] += own
+        return result
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
+import numpy as np
+
 from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
 from flexstage.base.quantity import FORCE, MASS, NOT_NEGATIVE, POSITIVE
 from flexstage.parts.actuator import ForceLimit, ThrustActuator
+from flexstage.parts.material import Material
+from flexstage.parts.stated import Stated, point_masses
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +33,10 @@ class ForceActuator(ThrustActuator):
     def thrust(self) -> Number:
         """The input is the force."""
         return 1.0
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """No stiffness, half of its mass on each body."""
+        return Stated(np.zeros((6, 6)), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def limits(self) -> Iterator[ForceLimit]:

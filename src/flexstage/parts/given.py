@@ -11,12 +11,15 @@ import numpy as np
 
 from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.finding import Finding
-from flexstage.base.number import Number, Vector, stack
+from flexstage.base.number import Array, Number, Vector, stack
 from flexstage.base.quantity import COMPLIANCE_MATRIX, LENGTH, MASS, NOT_NEGATIVE
 from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.mass import tensor
+from flexstage.parts.material import Material
 from flexstage.parts.shape import Elastic
-from flexstage.parts.stated import is_even, mirror_rows, turns_into_itself
+from flexstage.parts.stated import Stated, halves, is_even, mirror_rows, point_masses, turns_into_itself
+from flexstage.spatial.frame import rigid_inertia
 
 
 class Origin(Enum):
@@ -65,6 +68,18 @@ class Given(Elastic):
         for name in ("centre", "inertia"):
             if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
                 yield Finding(name, "it is stated without a mass", "State the mass too")
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """The inverse of its compliance; half of its mass at each end, both at its centre, or half of the rigid solid that is stated."""
+        return Stated(np.linalg.inv(stack(self.compliance)), self.carried)
+
+    @property
+    def carried(self) -> Array:
+        """Its mass (..., 12, 12) over the twists of both ends at its centre: a given part has no length."""
+        if self.inertia is None and self.centre is None:
+            return point_masses(0.5 * self.mass, 0.5 * self.mass)
+        inertia = np.zeros((3, 3)) if self.inertia is None else tensor(self.inertia)
+        return halves(rigid_inertia(self.mass, inertia, stack(self.centre or (0.0, 0.0, 0.0)), np.zeros(3)))
 
     @property
     def is_round(self) -> bool:

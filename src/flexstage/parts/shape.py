@@ -16,9 +16,10 @@ import numpy as np
 
 from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
-from flexstage.base.number import Number
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH, RATIO, Bound, Quantity
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.material import Material
 from flexstage.parts.profile import (
     Circular,
     Contour,
@@ -34,6 +35,11 @@ from flexstage.parts.profile import (
     single,
     stations_of,
 )
+from flexstage.parts.stated import Stated
+
+_ODD = np.arange(1.0, 8.0, 2.0)
+_ODD_FIFTH_POWERS = 1.00452376279513961613
+"""Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +65,22 @@ class Section:
     def first(self) -> Section:
         """That of the first design, in floats."""
         return Section(single(self.height), single(self.width), self.is_round)
+
+
+def rectangle_torsion(thickness: Number, width: Number) -> Array:
+    """Saint-Venant torsion constant J [m^4] of a rectangle, either side the longer, correct to rounding.
+
+    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
+    section 109). The sum is (31/32) zeta(5) less a series in exp(-n pi c / a), of which four terms leave out less than 1e-17.
+
+    >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
+    (0.140577015, 33.1233)
+    """
+    tall = np.real(width) < np.real(thickness)
+    short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
+    decay = np.exp(-np.pi * (long / short)[..., None] * _ODD)
+    series = _ODD_FIFTH_POWERS - np.sum(2.0 * decay / (1.0 + decay) / _ODD**5, axis=-1)
+    return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
 
 
 def circle(diameter: Number) -> Section:
@@ -108,6 +130,10 @@ class Elastic(Description):
     @property
     def strut(self) -> Number | None:
         """Length [m] over which a part without a shape turns about both of its ends; `None`: it acts in one point."""
+        return None
+
+    def stated(self, material: Material | None) -> Stated | None:  # noqa: ARG002  (kinds that are known by a material need it)
+        """What it is stated to do between its ends; `None` of a part that is known by its shape."""
         return None
 
     @property

@@ -25,6 +25,9 @@ from flexstage.base.quantity import (
     VOLTAGE,
 )
 from flexstage.parts.actuator import ChargedActuator
+from flexstage.parts.material import Material
+from flexstage.parts.shape import rectangle_torsion
+from flexstage.parts.stated import Stated, point_masses
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,24 @@ class ShearPiezo(ChargedActuator):
     def shear_compliance(self) -> Number:
         """What shear alone gives way along y [m/N]: the whole less the bending between parallel faces."""
         return 1.0 / self.stiffness - self.length**3 / (12.0 * self.bending[1])
+
+    @property
+    def compliance(self) -> Array:
+        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, along z as along y but for the bending, L/(E I), L/(G J).
+
+        G follows from what shear gives way, L / (k G A) with k = 5/6 (parabolic); torsion after Saint-Venant. Both faces stay plane.
+        """
+        about_y, about_z = self.bending
+        shear = self.shear_compliance
+        modulus = 1.2 * self.length / (shear * (self.width * self.depth))
+        across = shear + self.length**3 / (12.0 * about_y)
+        turns = (self.length / (modulus * rectangle_torsion(self.width, self.depth)), self.length / about_y, self.length / about_z)
+        diagonal = np.stack(np.broadcast_arrays(1.0 / self.axial_stiffness, 1.0 / self.stiffness, across, *turns), axis=-1)
+        return diagonal[..., None] * np.eye(6)
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """The inverse of its compliance, and half of its mass at each face."""
+        return Stated(np.linalg.inv(self.compliance), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def faults(self) -> Iterator[Finding]:

@@ -23,8 +23,9 @@ from flexstage.base.quantity import (
     STIFFNESS_MATRIX,
 )
 from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.material import Material
 from flexstage.parts.shape import Elastic
-from flexstage.parts.stated import is_even, mirror_rows, symmetry_findings, turns_into_itself
+from flexstage.parts.stated import Stated, is_even, line_mass, mirror_rows, symmetry_findings, turns_into_itself
 
 _Along: TypeAlias = Annotated[Number, STIFFNESS]
 _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
@@ -81,6 +82,10 @@ class Spring(Elastic):
     def mirrored(self) -> Spring:
         """Its stiffness as its own mirror across y shows it."""
         return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """Its whole stiffness, its mass along its length."""
+        return Stated(self.whole, line_mass(self.mass, 0.0 if self.length is None else self.length))
 
     @property
     def push(self) -> Number | None:

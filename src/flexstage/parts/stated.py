@@ -1,8 +1,9 @@
-"""Stated 6x6 matrices of parts: whether they are symmetric, and alike in all directions across x."""
+"""What parts without a shape are stated to do, and their 6x6 matrices: whether they are symmetric, and alike in all directions across x."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +14,64 @@ from flexstage.spatial.frame import mirror
 
 _SLACK = 1e-9
 _QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+
+
+@dataclass(frozen=True, eq=False)
+class Stated:
+    """What a part without a shape is stated to do between its ends, about its centre and in its frame, SI.
+
+    `stiffness` (..., 6, 6) of the second end against the first, `mass` (..., 12, 12) over the twists of both, viscous `damping`
+    (..., 6, 6) where it states some. It is data: no theory of elastic parts is in it.
+    """
+
+    stiffness: Array
+    mass: Array
+    damping: Array | None = None
+
+
+def point_masses(first: Number, second: Number) -> Array:
+    """Masses (..., 12, 12) that the two bodies carry at a part's centre [kg], without rotary inertia.
+
+    >>> point_masses(1.0, 2.0).diagonal().tolist()
+    [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0]
+    """
+    along = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    ends = np.broadcast_arrays(*(np.asarray(mass)[..., None] * along for mass in (first, second)))
+    return np.concatenate(ends, axis=-1)[..., None] * np.eye(12)
+
+
+def halves(inertia: Array) -> Array:
+    """Half of a rigid solid's 6x6 (..., 6, 6) with each end (..., 12, 12).
+
+    >>> halves(4.0 * np.eye(6)).diagonal()[5:7].tolist()
+    [2.0, 2.0]
+    """
+    none = np.zeros_like(inertia)
+    return 0.5 * np.concatenate([np.concatenate([inertia, none], axis=-1), np.concatenate([none, inertia], axis=-1)], axis=-2)
+
+
+def line_mass(mass: Number, length: Number) -> Array:
+    """Consistent mass (..., 12, 12) of a straight line of uniform mass between its ends, at +-L/2 from the centre; without length, there.
+
+    Its points move as s between the ends, v = (1 - s) v_a + s v_b: m/3 at each end, m/6 between them, so that a spring held at one end adds
+    a third of its mass to the other.
+
+    >>> line_mass(6.0, 0.0)[0, [0, 6]].tolist()
+    [2.0, 1.0]
+    """
+    half = 0.5 * np.asarray(length)
+    first, second = _end(-half), _end(half)
+    ends = np.concatenate([first, np.zeros_like(first)], axis=-1), np.concatenate([np.zeros_like(second), second], axis=-1)
+    own, mixed = (np.swapaxes(one, -1, -2) @ other for one, other in ((ends[0], ends[0]), (ends[0], ends[1])))
+    other = np.swapaxes(ends[1], -1, -2) @ ends[1]
+    return np.asarray(mass)[..., None, None] * ((own + other) / 3.0 + (mixed + np.swapaxes(mixed, -1, -2)) / 6.0)
+
+
+def _end(arm: Array) -> Array:
+    """Displacement (..., 3, 6) at x = `arm` (...) per twist at the centre."""
+    across = np.zeros((3, 6))
+    across[1, 5], across[2, 4] = 1.0, -1.0
+    return np.eye(3, 6) + arm[..., None, None] * across
 
 
 def is_even(freedoms: tuple[Freedom, ...]) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.finding import Finding
-from flexstage.base.number import Number
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import (
     CURRENT,
     DISPLACEMENT,
@@ -31,9 +31,17 @@ from flexstage.base.quantity import (
     Bound,
 )
 from flexstage.parts.actuator import ForceLimit, ThrustActuator
+from flexstage.parts.material import Material
 from flexstage.parts.shape import Order
+from flexstage.parts.stated import Stated, point_masses
 
 _DUTY = Bound(low=0.0, high=1.0, open_low=True)
+_AXIAL: Array = np.diag(np.eye(6)[0])
+
+
+def _axial(value: Number) -> Array:
+    """A 6x6 with one entry, along x."""
+    return np.asarray(value)[..., None, None] * _AXIAL
 
 
 class Supply(Enum):
@@ -101,6 +109,12 @@ class VoiceCoil(ThrustActuator):
         if self.drive is Supply.CURRENT or self.resistance is None:
             return self.damping
         return self.damping + self.force_constant**2 / self.resistance
+
+    def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
+        """The magnets' stiffness and the damping along x, both sides' masses."""
+        sides = (self.mass, self.magnet_mass)
+        mass = point_masses(*(sides if self.coil is CoilSide.FIRST else sides[::-1]))
+        return Stated(_axial(self.stiffness), mass, _axial(self.viscous_damping))
 
     @property
     def limits(self) -> Iterator[ForceLimit]:

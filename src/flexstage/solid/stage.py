@@ -18,9 +18,11 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW, Called
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.ties import stated_links
 from flexstage.solid.read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
 from flexstage.solid.stress import LinkStress, link_stress
 from flexstage.spatial.frame import COMPONENTS
@@ -71,6 +73,11 @@ class SolidStage(InNotebook):
         """What the elasticity of the bodies takes from the platform's modes."""
         platform = list(self.modes.platform)
         return BodyCost(self.blocks[platform], self.flexible[platform])
+
+    @property
+    def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
+        """The links without a shape, with the kind of their part: they have the stiffness and mass that they state, as in any model."""
+        return stated_links(expand(self.read.mechanism))
 
     @property
     def elements(self) -> Annotated[int, VIEW]:

@@ -12,6 +12,7 @@ from flexstage.base.labelled import NOISE
 from flexstage.show.display import NO_VALUE, align_numbers, format_value, number, percent, preferred_unit
 from flexstage.show.table import Cell, Column, Mark, Table, make_table, matrix_table, row_table
 from flexstage.solid.fea.hinge_form import NO_ESTIMATE
+from flexstage.solid.fea.ties import in_words
 
 if TYPE_CHECKING:
     from flexstage.solid.calibration import Calibration
@@ -152,8 +153,13 @@ def block_table(stage: SolidStage) -> Table:
         for number, index in enumerate(stage.modes.platform)
     ]
     heads = ["platform mode", "name", Column("frequency", "Hz"), Column("strain energy in bodies"), Column("cost in frequency")]
-    note = "Cost: what bodies of infinite stiffness would give back, to first order of the share."
-    return make_table("Elasticity of the bodies", heads, rows, notes=[note])
+    notes = ["Cost: what bodies of infinite stiffness would give back, to first order of the share.", *_stated_note(stage.as_stated)]
+    return make_table("Elasticity of the bodies", heads, rows, notes=notes)
+
+
+def _stated_note(stated: Mapping[str, str]) -> list[str]:
+    """What is said of links that no finite elements were made of."""
+    return [f"Not meshed: {in_words(stated)} ({', '.join(stated)})."] if stated else []
 
 
 def verification_table(name: str, rows: tuple[Row, ...]) -> Table:
@@ -222,6 +228,7 @@ def verdict_table_of(found: Verification) -> Table:
         "Theory: beam theory for hinges, the lumped model for units and stage.",
         "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
         "FEA's error is estimated from two resolutions: it is no bound.",
+        *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
     return make_table("Which to trust", ["what", "verdict"], rows, notes=notes)

@@ -18,7 +18,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
-from flexstage.mechanism.drawn import calibrated_parts
+from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -26,6 +26,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import substitute_parts
+from flexstage.solid.fea.ties import stated_links
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.solid.read import STANDARD_SOLIDS, Solids
 from flexstage.solid.resolution import DEFAULT, Converged, Resolution, converge
@@ -111,6 +112,11 @@ class Verification(InNotebook):
     def groups(self) -> dict[str, tuple[Row, ...]]:
         """The rows by what they are about, in order."""
         return {name: tuple(row for row in self.rows if row.group == name) for name in dict.fromkeys(row.group for row in self.rows)}
+
+    @property
+    def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
+        """The links without a shape, with the kind of their part: theory and FEA alike have the stiffness and mass that they state."""
+        return stated_links(expand(with_drawn_parts(self.mechanism)))
 
     @property
     def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:

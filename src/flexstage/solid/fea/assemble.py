@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import (
     Motions,
     absolute,
+    exerted_wrenches,
     gauge_rows,
     imposed_strokes,
     input_channels,
@@ -24,11 +26,13 @@ from flexstage.models.linear.channels import (
     wrench_places,
 )
 from flexstage.models.linear.model import Contribution, LinearModel, assemble
+from flexstage.parts.part import actuator_of
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.casing import casing, end_face_twist
 from flexstage.solid.fea.component import Component, Interface, Joint, groups, is_elastic
 from flexstage.solid.fea.fineness import WARPS
 from flexstage.solid.fea.superelement import Superelement
+from flexstage.solid.fea.ties import Tie, in_words, inner_coordinates, link_tie, stated_links, stated_of, superelement_tie
 from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, spatial_rotation, transport, twist_transform
 
 _SINGULAR = 1e-13
@@ -51,6 +55,7 @@ class _Model:
     blocks: Mapping[str, slice]
     placed: tuple[Placed, ...]
     twists: Mapping[str, Array]
+    seats: Mapping[str, tuple[Array, Array]]
 
     @property
     def size(self) -> int:
@@ -65,6 +70,25 @@ class _Model:
     @property
     def motions(self) -> Motions:
         return Motions(self.twists, self.twist)
+
+    def end(self, name: str, body: str, frame: Frame) -> Array:
+        """The twist (6, N) at a frame of where a part without a shape ends: of the surface there, or of a rigid body."""
+        if name not in self.seats:
+            return self.twist(body, frame)
+        point, twist = self.seats[name]
+        return twist_transform(frame, point) @ twist
+
+    @cached_property
+    def ties(self) -> dict[str, Tie]:
+        """The parts without a shape, links before superelements."""
+        links = {name: (link, stated_of(link)) for name, link in self.assembly.links.items()}
+        found = {
+            name: link_tie(link, stated, self.end, _loss_factor(self, name)) for name, (link, stated) in links.items() if stated is not None
+        }
+        rows = np.eye(self.size)
+        return found | {
+            name: superelement_tie(element, self.end, rows[self.blocks[name]]) for name, element in self.assembly.superelements.items()
+        }
 
 
 def linear_model(
@@ -95,7 +119,8 @@ def linear_model(
         base_inertia=_carry_wrench(model),
         damping=mechanism.damping,
         idle=(),
-        provenance=provenance,
+        provenance=", ".join(text for text in (provenance, in_words(stated_links(assembly))) if text),
+        viscous={name: tie.damping for name, tie in model.ties.items() if tie.damping is not None},
     )
 
 
@@ -109,7 +134,15 @@ def _join(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component
     for item in placed:
         for body, mean in zip(item.component.bodies, item.element.bodies.values(), strict=True):
             twists[body] = spatial_rotation(item.component.place.rotation) @ mean @ item.operator
-    return _Model(mechanism, assembly, names, blocks, placed, twists)
+    return _Model(mechanism, assembly, names, blocks, placed, twists, dict(_seats(placed)))
+
+
+def _seats(placed: tuple[Placed, ...]) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Point (3,) and twist (6, N) there, in the stage's axes, of the surface around every end of a part without a shape, by its name."""
+    for item in placed:
+        turn = spatial_rotation(item.component.place.rotation)
+        for end, rows in zip(item.component.seats, item.element.seats.values(), strict=True):
+            yield end.name, (item.component.place.point(end.point), turn @ rows @ item.operator)
 
 
 def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
@@ -148,8 +181,12 @@ def _coordinates(assembly: Assembly, parts: tuple[tuple[Component, Superelement]
                 add(joint.name, [f"{joint.name}.{name}" for name in COMPONENTS])
             if _yielding_coordinates(item, element) and _warps(joint) not in blocks:
                 add(_warps(joint), [f"{joint.name}.warp{number + 1}" for number in range(WARPS)])
+        if component.floats:
+            add(component.name, [f"{component.name}.{name}" for name in COMPONENTS])
         inner = element.size - element.boundary_coordinates
         add(_inside(component), [f"{component.name}~{number + 1}" for number in range(inner)])
+    for name, link in assembly.superelements.items():
+        add(name, list(inner_coordinates(link)))
     return blocks, tuple(names)
 
 
@@ -175,6 +212,8 @@ def _operator(assembly: Assembly, component: Component, element: Superelement, b
         else:
             at = component.place.point(joint.frame.position)
             result[rows, blocks[joint.body]] = turn @ transport(at - assembly.bodies[joint.body].reference)
+    if component.floats:
+        result[:6, blocks[component.name]] = spatial_rotation(component.place.rotation.T)
     yielding = [item.joint for item in component.interfaces if _yielding_coordinates(item, element)]
     for number, joint in enumerate(yielding):
         start = 6 * element.interfaces + WARPS * number
@@ -196,6 +235,8 @@ def _stiffness(model: _Model) -> Iterator[tuple[str, Contribution]]:
         law = casing(link)
         if law is not None:
             yield f"{name} (casing)", Contribution(_across(_holder(model, name), link), law, _loss_factor(model, name))
+    for name, tie in model.ties.items():
+        yield name, tie.strain
 
 
 def _across(item: Placed, link: PlacedLink) -> Array:
@@ -229,6 +270,8 @@ def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
             matrix = moving_inertia(model.mechanism, body)
             if matrix is not None:
                 yield name, Contribution(model.twists[name], matrix)
+    for name, tie in model.ties.items():
+        yield f"{name} (link)", tie.inertia
 
 
 def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterator[tuple[str, Contribution]]:
@@ -260,11 +303,15 @@ def _inputs(model: _Model) -> tuple[Array, dict[str, Array]]:
     drives = model.assembly.actuators
     wrenches = [rows.T for rows in place_twists(wrench_places(model.assembly), model.motions)]
     force = np.hstack([np.zeros((model.size, len(drives))), *wrenches])
-    return force, imposed_strokes(model.assembly, {link: _stroke(model, link) for link in drives.values()})
+    for name, wrench in exerted_wrenches(model.assembly).items():
+        force = force + model.ties[name].strain.operator.T @ np.real(wrench)
+    return force, imposed_strokes(model.assembly, {link: _stroke(model, link) for link in model.assembly.strokes.values()})
 
 
 def _stroke(model: _Model, link: str) -> Array:
-    """What a link's unit stroke imposes on its component's coordinates (n,)."""
+    """What a link's unit stroke imposes on its component's coordinates (n,), or between its faces (6,) where it has no shape."""
+    if link in model.ties:
+        return np.real(actuator_of(model.assembly.links[link].part).free_deformation)
     item = _holder(model, link)
     number = [name for name in _links(item.component) if isinstance(model.assembly.links[name].part, Piezo)].index(link)
     return list(item.element.free_strokes.values())[number]
@@ -278,13 +325,25 @@ def _outputs(model: _Model, imposed: Mapping[str, Array]) -> tuple[Array, Array]
     rows = [*place_twists(twist_places(model.assembly), model.motions), *gauge_rows(model.assembly, model.motions)]
     inputs = len(input_channels(model.assembly))
     passed = [np.zeros((len(row), inputs)) for row in rows]
-    for name, link in model.assembly.links.items():
-        item = _holder(model, name)
-        law, sleeve = list(item.element.resultants.values())[_links(item.component).index(name)], casing(link)
-        own = law @ item.operator
-        rows.append(own if sleeve is None else own + sleeve @ _across(item, link))
-        passed.append(-law @ imposed[name] if name in imposed else np.zeros((6, inputs)))
+    exerted = exerted_wrenches(model.assembly)
+    for name in (*model.assembly.links, *model.assembly.superelements):
+        law, row = _resultant(model, name)
+        rows.append(row)
+        own = -law @ imposed[name] if name in imposed else np.zeros((len(row), inputs))
+        passed.append(own - np.real(exerted[name]) if name in exerted else own)
     return np.vstack(rows), np.vstack(passed)
+
+
+def _resultant(model: _Model, name: str) -> tuple[Array, Array]:
+    """What makes the wrenches (w,) that pass through a link of what strains it, and the same of all coordinates (w, N)."""
+    tie = model.ties.get(name)
+    if tie is not None:
+        law = tie.passed @ tie.strain.law
+        return law, law @ tie.strain.operator
+    item, link = _holder(model, name), model.assembly.links[name]
+    law, sleeve = list(item.element.resultants.values())[_links(item.component).index(name)], casing(link)
+    own = law @ item.operator
+    return law, own if sleeve is None else own + sleeve @ _across(item, link)
 
 
 def _rigid(model: _Model) -> Array:
@@ -321,4 +380,6 @@ def _carry_wrench(model: _Model) -> Array:
         for load in loads[1:] if is_elastic(model.assembly, name) else loads:
             matrix = rigid_inertia(load.mass, load.inertia, load.centre, body.reference)
             total += model.twists[name].T @ matrix @ transport(body.reference - centre)
+    for tie in model.ties.values():
+        total += tie.inertia.operator.T @ tie.inertia.law @ tie.carried @ transport(-centre)
     return total

@@ -20,6 +20,7 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.piece import Form, Piece, end_area, form_of, medium, span, stack_medium
+from flexstage.solid.fea.ties import End, ends
 from flexstage.spatial.frame import Frame, identity
 
 
@@ -51,7 +52,8 @@ class Interface:
 class Component:
     """One solid in its own axes: `pieces`, the `interfaces` it is joined by, the joints `fixed` to the ground.
 
-    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage.
+    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends
+    of parts without a shape on it.
     """
 
     name: str
@@ -60,6 +62,12 @@ class Component:
     fixed: tuple[Joint, ...]
     bodies: Mapping[str, Array]
     place: Frame
+    seats: tuple[End, ...] = ()
+
+    @property
+    def floats(self) -> bool:
+        """Whether no joint holds it: it hangs on parts without a shape alone, and moves as a whole."""
+        return not self.interfaces and not self.fixed
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +150,9 @@ def is_elastic(assembly: Assembly, body: str) -> bool:
 
 
 def _forms(assembly: Assembly) -> dict[str, Form]:
-    drawn = {name: form_of(link) for name, link in (*assembly.links.items(), *assembly.superelements.items())}
+    drawn = {name: form_of(link) for name, link in assembly.links.items()}
     require(form for form in drawn.values() if isinstance(form, Finding))
-    return {name: form for name, form in drawn.items() if not isinstance(form, Finding)}
+    return {name: form for name, form in drawn.items() if form is not None and not isinstance(form, Finding)}
 
 
 def _group(name: str) -> str:
@@ -200,6 +208,9 @@ def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> 
         fixed=tuple(_place(joint, place) for joint in fixed),
         bodies={body: _in_frame(Frame(np.eye(3), graph.assembly.bodies[body].reference), place).position for body in bodies},
         place=place,
+        seats=tuple(
+            replace(end, point=_in_frame(Frame(np.eye(3), end.point), place).position) for end in ends(graph.assembly) if end.body in bodies
+        ),
     )
 
 

@@ -38,6 +38,8 @@ def _pieces(component: Component) -> Iterator[str]:
         yield f"fixed {_frame(joint.frame)};"
     for at in component.bodies.values():
         yield f"body {_numbers(at)};"
+    for end in component.seats:
+        yield f"seat {_numbers(end.point)} {bodies.index(end.body)};"
 
 
 def _frame(frame: Frame) -> str:

@@ -17,6 +17,8 @@ from flexstage.spatial.frame import Frame
 _PER_METRE = 1.0 / MILLIMETRES
 """Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
 _PER_VOLUME = 1.0 / MILLIMETRES**3
+_BELL = 6
+"""By how much the order of integration is raised where a bell is integrated."""
 
 
 @dataclass(frozen=True)
@@ -286,6 +288,38 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
     for axis in range(6):
         form = ngsolve.LinearForm(space.space)
         form += ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * ngsolve.ds(_escape(face))
+        form.Assemble()
+        rows[axis] = form.vec.FV().NumPy()
+    return np.linalg.solve(rows @ rigid(space, frame), rows)
+
+
+def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
+    """Rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
+
+    Each bit of surface counts by exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the least of all: on a flat face a bell
+    around the foot of the point, on a ball about its centre all of it alike.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> at = np.array([0.1, 0.0, 0.0])
+    >>> rows = seat_motion(space, at, 0.005, np.ones(space.meshed.mesh.GetNE(ngsolve.BND), dtype=bool))
+    >>> bool(np.allclose(rows @ rigid(space, Frame(np.eye(3), at)), np.eye(6)))
+    True
+    """
+    frame, mesh = Frame(np.eye(3), point), space.meshed.mesh
+    used = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.BND)])[faces]
+    places = np.array([mesh.vertices[int(number)].point for number in np.unique(used)]) / MILLIMETRES
+    least = float(np.min(np.sum((places - point) ** 2, axis=1)))
+    away = sum((coordinate * (1.0 / MILLIMETRES) - float(at)) ** 2 for coordinate, at in zip(_coordinates(), point, strict=True))
+    bell = ngsolve.exp((least - away) * (1.0 / reach**2))
+    v = space.space.TestFunction()
+    rows = np.empty((6, space.size))
+    for axis in range(6):
+        form = ngsolve.LinearForm(space.space)
+        around = ngsolve.ds(definedonelements=ngsolve.BitArray(faces.tolist()), bonus_intorder=_BELL)
+        form += bell * ngsolve.InnerProduct(_rigid_motion(frame, axis), v) * around
         form.Assemble()
         rows[axis] = form.vec.FV().NumPy()
     return np.linalg.solve(rows @ rigid(space, frame), rows)

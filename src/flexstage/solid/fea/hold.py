@@ -56,6 +56,8 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
+    if component.floats:
+        return _afloat(component, space, elastic, mass)
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
     plain = factorise(space, shift_stiffness(space, elastic, mass, _SHIFT) if unsupported else elastic)
@@ -63,6 +65,14 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
         faces = _face_motions(component.interfaces, space, elastic, plain)
         return Support(faces, _face_warpings([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
+    held, solve = _held(plain, means)
+    free = np.split(held, len(loose), axis=1)
+    columns = [free[loose.index(item)] if item in loose else _face_motions([item], space, elastic, solve) for item in component.interfaces]
+    return Support(np.hstack(columns), np.zeros((space.size, 0)), solve)
+
+
+def _held(plain: Solver, means: Array) -> tuple[Array, Solver]:
+    """Motions (n, m) that make one of some means (m, n) a unit and the others nought, and the solver with all of them nought."""
     carried = plain(means.T)
     gain = np.linalg.inv(means @ carried)
 
@@ -70,9 +80,25 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
         motion = plain(forces)
         return motion - carried @ (gain @ (means @ motion))
 
-    free = np.split(carried @ gain, len(loose), axis=1)
-    columns = [free[loose.index(item)] if item in loose else _face_motions([item], space, elastic, solve) for item in component.interfaces]
-    return Support(np.hstack(columns), np.zeros((space.size, 0)), solve)
+    return carried @ gain, solve
+
+
+def middle(component: Component) -> Array:
+    """The point (3,) about which a component that floats moves: the reference of its first body.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from dataclasses import replace
+    >>> middle(replace(bar(), bodies={"bar": np.ones(3)})).tolist()
+    [1.0, 1.0, 1.0]
+    """
+    return next(iter(component.bodies.values()))
+
+
+def _afloat(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm) -> Support:
+    """What nothing holds: it moves rigidly, and all else has neither momentum nor angular momentum."""
+    motion = rigid(space, Frame(np.eye(3), middle(component)))
+    plain = factorise(space, shift_stiffness(space, elastic, mass, _SHIFT))
+    return Support(motion, np.zeros((space.size, 0)), _held(plain, times(mass, motion).T)[1])
 
 
 def _face_motions(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:

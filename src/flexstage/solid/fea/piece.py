@@ -11,9 +11,10 @@ from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Number
 from flexstage.base.register import Register
-from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement
+from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.body import Cylinder, Solid
 from flexstage.parts.freedom import Freedom
+from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo
@@ -95,8 +96,8 @@ def stack_medium(stack: Piezo) -> Medium:
     return Medium(_single(stack.stiffness) * size / area, _single(stack.poisson), _single(stack.mass) / (area * size))
 
 
-def form_of(link: PlacedLink | PlacedSuperelement) -> Form | Finding:
-    """The form of a link's part, or why it has none.
+def form_of(link: PlacedLink) -> Form | Finding | None:
+    """The form of a link's part, or why it has none; `None` of a part without a shape that states what it does.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
@@ -110,7 +111,10 @@ def form_of(link: PlacedLink | PlacedSuperelement) -> Form | Finding:
         )
     if isinstance(part, Shaped):
         return part
-    return Finding(link.name, f"a part of kind {part.kind} has no shape", "Give it a form that can be drawn, or join rigid bodies")
+    if not isinstance(part, Joint) and part.stated(link.material) is not None:
+        return None
+    what = f"a part of kind {part.kind} has no shape, and states no stiffness"
+    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "given")')
 
 
 def form_digest(form: Form) -> str:

@@ -7,7 +7,7 @@ held, to a wrench on each body and to each stroke: statics under these loads is 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import ngsolve
 import numpy as np
@@ -16,20 +16,36 @@ import scipy
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.cad import region
 from flexstage.solid.fea.component import Component, groups
 from flexstage.solid.fea.contribution import contributions
-from flexstage.solid.fea.field import Field, Solver, apply_form, degrees_of, field, inertia, rigid, stiffness, stroke_force, times
+from flexstage.solid.fea.field import (
+    Field,
+    Solver,
+    apply_form,
+    degrees_of,
+    field,
+    inertia,
+    rigid,
+    seat_motion,
+    stiffness,
+    stroke_force,
+    times,
+)
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hold import is_rigid, support
+from flexstage.solid.fea.hold import is_rigid, middle, support
 from flexstage.solid.fea.mesh import PieceMesh, centroids
-from flexstage.solid.fea.piece import span
+from flexstage.solid.fea.piece import span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
-from flexstage.solid.fea.skin import skin
+from flexstage.solid.fea.skin import skin, surface_owners
 from flexstage.solid.fea.superelement import Superelement
+from flexstage.solid.fea.ties import End
 from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-13
 _EIGENVALUES = 1e-9
+_REACH = 0.5
+"""How far around the end of a part without a shape a body's surface counts, over the least dimension of its solid there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +80,12 @@ def reduce_mesh(
     report(Stage.REDUCING, 0.0)
     strokes = {str(number): force for number, force in _strokes(problem).items()}
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
+    seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
+    loads += [rows.T for rows in seats.values()]
     inner = _independent_columns(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
     basis = np.hstack([problem.faces, problem.warps, inner])
-    return _project(problem, basis, strokes, report)
+    return replace(_project(problem, basis, strokes, report), seats={number: rows @ basis for number, rows in seats.items()})
 
 
 def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report: Report) -> _Problem:
@@ -98,6 +116,15 @@ def _wrenches(problem: _Problem, body: str) -> Array:
     motion = rigid(problem.field, frame)
     momentum = apply_form(inertia(problem.field, _elements(problem, body), assemble=False), motion)
     return momentum @ np.linalg.inv(motion.T @ momentum)
+
+
+def _seat(problem: _Problem, end: End) -> Array:
+    """Rows (6, n) of the twist of the body's surface around the end of a part without a shape."""
+    own = [number for number, piece in enumerate(problem.component.pieces) if piece.body == end.body]
+    pieces = [problem.component.pieces[number] for number in own]
+    nearest = min(pieces, key=lambda piece: float(region(piece, end.point[None])[0]))
+    faces = np.isin(surface_owners(problem.field.meshed.mesh, problem.field.meshed.owner), own)
+    return seat_motion(problem.field, end.point, _REACH * thinnest(nearest.form), faces)
 
 
 def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
@@ -175,7 +202,7 @@ def _project(problem: _Problem, basis: Array, strokes: Mapping[str, Array], repo
     carried = basis.T @ times(problem.inertia, everything)
     projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
-        interfaces=len(component.interfaces),
+        interfaces=len(component.interfaces) + component.floats,
         warps=problem.warps.shape[1],
         stiffness={name: elastic[name] for name in names},
         inertia={name: mass[name] for name in names},
@@ -220,6 +247,8 @@ def _free_stroke(problem: _Problem, number: int, force: Array) -> Array:
 
 def _rigid_coordinates(component: Component, size: int) -> Array:
     result = np.zeros((size, 6))
+    if component.floats:
+        result[:6] = transport(middle(component))
     for number, item in enumerate(component.interfaces):
         arm = item.joint.frame.position
         result[6 * number : 6 * number + 6] = transport(arm)

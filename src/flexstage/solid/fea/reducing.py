@@ -80,7 +80,7 @@ class Reduce(ComponentJob):
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
-        return 6 * (len(part.interfaces) + len(part.bodies)) + warps + stacks + self.reduction.modes
+        return 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""

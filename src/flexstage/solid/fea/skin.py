@@ -54,7 +54,7 @@ def skin(space: Field, basis: Array) -> Skin:
         motion[triangles.ravel(), :, number] = function(points)
         found = np.einsum("ab,tbc->tac", _CONTINUED, np.asarray(wanted(within)).reshape(-1, 3, 6)).reshape(-1, 6)
         stress[..., number] = _sum_by_vertex(triangles, weights * found, len(used)) / shares
-    return Skin(places, triangles, motion, stress, _owners(mesh, space.meshed.owner))
+    return Skin(places, triangles, motion, stress, surface_owners(mesh, space.meshed.owner))
 
 
 def _weights(points: Any) -> Array:
@@ -69,7 +69,7 @@ def _sum_by_vertex(triangles: Array, values: Array, count: int) -> Array:
     return total
 
 
-def _owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
+def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
     """The piece of the element behind each triangle."""
     behind = [mesh[face.facets[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)]
     return owner[np.array(behind, dtype=int)]

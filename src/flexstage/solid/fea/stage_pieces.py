@@ -37,9 +37,9 @@ class Stage:
 
 
 def stage_pieces(mechanism: Mechanism) -> Stage:
-    """The pieces of a stage.
+    """The pieces of a stage; parts that state their stiffness and have no shape are none.
 
-    Raises `DesignError` naming every link that has no shape.
+    Raises `DesignError` naming every link that has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = stage_pieces(double_triangle())
@@ -47,7 +47,7 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
     (27, 'steel', 'platform')
     """
     assembly = expand(mechanism)
-    forms = {name: form_of(link) for name, link in (*assembly.links.items(), *assembly.superelements.items())}
+    forms = {name: form for name, link in assembly.links.items() if (form := form_of(link)) is not None}
     require(form for form in forms.values() if isinstance(form, Finding))
     pieces: dict[str, Piece] = {}
     materials: dict[str, str] = {}
@@ -56,15 +56,15 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
         for name, placed in solids.items():
             pieces[name] = Piece(name, placed.solid, medium(mechanism.materials[placed.solid.material]), placed.frame, body)
             materials[name] = placed.solid.material
-    for name, link in assembly.links.items():
-        form = forms[name]
+    for name, form in forms.items():
+        link = assembly.links[name]
         if isinstance(form, Finding):
             continue
         if isinstance(form, Piezo):
             pieces[name], materials[name] = Piece(name, form, stack_medium(form), link.frame), link.link.part
         elif link.material is not None:
             pieces[name], materials[name] = Piece(name, form, medium(link.material), link.frame), form.material
-    joints = {name: link_joints(link, pieces[name].form) for name, link in assembly.links.items()}
+    joints = {name: link_joints(assembly.links[name], pieces[name].form) for name in forms}
     return Stage(assembly, pieces, {outline.name: outline for outline in outlines(assembly)}, joints, materials)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from flexstage.base.number import Array
 
@@ -30,7 +30,9 @@ class Superelement:
     `body_inertia` (6, 6) the inertia they carry (what is left of `inertia` is elastic motion within the body),
     `resultants` (6, n) at links' centres in their frames, `strokes` (n,) forces of a unit free stroke with the `free` coordinates of the
     unconstrained stroke and `stroke_resultants` (6,) it takes off. `rigid` (n, 6) is a rigid motion about the component's origin (only
-    where nothing is fixed), `carried` (n, 6) the inertial forces of a unit rigid acceleration.
+    where nothing is fixed), `carried` (n, 6) the inertial forces of a unit rigid acceleration. `seats` (6, n) are the twists, at their
+    points, of the surface around the ends of parts without a shape. A component that floats has one interface: itself, moved rigidly about
+    the reference of its first body.
     """
 
     interfaces: int
@@ -47,6 +49,7 @@ class Superelement:
     skin: Skin
     freedoms: int
     elements: int
+    seats: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def boundary_coordinates(self) -> int:
