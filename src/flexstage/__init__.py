@@ -72,6 +72,7 @@ HOMES = {
     "show.viewer.view": "View view",
     "show.matlab": "to_mat",
     "show.sheets": "to_csv to_pandas to_xarray",
+    "show.workbook": "to_xlsx",
 }
 _of_core, _names = lazy_attributes(__name__, HOMES)
 

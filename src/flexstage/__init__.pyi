@@ -249,6 +249,9 @@ from flexstage.show.viewer.view import (
     View as View,
     view as view,
 )
+from flexstage.show.workbook import (
+    to_xlsx as to_xlsx,
+)
 
 __version__: str
 HOMES: dict[str, str]

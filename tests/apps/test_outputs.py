@@ -6,6 +6,8 @@ import csv
 import json
 import os
 import stat
+import zipfile
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,7 @@ from scipy.io import loadmat
 
 from flexstage.analysis import complete
 from flexstage.analysis.modes import modes
+from flexstage.apps.cli.commands import COMMANDS
 from flexstage.mechanism.store import load
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -25,7 +28,18 @@ BAD_TARGETS = {
     ("--json", "folder"): "it is a folder",
     ("--mat", "stage.toml"): "the design file",
     ("--report", "stage.toml"): "the design file",
+    ("--xlsx", "stage.toml"): "the design file",
 }
+
+
+def test_every_command_that_writes_tables_writes_workbooks(flexstage: Command, tmp_path: Path) -> None:
+    options = {each.name: signature(each.load()).parameters for each in COMMANDS}
+    assert {name for name, known in options.items() if "csv" in known} == {name for name, known in options.items() if "xlsx" in known}
+    ended = flexstage("modes", "stage.toml", "--xlsx", "found.xlsx", "--json", "-")
+    assert ended.document["kind"] == "modes"
+    with zipfile.ZipFile(tmp_path / "found.xlsx") as files:
+        text = files.read("xl/sharedStrings.xml").decode()
+    assert ended.document["physics_digest"] in text
 
 
 @pytest.mark.parametrize("option", sorted(BAD_TARGETS))

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import functools
 import io
+import re
+import zipfile
+from xml.etree.ElementTree import Element, fromstring
 
 import numpy as np
 import pytest
@@ -10,6 +15,7 @@ import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
 
+import flexstage
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.random_response import Spectrum, random_response
 from flexstage.base.document import plain
@@ -21,6 +27,8 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.matlab import to_mat
 from flexstage.show.sheets import to_csv, to_pandas, to_xarray
+from flexstage.show.workbook import sheet_names, to_xlsx
+from tests.conftest import examples
 
 STAGE = case("parallelogram")
 MODEL = lumped(STAGE)
@@ -76,6 +84,80 @@ def test_a_response_is_labelled_on_all_axes() -> None:
     np.testing.assert_array_equal(stored["density"], found.density)
     np.testing.assert_array_equal(stored["frequency_hz"], found.frequencies)
     assert to_pandas(found)["outputs"].loc["platform.x", "rms"] == found.rms[0]
+
+
+def _xml(files: zipfile.ZipFile, name: str) -> Element:
+    return fromstring(files.read(f"xl/{name}"))  # noqa: S314 (written a moment ago)
+
+
+def workbook(data: bytes) -> dict[str, dict[tuple[int, int], object]]:
+    """The cells of a workbook by sheet, row and column, from the XML that it consists of."""
+    space = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
+    with zipfile.ZipFile(io.BytesIO(data)) as files:
+        assert {each.date_time for each in files.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        strings = _xml(files, "sharedStrings.xml").findall("si", space)
+        texts = ["".join(each.itertext()) for each in strings]
+        names = [each.get("name", "") for each in _xml(files, "workbook.xml").find("sheets", space) or ()]
+        sheets = [_xml(files, f"worksheets/sheet{number}.xml") for number in range(1, len(names) + 1)]
+    found: dict[str, dict[tuple[int, int], object]] = {name: {} for name in names}
+    for name, sheet in zip(names, sheets, strict=True):
+        for cell in sheet.iterfind(".//c", space):
+            value = cell.findtext("v", None, space)
+            letters, row = re.fullmatch(r"([A-Z]+)(\d+)", cell.get("r", "")).groups()
+            column = functools.reduce(lambda total, letter: 26 * total + ord(letter) - 64, letters, 0)
+            if value is not None:
+                sort = cell.get("t", "n")
+                found[name][int(row) - 1, column - 1] = {"s": lambda v: texts[int(v)], "b": lambda v: v == "1", "n": float}[sort](value)
+    return found
+
+
+def test_a_workbook_has_the_cells_of_the_csv_files_and_units_below_its_heads(lost: LostMotion) -> None:
+    found = workbook(to_xlsx(lost))
+    assert to_xlsx(lost) == to_xlsx(lost)
+    *sheets, last = found
+    assert last == "provenance"
+    assert found[last][2, 1] == flexstage.__version__
+    assert len(sheets) == len(to_csv(lost))
+    for name, (path, text) in zip(sheets, to_csv(lost).items(), strict=True):
+        assert (path or "result").endswith(name)
+        head, *rows = csv.reader(io.StringIO(text))
+        cells = found[name]
+        units = [cells.get((1, column), "") for column in range(len(head))]
+        heads = [cells[0, column] for column in range(len(head))]
+        assert [f"{each} [{unit}]" if f"[{unit}]" in old else each for each, unit, old in zip(heads, units, head, strict=True)] == head
+        shown = [[cells.get((row, column), "") for column in range(len(head))] for row in range(2, 2 + len(rows))]
+        for read, written in zip(shown, rows, strict=True):
+            same = [
+                float(old) == pytest.approx(new, rel=1e-15) if isinstance(new, float) else old == new
+                for new, old in zip(read, written, strict=True)
+            ]
+            assert all(same), (read, written)
+    assert any(isinstance(value, float) for value in found["actuators"].values())
+
+
+@given(st.dictionaries(NAMES, DOCUMENTS, max_size=4))
+@examples(20, 300)
+def test_no_number_of_a_document_is_lost_in_its_workbook(document: dict[str, object]) -> None:
+    found = workbook(to_xlsx(document))
+    read = [each for sheet in found.values() for (row, _), each in sheet.items() if row > 1 and isinstance(each, float)]
+    heads = [values for _, part in parts(document) if isinstance(part, Sheet) for values in part.heads.values()]
+    written = [float(each) for values in heads for each in values if isinstance(each, (int, float)) and not isinstance(each, bool)]
+    np.testing.assert_allclose(sorted(read), sorted(written), rtol=1e-15)
+
+
+@given(st.lists(st.text("aA[]:*?/\\'é. ", max_size=40), max_size=6))
+def test_names_of_sheets_are_those_that_excel_takes(paths: list[str]) -> None:
+    names = sheet_names([*paths, "History"])
+    assert len({name.lower() for name in names}) == len(paths) + 1
+    assert all(1 <= len(name) <= 31 and not set("[]:*?/\\") & set(name) and "'" not in (name[0], name[-1]) for name in names)
+    assert "history" not in {name.lower() for name in names}
+
+
+def test_formulas_and_what_is_too_long_stay_texts() -> None:
+    found = workbook(to_xlsx({"a": "=1+1", "b": "http://x", "c": "x" * 40_000, "d": float("inf"), "e": None, "f": True}))
+    values = list(found["result"].values())[6:]
+    assert (2, 4) not in found["result"]
+    assert (values[0], values[1], len(str(values[2])), values[3], values[4]) == ("=1+1", "http://x", 32_767, "inf", True)
 
 
 def test_units_of_a_matrix_stand_where_they_are_alike() -> None:

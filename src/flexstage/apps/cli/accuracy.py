@@ -21,7 +21,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
@@ -48,23 +48,24 @@ def workspace(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """What the stage reaches and bears.
 
     Strokes, forces, volts, gauges, clearance, error of the linear map, stress, buckling, loads. Of a stage that forces move: how far, what
     limits it, and the current, volts and heat of holding it there.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
         reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
-        answer("workspace", mechanism, lambda: reached, lambda: reach_tables(reached), model=model, json=json, csv=csv)
+        answer("workspace", mechanism, lambda: reached, lambda: reach_tables(reached), model=model, json=json, csv=csv, xlsx=xlsx)
         return
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, linear)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
-    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json, csv=csv)
+    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json, csv=csv, xlsx=xlsx)
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -92,12 +93,13 @@ def drift(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Thermal drift of platform, named points and gauges.
 
     Per kelvin and per kelvin per metre, by the lumped model.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     found = drifting.drift(mechanism, standing(mechanism), ground=ground)
     answer(
@@ -108,6 +110,7 @@ def drift(
         model=Model.LUMPED,
         json=json,
         csv=csv,
+        xlsx=xlsx,
     )
 
 
@@ -121,12 +124,13 @@ def sensitivities(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Exact derivatives with respect to every number.
 
     Of frequencies, gains and losses, by the lumped model; of frequencies alone where the strokes do not determine the platform.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     found = derivatives.sensitivities(mechanism, tuple(parameters) if parameters else None, modes=count)
     answer(
@@ -137,6 +141,7 @@ def sensitivities(
         model=Model.LUMPED,
         json=json,
         csv=csv,
+        xlsx=xlsx,
     )
     print_missing(found.missing)
 
@@ -152,14 +157,15 @@ def budget(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Error budget in nm and nrad, one line an axis.
 
     Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
-    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json, csv=csv)
+    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json, csv=csv, xlsx=xlsx)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -14,10 +14,10 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison, difference, set_values
 from flexstage.base.document import Document, as_text
 from flexstage.models.theory import Model
-from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv
+from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv, write_workbook
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, Xlsx, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
@@ -43,6 +43,7 @@ def analyse(  # noqa: PLR0913 (its options)
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
     full: Annotated[bool, typer.Option("--full", help="Show the tables of every analysis, not the short form.")] = False,
@@ -54,15 +55,18 @@ def analyse(  # noqa: PLR0913 (its options)
 
     With --set, the key figures are shown as old, new and change, in the report too.
     """
-    analysis, compared = _worked_out(design, model, changes or [], [("--json", json), ("--report", report), ("--mat", mat)])
+    analysis, compared = _worked_out(
+        design, model, changes or [], [("--json", json), ("--xlsx", xlsx), ("--report", report), ("--mat", mat)]
+    )
     if mat is not None:
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
         save(report, whole_report(analysis, compared), "--report")
-    write_csv(csv, "analyse", lambda: {"requirements": requirements_body(analysis.verdicts), **analysis_results(analysis)})
+    write_csv(csv, "analyse", lambda: _results(analysis))
+    write_workbook(xlsx, lambda: _results(analysis), lambda: envelope("analyse", analysis.mechanism, analysis.model, {}))
     if json is not None:
         save(json, _json_text(analysis, compared), "--json")
-    if STDOUT not in (json, str(report), str(mat)):
+    if STDOUT not in (json, str(report), str(mat), str(xlsx)):
         show(_tables(analysis, compared) if full else _short_tables(analysis, compared))
         print_missing(analysis.missing)
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
@@ -81,6 +85,10 @@ def _worked_out(
         return analysis, None
     addresses = tuple(each.partition("=")[0].strip() for each in changes)
     return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, model), analysis))
+
+
+def _results(analysis: Analysis) -> dict[str, Any]:
+    return {"requirements": requirements_body(analysis.verdicts), **analysis_results(analysis)}
 
 
 def _json_text(analysis: Analysis, compared: Comparison | None) -> str:

@@ -28,7 +28,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table
@@ -42,14 +42,16 @@ from flexstage.show.tables.response import response_table
 from flexstage.spatial.frame import COMPONENTS
 
 
-def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
+def mapping(
+    design: Design, *, model: ModelName = Model.IDEAL, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
+) -> None:
     """Mappings R_a and R_s, mobility, redundancy.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
     With an elastic model, the elastic motion per stroke T too.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -61,6 +63,7 @@ def mapping(design: Design, *, model: ModelName = Model.IDEAL, changes: Changes 
         model=model,
         json=json,
         csv=csv,
+        xlsx=xlsx,
     )
 
 
@@ -85,12 +88,13 @@ def stiffness(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Compliance and stiffness of the platform.
 
     6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     linear = elastic_model(mechanism, model)
     found = statics(linear, load_point=known_point(linear, load_at or at), read_point=known_point(linear, at))
@@ -106,6 +110,7 @@ def stiffness(
         model=model,
         json=json,
         csv=csv,
+        xlsx=xlsx,
     )
 
 
@@ -122,15 +127,17 @@ def _stiffness_tables(
     yield None if sagging is None else deflection_table(sagging)
 
 
-def lost_motion(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
+def lost_motion(
+    design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
+) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
     What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, model))
-    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json, csv=csv)
+    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json, csv=csv, xlsx=xlsx)
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
@@ -143,15 +150,17 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
     yield loss_tables.energy_table(found)
 
 
-def modes(design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None) -> None:
+def modes(
+    design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
+) -> None:
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and by what margin.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     found = platform_modes(mechanism, elastic_model(mechanism, model))
-    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv)
+    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv, xlsx=xlsx)
 
 
 def response(  # noqa: PLR0913 (its options)
@@ -178,13 +187,14 @@ def response(  # noqa: PLR0913 (its options)
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
     over absolute motion of the ground. With --noise, the rms values of the outputs too.
     """
-    mechanism = open_design(design, changes, [("--json", json)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
     linear = elastic_model(mechanism, model)
     law = damping_law(linear)
@@ -201,6 +211,7 @@ def response(  # noqa: PLR0913 (its options)
         model=model,
         json=json,
         csv=csv,
+        xlsx=xlsx,
     )
 
 

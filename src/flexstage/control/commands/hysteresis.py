@@ -17,7 +17,7 @@ from flexstage.control.hysteresis.tables import plays_table, stack_table
 from flexstage.experiment.commands.records import Arrays, Rate, RecordTexts, Units, open_records
 from flexstage.experiment.record import Record
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, output_option, text_option
+from flexstage.show.command.options import Csv, Json, Report, Xlsx, output_option, text_option
 from flexstage.show.command.output import require_writable, save
 
 
@@ -39,6 +39,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for the loop.")] = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
 ) -> None:
     """Identify the hysteresis of a stack.
@@ -48,7 +49,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     With the record of a step, its creep.
     """
     records = [record] if step is None else [record, step]
-    require_writable([("--output", output), ("--json", json), ("--report", report)], records=records)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], records=records)
     between = None if limits is None else _volts(limits)
     reader = RecordTexts(units=units, rate=rate, kind="record", arrays=arrays)
     opened = [_open(each, reader) for each in records]
@@ -59,7 +60,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
         save(report, hysteresis_report(found), "--report")
     tables = [stack_table(found), plays_table(found)]
     cautions = found.hysteresis.cautions
-    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, cautions=cautions, beside=(report, output))
+    answer("hysteresis", None, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, cautions=cautions, beside=(report, output))
 
 
 def _open(path: Path, reader: RecordTexts) -> Record:

@@ -36,7 +36,7 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, text_option, word_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, first_that_parses, motions
@@ -114,6 +114,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
     export: Annotated[
         list[Path] | None,
@@ -165,7 +166,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     }
     asked = _override(given, options)
     require([*values.findings, *setup_findings(asked)])
-    mechanism = open_design(design, changes, [("--json", json), ("--report", report), *_files(exports)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports)])
     with progress_bar() as shown:
         found = loop_study(mechanism, asked, tell=shown.share)
     if report is not None:
@@ -180,6 +181,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         model=asked.model,
         json=json,
         csv=csv,
+        xlsx=xlsx,
         cautions=found.cautions,
         beside=(report,),
     )

@@ -30,7 +30,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, Xlsx, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
 
@@ -55,6 +55,7 @@ def compare(  # noqa: PLR0913 (its options)
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
 ) -> None:
     """Theory, FEA and experiment side by side.
@@ -64,7 +65,7 @@ def compare(  # noqa: PLR0913 (its options)
     FEA is shown where the cache holds all of it, else with --fea.
     """
     texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
-    require_writable([("--json", json), ("--report", report)], design, record)
+    require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
     linear = elastic_model(mechanism, model)
     highest = float(platform_modes(mechanism, linear).platform_frequencies[-1])
@@ -77,4 +78,4 @@ def compare(  # noqa: PLR0913 (its options)
     if report is not None:
         save(report, compare_report(found, seen, mechanism, shapes_on(mechanism, seen)), "--report")
     tables = compare_tables(found)[:-1]
-    answer("compare", mechanism, lambda: found, lambda: tables, model=model, json=json, csv=csv, beside=(report,))
+    answer("compare", mechanism, lambda: found, lambda: tables, model=model, json=json, csv=csv, xlsx=xlsx, beside=(report,))

@@ -31,7 +31,7 @@ from flexstage.experiment.tables import identified_table, measured_shape_table, 
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Csv, Json, Report, text_option
+from flexstage.show.command.options import Csv, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.table import Table
 
@@ -59,6 +59,7 @@ def identify(  # noqa: PLR0913 (its options)
     resolution: Resolution = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
 ) -> None:
     """Find the modes in records of a test.
@@ -68,13 +69,13 @@ def identify(  # noqa: PLR0913 (its options)
     Bad channels are named and explained, and used only as far as --allow says.
     """
     texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
-    require_writable([("--json", json), ("--report", report)], stage, records)
+    require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")
-    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, beside=(report,))
+    answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, xlsx=xlsx, beside=(report,))
 
 
 def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:

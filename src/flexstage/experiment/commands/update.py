@@ -37,7 +37,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Design, Json, output_option, text_option
+from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
 
@@ -75,6 +75,7 @@ def update(  # noqa: PLR0913 (its options)
     resolution: Resolution = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Bring a stage's numbers to agree with a test.
 
@@ -83,7 +84,7 @@ def update(  # noqa: PLR0913 (its options)
     Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
     """
     texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
-    require_writable([("--output", output), ("--json", json)], design, record)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx)], design, record)
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
@@ -95,7 +96,17 @@ def update(  # noqa: PLR0913 (its options)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
     for caution in found.warnings[len(seen.found.warnings) :]:
         print_warning(caution)
-    answer("update", mechanism, lambda: found, lambda: update_tables(found), model=Model.LUMPED, json=json, csv=csv, beside=(output,))
+    answer(
+        "update",
+        mechanism,
+        lambda: found,
+        lambda: update_tables(found),
+        model=Model.LUMPED,
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        beside=(output,),
+    )
 
 
 def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bool) -> Known:

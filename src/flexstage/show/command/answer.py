@@ -12,17 +12,18 @@ from typing import Any
 from rich.console import Console
 
 from flexstage.analysis.cautions import Caveats, caveats
-from flexstage.base.document import as_text
+from flexstage.base.document import Document, as_text
 from flexstage.base.finding import Finding
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.output import STDOUT, announce, write
+from flexstage.show.command.output import STDOUT, announce, save, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
 from flexstage.show.document import envelope
 from flexstage.show.render import fold, to_rich
 from flexstage.show.sheets import to_csv
 from flexstage.show.table import Table
+from flexstage.show.workbook import to_xlsx
 
 _UNFOLDED = 1000
 _LONGEST = 200
@@ -37,23 +38,25 @@ def answer(  # noqa: PLR0913 (all that a command can ask for)
     *,
     json: str | None,
     csv: Path | None = None,
+    xlsx: Path | None = None,
     model: Model | None = None,
     cautions: tuple[Finding, ...] = (),
     beside: tuple[Path | None, ...] = (),
 ) -> None:
-    """Write the JSON document (`json`) and CSV files (`csv`) where asked for, and show the tables unless stdout is the document's.
+    """Write the JSON document, CSV files and workbook that are asked for, and show the tables unless stdout is one of them.
 
     `kind` is that of the document, `mechanism` the description it is about (`None`: none, a record alone). `cautions` are the result's
     own, told after those about the description. `beside` are the command's other outputs: where one of them goes to stdout, tables do not,
     and cautions go to stderr.
     """
     write_csv(csv, kind, body)
+    write_workbook(xlsx, body, lambda: envelope(kind, mechanism, model, {}, cautions))
     if json is not None:
         write(json, as_text(envelope(kind, mechanism, model, body(), cautions)) + "\n", "--json")
         if json == STDOUT:
             return
         announce(f"Wrote {json}")
-    if STDOUT in map(str, beside):
+    if STDOUT in map(str, (*beside, xlsx)):
         for each in (*(() if mechanism is None else caveats(mechanism).cautions), *cautions):
             print_warning(str(each))
         return
@@ -72,6 +75,12 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
         taken.add(name)
         write(folder / f"{name}.csv", text, "--csv")
     announce(f"Wrote {folder / kind}.*.csv")
+
+
+def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable[[], Document]) -> None:
+    """Write the parts of a result as an Excel workbook, if one is named; its last sheet says what the document's envelope says."""
+    if target is not None:
+        save(target, to_xlsx(body(), {key: value for key, value in about().items() if value not in (None, [])}), "--xlsx")
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:

@@ -90,6 +90,10 @@ Csv: TypeAlias = Annotated[
     ),
 ]
 
+Xlsx: TypeAlias = Annotated[
+    Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
+]
+
 Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]
 
 Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]

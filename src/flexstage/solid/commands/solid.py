@@ -19,7 +19,7 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, output_option, text_option, word_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, output_option, text_option, word_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
@@ -103,6 +103,7 @@ def solid(  # noqa: PLR0913 (its options)
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
 ) -> None:
     """Read a stage as elastic solids, by finite elements.
@@ -112,7 +113,7 @@ def solid(  # noqa: PLR0913 (its options)
     What was reduced once is kept and not computed again.
     """
     asked = _request(accuracy, order, memory)
-    mechanism = open_design(design, changes, [("--json", json), ("--report", report)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     if what is What.STAGE:
         require_standing(mechanism)
     with progress_bar() as shown:
@@ -126,12 +127,13 @@ def solid(  # noqa: PLR0913 (its options)
         found.tables,
         json=json,
         csv=csv,
+        xlsx=xlsx,
         cautions=found.cautions,
         beside=(report,),
     )
 
 
-def verify(
+def verify(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     accuracy: Accuracy = _DEFAULT_ACCURACY,
@@ -140,6 +142,7 @@ def verify(
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
     report: Report = None,
 ) -> None:
     """Compare theory with finite elements: which to trust?
@@ -148,7 +151,7 @@ def verify(
     own error. Rows that calibrated parts touch are not independent of FEA.
     """
     asked = _request(accuracy, order, memory)
-    mechanism = open_design(design, changes, [("--json", json), ("--report", report)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     require_standing(mechanism)
     with progress_bar() as shown:
         found = verification.verify(mechanism, asked.resolution, _solids(asked, shown), _hinges(asked, shown))
@@ -163,7 +166,17 @@ def verify(
         sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
         save(report, solid_report(mechanism, verification_headline(found), sections, cautions), "--report")
     print_missing(found.reasons)
-    answer("verify", mechanism, lambda: found, lambda: _verification_tables(found), json=json, csv=csv, cautions=cautions, beside=(report,))
+    answer(
+        "verify",
+        mechanism,
+        lambda: found,
+        lambda: _verification_tables(found),
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=cautions,
+        beside=(report,),
+    )
 
 
 def calibrate(
@@ -175,12 +188,13 @@ def calibrate(
     memory: Memory = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Give hinges their 6x6 from finite elements.
 
     The lumped model of the written file has FEA's accuracy in its hinges. Comments stay; the drawn hinges are kept beside.
     """
-    require_writable([("--output", output), ("--json", json)], design)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx)], design)
     asked = _request(accuracy, order, memory)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
@@ -188,7 +202,7 @@ def calibrate(
         found = calibration.calibrate(text, _hinges(asked, shown), where=str(design))
     save(output, found.text, "--output")
     cautions, tables = _inexact_hinges(found.hinges), [calibration_table(found)]
-    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, cautions=cautions, beside=(output,))
+    answer("calibrate", mechanism, lambda: found, lambda: tables, json=json, csv=csv, xlsx=xlsx, cautions=cautions, beside=(output,))
 
 
 def _request(accuracy: str, order: int | None, memory: str | None) -> _Request:

@@ -30,6 +30,7 @@ def optimise(
     report: options.Report = None,
     json: options.Json = None,
     csv: options.Csv = None,
+    xlsx: options.Xlsx = None,
 ) -> None:
     """Find the best design within ranges and limits.
 
@@ -37,7 +38,7 @@ def optimise(
 
     Limits that contradict each other are named (exit code 2). Interrupted, it ends with the best design so far.
     """
-    require_writable([("--output", output), ("--json", json), ("--report", report)], study)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     asked = load_study(study)
     wanted = load_wanted(asked, str(study))
     source = design_path(asked, study.parent)
@@ -66,6 +67,7 @@ def optimise(
         model=Model.LUMPED,
         json=json,
         csv=csv,
+        xlsx=xlsx,
         cautions=cautions,
         beside=(output, report),
     )

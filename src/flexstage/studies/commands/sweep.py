@@ -10,7 +10,7 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.studies.sweeps.effects import effects
@@ -23,7 +23,7 @@ from flexstage.studies.sweeps.run import sweep as run_sweep
 from flexstage.studies.sweeps.tables import study_tables
 
 
-def sweep(
+def sweep(  # noqa: PLR0913 (its options)
     study: Study,
     *,
     output: Annotated[Path, output_option("RESULTS.H5", "Results file to write: every design.")],
@@ -33,6 +33,7 @@ def sweep(
     report: Report = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Compute many designs; show what varies with what.
 
@@ -40,7 +41,7 @@ def sweep(
 
     Interrupted at any moment, --resume goes on without loss or repetition.
     """
-    require_writable([("--output", output), ("--json", json), ("--report", report)], study)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     asked = load_study(study)
     with _resumable(output), progress_bar() as shown:
         results = run_sweep(
@@ -57,6 +58,7 @@ def sweep(
         model=Model.LUMPED,
         json=json,
         csv=csv,
+        xlsx=xlsx,
         cautions=loaded_findings(asked),
         beside=(report,),
     )

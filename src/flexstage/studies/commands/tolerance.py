@@ -8,7 +8,7 @@ from typing import Annotated
 from flexstage.base.finding import refuse
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, output_option
+from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.studies.sweeps.loaded import loaded_findings
@@ -19,7 +19,7 @@ from flexstage.studies.tolerances.run import tolerance as run_tolerance
 from flexstage.studies.tolerances.tables import tolerance_tables
 
 
-def tolerance(
+def tolerance(  # noqa: PLR0913 (its options)
     study: Study,
     *,
     output: Annotated[Path | None, output_option("RESULTS.H5", "Results file to write: every copy.")] = None,
@@ -29,6 +29,7 @@ def tolerance(
     report: Report = None,
     json: Json = None,
     csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Scatter dimensions and materials: yield, allowances.
 
@@ -36,7 +37,7 @@ def tolerance(
 
     Told are distributions, the yield line by line and together, what does it, what each dimension may deviate, and crosstalk.
     """
-    require_writable([("--output", output), ("--json", json), ("--report", report)], study)
+    require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx), ("--report", report)], study)
     if resume and output is None:
         raise refuse("--resume", "no results file is named", "Name it with --output")
     asked = load_tolerance(study)
@@ -54,6 +55,7 @@ def tolerance(
         model=Model.LUMPED,
         json=json,
         csv=csv,
+        xlsx=xlsx,
         cautions=loaded_findings(found.study),
         beside=(report,),
     )

@@ -1,0 +1,161 @@
+"""Results as an Excel workbook (XLSX): a sheet a part (see `base.sheet`), numbers as numbers in SI units, and where they come from."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import chain, count
+from typing import Any
+
+import flexstage
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.sheet import Sheet, parts, plain_cell
+from flexstage.base.text import printable
+from flexstage.show.table import first_design
+
+PROVENANCE = "provenance"
+_LONGEST_NAME = 31
+_FORBIDDEN = re.compile(r"[\[\]:*?/\\]")
+_MOST_ROWS, _MOST_COLUMNS, _LONGEST_TEXT = 1_048_576, 16_384, 32_767
+_WIDEST = 40
+_WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone; equal results are equal files)
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """A table as it stands in a sheet: heads, their SI units, and rows."""
+
+    heads: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[Sequence[Any], ...]
+    named: int
+
+
+def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
+    """Every part of a result as a sheet of an XLSX file: heads, SI units below them, then names and numbers of 16 digits.
+
+    What is not known is an empty cell, infinity a text. The last sheet says where the numbers come from: flexstage's version and what is
+    said in `about`. Equal results are equal bytes. Raises `DesignError` for tables that are longer or wider than a sheet.
+
+    >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
+    b'PK'
+    """
+    import xlsxwriter
+
+    content = io.BytesIO()
+    grids = {path: _grid(part) for path, part in parts(result)}
+    names = sheet_names([*grids, PROVENANCE])
+    with xlsxwriter.Workbook(content, {"in_memory": True, "nan_inf_to_errors": False}) as book:
+        book.set_properties({"created": _WRITTEN, "comments": f"flexstage {flexstage.__version__}"})
+        head, unit = book.add_format({"bold": True, "bottom": 1}), book.add_format({"italic": True, "font_color": "#667382"})
+        for name, grid in zip(names, (*grids.values(), _about(result, about or {})), strict=True):
+            _write(book.add_worksheet(name), grid, head, unit)
+    return content.getvalue()
+
+
+def _write(sheet: Any, grid: _Grid, head: Any, unit: Any) -> None:
+    if len(grid.rows) + 2 > _MOST_ROWS or len(grid.heads) > _MOST_COLUMNS:
+        size = f"{len(grid.rows)} rows and {len(grid.heads)} columns"
+        raise refuse(sheet.name, f"{size} are more than a sheet of a workbook holds", "Write CSV files: --csv FOLDER")
+    for row, line in enumerate((grid.heads, grid.units)):
+        for column, text in enumerate(line):
+            if text:
+                sheet.write_string(row, column, _text(text), (head, unit)[row])
+    for row, line in enumerate(grid.rows, start=2):
+        for column, value in enumerate(line):
+            _write_cell(sheet, row, column, plain_cell(value))
+    for column, width in enumerate(_widths(grid)):
+        sheet.set_column(column, column, width)
+    sheet.freeze_panes(2, grid.named)
+
+
+def _write_cell(sheet: Any, row: int, column: int, value: Any) -> None:
+    """A cell: a number as a number, all else as text; nothing where nothing is known."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return
+    if isinstance(value, bool):
+        sheet.write_boolean(row, column, value)
+    elif isinstance(value, (int, float)) and math.isfinite(value):
+        sheet.write_number(row, column, value + 0.0 if isinstance(value, float) else value)
+    else:
+        sheet.write_string(row, column, _text(str(value)))
+
+
+def _text(text: str) -> str:
+    text = printable(text, keep="\n\t")
+    return text if len(text) <= _LONGEST_TEXT else f"{text[: _LONGEST_TEXT - 4]} ..."
+
+
+def _widths(grid: _Grid) -> Iterator[int]:
+    """Widths of columns in characters, by their heads and first rows."""
+    for column, texts in enumerate(zip(grid.heads, grid.units, strict=True)):
+        cells = (str(row[column]) for row in grid.rows[:50])
+        yield min(_WIDEST, 2 + max(len(text) for text in chain(texts, cells)))
+
+
+def _grid(part: Sheet | Matrix) -> _Grid:
+    return _matrix_grid(part) if isinstance(part, Matrix) else _sheet_grid(part)
+
+
+def _sheet_grid(sheet: Sheet) -> _Grid:
+    units = [field.unit if field.unit != "1" else "" for field in sheet.columns]
+    names = len(sheet.names)
+    return _Grid(tuple(sheet.heads), (*("",) * names, *units), tuple(zip(*sheet.heads.values(), strict=True)), names)
+
+
+def _matrix_grid(matrix: Matrix) -> _Grid:
+    columns, rows, cells = matrix.unit_places
+    values = first_design(matrix.values, 2).tolist()
+    if any(map(any, cells)):
+        entries = (
+            (name, *entry)
+            for name, line, units in zip(matrix.rows, values, cells, strict=True)
+            for entry in zip(matrix.columns, units, line, strict=True)
+        )
+        return _Grid(("row", "column", "unit", "value"), ("",) * 4, tuple(entries), 2)
+    beside = any(rows)
+    lines = tuple((name, *([unit] if beside else []), *line) for name, unit, line in zip(matrix.rows, rows, values, strict=True))
+    heads = ("row", *(["unit"] if beside else []), *matrix.columns)
+    return _Grid(heads, (*[""] * (1 + beside), *("" if unit == "1" else unit for unit in columns)), lines, 1 + beside)
+
+
+def _about(result: Any, about: Mapping[str, Any]) -> _Grid:
+    own = getattr(result, PROVENANCE, None)
+    said = {
+        "flexstage": flexstage.__version__,
+        "units": "SI, below the heads or in their names",
+        **about,
+        **({PROVENANCE: own} if own else {}),
+    }
+    rows = [(key, value) for key, value in said.items() if not isinstance(value, (list, tuple))]
+    rows += [(key, str(each)) for key, value in said.items() if isinstance(value, (list, tuple)) for each in value]
+    return _Grid(("what", "value"), ("", ""), tuple(rows), 1)
+
+
+def sheet_names(paths: Sequence[str]) -> list[str]:
+    """Names that Excel takes, one a path: 31 characters, none of `[ ] : * ? /` and backslashes, unlike each other in whatever case.
+
+    >>> sheet_names(["", "modes", "Modes", "a/b", "statics.stiffness.by_direction.principal"])
+    ['result', 'modes', 'Modes (2)', 'a_b', 'by_direction.principal']
+    """
+    taken = {"history"}
+    found: list[str] = []
+    for path in paths:
+        plain = _FORBIDDEN.sub("_", printable(_last_parts(path))).strip("'") or "result"
+        tries = chain((plain[-_LONGEST_NAME:],), (f"{plain[4 + len(str(number)) - _LONGEST_NAME :]} ({number})" for number in count(2)))
+        name = next(each.strip("'") for each in tries if each.strip("'").lower() not in taken)
+        taken.add(name.lower())
+        found.append(name)
+    return found
+
+
+def _last_parts(path: str) -> str:
+    """As much of a path's end as there is place for."""
+    while len(path) > _LONGEST_NAME and "." in path:
+        path = path.partition(".")[2]
+    return path
