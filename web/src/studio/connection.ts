@@ -9,6 +9,12 @@ export type Question = Asked<Exclude<Request, Hello>>;
 type Answer<K extends Said["kind"]> = Extract<Said, { kind: K }>;
 type Act = (said: never) => void;
 
+/** Requests of which only the newest counts: the one that waits, and what ends when all are answered. */
+interface Lane {
+  next: (() => Promise<void>) | null;
+  done: Promise<void> | null;
+}
+
 export type Link = "opens" | "open" | "lost" | "refused";
 
 const AGAIN = 1500;
@@ -32,7 +38,7 @@ export class Connection {
   private readonly token = token();
   private readonly acts = new Map<string, Act[]>();
   private readonly waiting = new Map<number, (said: Said) => void>();
-  private readonly lanes = new Map<string, { busy: boolean; next: (() => Promise<void>) | null }>();
+  private readonly lanes = new Map<string, Lane>();
   private last = 0;
 
   /** Calls back at every message of a kind. */
@@ -77,10 +83,15 @@ export class Connection {
 
   /** Asks when the one before in this lane is answered; of those that wait, only the newest is sent. */
   newest(lane: string, question: Question, then: (said: Said) => void = () => {}): void {
-    const own = this.lanes.get(lane) ?? { busy: false, next: null };
+    const own = this.lanes.get(lane) ?? { next: null, done: null };
     this.lanes.set(lane, own);
     own.next = async () => then(await this.ask(question));
-    if (!own.busy) void this.drain(own);
+    own.done ??= drain(own);
+  }
+
+  /** Resolves when nothing of these lanes is under way or waits. */
+  async idle(...lanes: string[]): Promise<void> {
+    await Promise.all(lanes.map((lane) => this.lanes.get(lane)?.done));
   }
 
   /** Forgets what still waits in a lane. */
@@ -88,14 +99,13 @@ export class Connection {
     const own = this.lanes.get(lane);
     if (own) own.next = null;
   }
+}
 
-  private async drain(own: { busy: boolean; next: (() => Promise<void>) | null }): Promise<void> {
-    own.busy = true;
-    while (own.next) {
-      const send = own.next;
-      own.next = null;
-      await send();
-    }
-    own.busy = false;
+async function drain(own: Lane): Promise<void> {
+  while (own.next) {
+    const send = own.next;
+    own.next = null;
+    await send();
   }
+  own.done = null;
 }

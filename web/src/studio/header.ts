@@ -55,17 +55,24 @@ export class Header {
     if (text) this.timer = setTimeout(() => this.studio.notice.set({ text: "", bad: false }), TOLD) as unknown as number;
   }
 
-  async undo(): Promise<void> {
+  /** Until what was typed and dragged has come to the server. */
+  private settled(): Promise<void> {
     this.editor.flush();
+    return this.studio.connection.idle("edit", "rest");
+  }
+
+  async undo(): Promise<void> {
+    await this.settled();
     await this.studio.ask({ kind: "undo" });
   }
 
   async redo(): Promise<void> {
+    await this.settled();
     await this.studio.ask({ kind: "redo" });
   }
 
   async save(over = false): Promise<void> {
-    this.editor.flush();
+    await this.settled();
     const said = await this.studio.ask({ kind: "save", over });
     if (said.kind === "refusal" && said.stale) this.differs();
     else if (said.kind !== "refusal") this.studio.tell("Saved.");
