@@ -217,14 +217,12 @@ export class Jog {
     return square > 0 ? a.reduce((sum, each, n) => sum + each * (b[n] ?? 0), 0) / square : 0;
   }
 
-  /** Where the ideal stage would go, and where the elastic one goes. */
+  /** Where the ideal stage would go; the picture itself shows where the elastic one goes. */
   private arrows(data: StageData, motion: Motion, factor: number): void {
-    const at = data.reference as Point;
-    const real = this.twist(motion);
-    const ideal = motion.ideal ? product(motion.ideal.values, this.strokes) : null;
-    const arrow = (twist: number[], look: string, text: string) => ({ from: at, to: plus(at, twist.slice(0, 3), factor), look, text });
-    const seen = (twist: number[]): boolean => norm(twist.slice(0, 3)) * factor > 0.01 * data.size;
-    this.stage.arrows.set("jog", [...(ideal && seen(ideal) ? [arrow(ideal, "ideal", "ideal")] : []), ...(seen(real) ? [arrow(real, "real", "")] : [])]);
+    const from = data.reference as Point;
+    const move = motion.ideal ? product(motion.ideal.values, this.strokes).slice(0, 3) : [];
+    const isSeen = norm(move) * factor > 0.01 * data.size;
+    this.stage.arrows.set("jog", isSeen ? [{ from, to: plus(from, move, factor), look: "ideal", text: "ideal" }] : []);
   }
 }
 

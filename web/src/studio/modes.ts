@@ -2,8 +2,6 @@
 
 import type { ModeShape } from "../protocol";
 import type { Controller, Motion } from "../viewer/types";
-import { norm, plus } from "./arrows";
-import type { Arrow, Point } from "./arrows";
 import { byId, digits, fill, h, percent } from "./dom";
 import type { StageView } from "./stage";
 import type { Studio } from "./studio";
@@ -66,7 +64,6 @@ export class ModeBar {
     if (motion) viewer?.setPlaying(this.isPlaying);
     if (motion) viewer?.setAmplitude(Number(this.amplitude.value));
     this.tell();
-    this.arrow();
   }
 
   private tell(): void {
@@ -130,23 +127,6 @@ export class ModeBar {
     this.second?.setAmplitude(Number(this.amplitude.value));
     this.second?.setPlaying(this.isPlaying);
   }
-
-  /** The platform's twist of the mode: a translation and a turn, each as an arrow from its reference. */
-  private arrow(): void {
-    const mode = this.chosen();
-    const data = this.studio.scene.value;
-    this.stage.arrows.set("mode", mode && data ? twistArrows(mode.twist, data.reference as Point, 0.22 * data.size) : []);
-  }
-}
-
-/** A twist as arrows: the larger of translation and turn (over half the stage's size) gets `length`. */
-export function twistArrows(twist: readonly number[], at: Point, length: number): Arrow[] {
-  const [move, turn] = [twist.slice(0, 3), twist.slice(3)];
-  const scale = Math.max(norm(move), norm(turn) * 2 * length) || 1;
-  const made: Arrow[] = [];
-  if (norm(move) > 0.15 * scale) made.push({ from: at, to: plus(at, move, length / scale), look: "real" });
-  if (norm(turn) * 2 * length > 0.15 * scale) made.push({ from: at, to: plus(at, turn, (2 * length * length) / scale), look: "real", turns: true });
-  return made;
 }
 
 /** The strip below the stage: modes or jog. */

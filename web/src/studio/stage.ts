@@ -82,7 +82,7 @@ export class StageView {
       this.button("fit", "Fit (F)", () => this.fit()),
       ...VIEWS.map((name) => this.button(name, name, () => this.viewer?.look(name))),
       this.toggle("platform", "see through the platform (G)", (on) => this.viewer?.ghostPlatform(on)),
-      this.toggle("names", "names (L)", (on) => this.viewer?.showLabels(on)),
+      this.toggle("names", "names (L)", (on) => this.viewer?.showLabels(on), true),
       this.units,
       this.cut,
       this.depth,
@@ -94,13 +94,13 @@ export class StageView {
     return h("button", { type: "button", title, click: act }, text);
   }
 
-  private toggle(text: string, title: string, act: (on: boolean) => void): HTMLButtonElement {
+  private toggle(text: string, title: string, act: (on: boolean) => void, isOn = false): HTMLButtonElement {
     const made = this.button(text, title, () => {
       const on = made.getAttribute("aria-pressed") !== "true";
       made.setAttribute("aria-pressed", String(on));
       act(on);
     });
-    made.setAttribute("aria-pressed", "false");
+    made.setAttribute("aria-pressed", String(isOn));
     this.toggles.set(text, made);
     return made;
   }
