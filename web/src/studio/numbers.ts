@@ -6,6 +6,7 @@ import type { Studio } from "./studio";
 
 const STEPS = 1000;
 const REST = 40; // ms without a move, then the whole design is computed
+const HELD = 160; // ms as long as the pointer holds the slider, so that a slow hand does not write at every step
 
 interface Row {
   amount: Amount;
@@ -14,6 +15,8 @@ interface Row {
   field: HTMLInputElement;
   buys: HTMLElement;
   was: HTMLButtonElement;
+  /** The text that was refused last. */
+  refused: string;
 }
 
 type Order = "file" | "worth" | "changed";
@@ -69,7 +72,7 @@ export class Numbers {
     const name = h("button", { type: "button", className: "name", title: address }, address.slice(amount.group.length).replace(/^\./, "") || address);
     const root = h("div", { className: "amount" }, name, slider, field, buys, was);
     root.dataset["address"] = address;
-    const row = { amount, root, slider, field, buys, was };
+    const row = { amount, root, slider, field, buys, was, refused: "" };
     this.rows.set(address, row);
     this.wire(row, name);
     return row;
@@ -78,10 +81,11 @@ export class Numbers {
   private wire(row: Row, name: HTMLButtonElement): void {
     const { slider, field, was } = row;
     const address = row.amount.address;
-    const rest = rested(REST, () => this.rest(row));
-    slider.addEventListener("pointerdown", () => this.studio.ask({ kind: "grip", address, low: row.amount.low, high: row.amount.high }));
-    slider.addEventListener("input", () => this.drag(row, rest));
-    slider.addEventListener("change", () => rest.now());
+    const [rest, held] = [rested(REST, () => this.rest(row)), rested(HELD, () => this.rest(row))];
+    let isHeld = false;
+    slider.addEventListener("pointerdown", () => ((isHeld = true), void this.studio.ask({ kind: "grip", address, low: row.amount.low, high: row.amount.high })));
+    slider.addEventListener("input", () => this.drag(row, isHeld ? held : rest));
+    slider.addEventListener("change", () => ((isHeld = false), rest.now() || held.now()));
     field.addEventListener("keydown", (event) => this.type(row, event));
     field.addEventListener("blur", () => this.enter(row));
     was.addEventListener("click", () => row.amount.old !== null && this.studio.ask({ kind: "rest", address, value: row.amount.old }));
@@ -129,8 +133,9 @@ export class Numbers {
 
   private async enter(row: Row): Promise<void> {
     const text = row.field.value.trim();
-    if (text === row.amount.text || row.amount.address === this.held) return;
+    if (text === row.amount.text || text === row.refused || row.amount.address === this.held) return;
     const said = await this.studio.ask({ kind: "set", address: row.amount.address, text });
+    row.refused = said.kind === "refusal" ? text : "";
     row.root.classList.toggle("bad", said.kind === "refusal");
     row.field.title = said.kind === "refusal" ? said.problems.map((each) => each.what).join(" ") : "";
   }

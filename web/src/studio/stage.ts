@@ -156,6 +156,7 @@ export class StageView {
     place.hidden = !on;
     const data = this.studio.scene.value;
     if (on && !this.second && data && this.viewer?.alive) this.second = view(place, data, { controls: false });
+    requestAnimationFrame(() => this.viewer?.fit());
     return on ? this.second : null;
   }
 }

@@ -415,7 +415,7 @@ export class Viewer implements Controller {
     const link = part ? this.data.links.indexOf(this.data.parts.indexOf(part)) : -1;
     const share = link >= 0 ? this.energies?.[link] : undefined;
     if (share !== undefined && Number.isFinite(share)) more.push(["strain energy", `${written(100 * share)} %`]);
-    this.overlay.showCard(part, more);
+    this.overlay.showCard(this.options.controls === false ? null : part, more); // a page with controls of its own has a card too
     this.draw();
   }
 
