@@ -16,6 +16,7 @@ from flexstage.base.dimension import dimension_of
 from flexstage.base.expression import Amount, ExpressionError, evaluate, parse_expression
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.registry import case
 from flexstage.mechanism.address import get, set_text, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Mechanism, NamedNumber
@@ -186,3 +187,19 @@ def test_a_number_is_not_worked_out_of_itself() -> None:
     found = set_text(stage(), "numbers.share", "arm/(1.3 m)")
     with pytest.raises(DesignError, match="and so of arm itself"):
         set_text(found, "numbers.arm", "share*1 m")
+
+
+@pytest.mark.parametrize(
+    "address", ["numbers.share", "numbers.arm", "damping.ratio", "materials.steel.poisson", "materials.steel.young", "parts.neck.thickness"]
+)
+@pytest.mark.parametrize(("text", "factor"), [("+10%", 1.1), ("-2.5 %", 0.975), ("+ 10 %", None), ("+0 %", 1.0)])
+def test_a_signed_percentage_is_a_change_of_every_number(address: str, text: str, factor: float | None) -> None:
+    """Ratios are numbers like others: only a percentage without a sign is the value of one."""
+    before = replace(case("double-triangle"), numbers={"share": NamedNumber(0.3, "1"), "arm": NamedNumber(0.026, "mm")})
+    if factor is None:
+        with pytest.raises(DesignError):
+            set_text(before, address, text)
+    else:
+        assert get(set_text(before, address, text), address) == pytest.approx(factor * get(before, address), rel=1e-12)
+    if address in ("damping.ratio", "numbers.share"):
+        assert get(set_text(before, address, "10 %"), address) == pytest.approx(0.1, rel=1e-12)

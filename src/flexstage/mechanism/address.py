@@ -88,7 +88,7 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
 def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
     """Return the mechanism with what a text means at an address: a value, a relative change of a number (`+10%`), or a formula.
 
-    Of a ratio, a percentage is the value itself.
+    A percentage with a sign is a relative change of every number, of ratios too; without one it is the value of a ratio.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
@@ -99,14 +99,12 @@ def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
     place, where = locate(mechanism, address), address.strip()
     if not place.node.single:
         raise _several(mechanism, place, where)
+    if isinstance(place.node, NumberNode) and (share := _SHARE.fullmatch(text.strip())) is not None:
+        return set_value(mechanism, where, _share_of(mechanism, where, 1.0 + float(share[1]) / 100.0))
     try:
         return set_value(mechanism, where, place.node.parse(text.strip(), where))
     except DesignError:
-        if not isinstance(place.node, NumberNode):
-            raise
-        if (share := _SHARE.fullmatch(text.strip())) is not None:
-            return set_value(mechanism, where, _share_of(mechanism, where, 1.0 + float(share[1]) / 100.0))
-        if not is_formula(text, scope_of(mechanism)):
+        if not isinstance(place.node, NumberNode) or not is_formula(text, scope_of(mechanism)):
             raise
     return _set_formula(mechanism, place, where, text.strip())
 

@@ -73,7 +73,7 @@ Changes: TypeAlias = Annotated[
     text_option(
         "--set",
         "ADDRESS=VALUE",
-        "Change a value before the analysis, e.g. horizontal/front.thickness=1.4mm. May be given several times.",
+        "Change a value before the analysis, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. May be given several times.",
     ),
 ]
 
