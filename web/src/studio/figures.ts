@@ -67,7 +67,7 @@ export class FigureTable {
     fill(this.root, this.pins, this.body);
     studio.figures.watch(() => this.results());
     studio.reach.watch(() => this.results());
-    studio.state.watch(() => this.showPins());
+    studio.state.watch(() => (this.showPins(), this.age()));
     studio.keptOne.watch(() => this.showPins());
     studio.against.watch(() => this.showPins());
     studio.connection.on("frequencies", (said) => this.live(said));
@@ -78,8 +78,14 @@ export class FigureTable {
     return [...(this.studio.figures.value?.figures ?? []), ...(this.studio.reach.value?.figures ?? [])];
   }
 
+  private age(): void {
+    const { figures, state } = this.studio;
+    this.root.classList.toggle("aged", figures.value !== null && figures.value.revision !== state.value?.revision);
+  }
+
   private async results(): Promise<void> {
     this.show();
+    this.age();
     if (!this.studio.state.value?.pins.length) return;
     this.studio.connection.newest("compare", { kind: "compare" }, (said) => {
       if (said.kind === "comparison") this.compared = said;

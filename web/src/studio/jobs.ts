@@ -13,17 +13,20 @@ interface Form {
   record: boolean;
 }
 
-const SWEEP = `# Which numbers vary, over which range, and what is worked out. See docs: studies.
-[vary]
-"parts.neck.thickness" = ["1.4 mm", "1.7 mm"]
-`;
-const OPTIMISE = `# Which numbers are free, and what is to become best.
-[vary]
-"parts.neck.thickness" = ["1.4 mm", "1.7 mm"]
+/** A study to begin with: the numbers that buy most of the worst requirement, ten per cent to both sides. */
+function draft(studio: Studio, last: string): string {
+  const { slopes, state, verdicts } = studio;
+  const amounts = state.value?.amounts ?? [];
+  const ranked = slopes.value?.slopes.map((each) => each.address) ?? [];
+  const free = (ranked.length ? ranked : amounts.map((each) => each.address)).filter((each) => amounts.some((one) => one.address === each && one.formula === null)).slice(0, 3);
+  const variables = free.map((each, at) => `v${at + 1} = { of = "${each}", from = "-10 %", to = "+10 %" }`);
+  const wanted = slopes.value?.worst || verdicts.value?.verdicts[0]?.key || "frequency.platform.1";
+  const file = state.value?.file.split(/[\\/]/).at(-1) ?? "stage.toml";
+  return ['format = "flexstage study 1"', `design = "${file}"`, "", "[variables]", ...variables, "", "[responses]", `worst = "${wanted}"`, "", last, ""].join("\n");
+}
 
-[objective]
-maximise = "frequency.platform.1"
-`;
+const SWEEP = '[sweep]\nsampling = "grid"';
+const OPTIMISE = '[optimise]\nmaximise = "worst"';
 
 const FORMS: Record<Command, Form> = {
   sweep: { title: "Sweep", about: "Computes many designs and shows what varies with what.", study: SWEEP, record: false },
@@ -54,9 +57,9 @@ export class JobsPane {
     const form = FORMS[name];
     this.studio.tab.set("jobs");
     if (name === "analyse") return void this.run({ kind: "run", command: name, study: null, record: null, options: [] });
-    const study = form.study === null ? null : h("textarea", { rows: 9, spellcheck: false, ariaLabel: "study", value: this.studies.get(name) ?? form.study });
+    const study = form.study === null ? null : h("textarea", { rows: 9, spellcheck: false, ariaLabel: "study", value: this.studies.get(name) ?? (form.study && draft(this.studio, form.study)) });
     const record = form.record ? h("input", { type: "text", required: true, placeholder: "record.mat", ariaLabel: "record" }) : null;
-    const options = h("input", { type: "text", placeholder: "--modes 12", ariaLabel: "options" });
+    const options = h("input", { type: "text", placeholder: "as on the command line", ariaLabel: "options" });
     const start = (event: Event): void => {
       event.preventDefault();
       if (study) this.studies.set(name, study.value);

@@ -63,6 +63,7 @@ export class Jog {
     this.rows = this.sliders(this.actuators, state.actuators, this.rows, (at, value) => this.push(at, value));
     this.axisRows = this.sliders(this.axes, state.axes, this.axisRows, (at, value) => this.move(at, value));
     if (this.strokes.length !== state.actuators.length) this.strokes = state.actuators.map(() => 0);
+    if (!state.actuators.length) fill(this.beyond, h("span", { className: "quiet" }, "This stage has no actuators: nothing moves it but loads."));
   }
 
   private sliders(parent: HTMLElement, channels: Channel[], held: Map<string, Row>, act: (at: number, value: number) => void): Map<string, Row> {
@@ -173,7 +174,7 @@ export class Jog {
     }
     const isAny = Object.keys(told).length > 0;
     for (const row of this.axisRows.values()) row.root.classList.toggle("poor", isAny && Number(row.slider.dataset["value"]) !== 0);
-    fill(this.beyond, ...Object.values(told).map((each) => h("span", { className: "poor" }, each)));
+    if (this.rows.size) fill(this.beyond, ...Object.values(told).map((each) => h("span", { className: "poor" }, each)));
     this.paint(told);
   }
 

@@ -79,6 +79,7 @@ export class ModeBar {
     const motion = this.motion(this.studio.mode.value);
     const size = this.studio.scene.value?.size ?? 0;
     const drawn = Number(this.amplitude.value) * size;
+    if (this.chosen() && this.studio.scene.value && !motion) return fill(this.factor, "the picture does not hold this mode");
     const text = motion?.scaled ? `drawn × ${digits(probe?.factor ?? null, 3)}` : `largest motion drawn as ${digits(1000 * drawn, 3)} mm`;
     fill(this.factor, motion && probe ? text : "");
   }

@@ -15,6 +15,7 @@ export class Responses {
   private readonly input = h("select", { ariaLabel: "input", change: () => this.choose() });
   private readonly output = h("select", { ariaLabel: "output", change: () => this.choose() });
   private readonly told = h("span", { className: "quiet cursor" });
+  private readonly values = h("div", { className: "values", hidden: true });
   private readonly redraw = framewise(() => this.draw());
   private plots: uPlot[] = [];
   private channels = "";
@@ -56,7 +57,8 @@ export class Responses {
     }
     const other = this.studio.kept.get(this.studio.against.value)?.figures ?? null;
     const before = other === present ? null : other;
-    fill(this.root);
+    fill(this.root, this.values);
+    this.values.hidden = true;
     const height = Math.max(this.root.clientHeight, 150);
     const phase = Math.round(0.34 * height);
     this.name(present, before);
@@ -83,7 +85,7 @@ export class Responses {
 
   private listen(plot: uPlot): void {
     plot.over.addEventListener("click", () => this.play(plot));
-    plot.over.addEventListener("mouseleave", this.redraw);
+    plot.over.addEventListener("mouseleave", () => (this.values.hidden = true));
   }
 
   /** The platform's modes, else all that are listed. */
@@ -135,9 +137,10 @@ export class Responses {
     const along = at === null || at === undefined ? undefined : plot.data[0][at];
     const [magnitude, phase] = this.plots;
     if (at === null || at === undefined || along === undefined || !magnitude || !phase) return;
-    const values = curves.map((each, n) => `${each.output}/${each.input} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`);
-    fill(this.told, `${digits(along)} Hz: ${values.join(";  ")}`);
-    this.told.title = this.told.textContent ?? "";
+    const values = curves.map((each, n) => h("div", {}, h("i", { className: `curve-${n}` }), `${each.output}/${each.input} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`));
+    fill(this.values, h("b", {}, `${digits(along)} Hz`), ...values);
+    this.values.hidden = false;
+    this.values.classList.toggle("away", (plot.cursor.left ?? 0) > plot.over.clientWidth / 2);
   }
 }
 
