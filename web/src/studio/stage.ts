@@ -2,10 +2,12 @@
 
 import type { Scene } from "../protocol";
 import type { Controller, Picked, StageData } from "../viewer/types";
-import { view } from "../viewer";
 import { Arrows } from "./arrows";
 import { byId, fill, h } from "./dom";
 import type { Studio } from "./studio";
+
+/** The viewer is a script of its own, which reports carry too; where it did not start, the page lives without. */
+declare const flexstage: typeof import("../viewer") | undefined;
 
 const VIEWS = ["iso", "top", "front", "right"] as const;
 
@@ -63,7 +65,7 @@ export class StageView {
 
   private attempt(data: StageData): Controller | null {
     try {
-      return view(byId("view"), data, { controls: false });
+      return typeof flexstage === "undefined" ? null : flexstage.view(byId("view"), data, { controls: false });
     } catch (error) {
       console.warn("the viewer does not start:", error);
       return null;
@@ -155,7 +157,7 @@ export class StageView {
     const place = byId("second");
     place.hidden = !on;
     const data = this.studio.scene.value;
-    if (on && !this.second && data && this.viewer?.alive) this.second = view(place, data, { controls: false });
+    if (on && !this.second && data && this.viewer?.alive) this.second = flexstage?.view(place, data, { controls: false }) ?? null;
     requestAnimationFrame(() => this.viewer?.fit());
     return on ? this.second : null;
   }
