@@ -131,6 +131,15 @@ from flexstage.models.lumped import (
 from flexstage.models.mapped import (
     mapped as mapped,
 )
+from flexstage.models.nonlinear.critical import (
+    critical as critical,
+)
+from flexstage.models.nonlinear.equilibrium import (
+    equilibrium as equilibrium,
+)
+from flexstage.models.nonlinear.stage import (
+    nonlinear as nonlinear,
+)
 from flexstage.parts.body import (
     Block as Block,
     Body as Body,

@@ -1,0 +1,204 @@
+"""The law of a flexure at large displacements: tables of its modes, its quadratic energy and what little is not quadratic.
+
+Lengths are over the flexure's own length L, forces over E I / L^2, moments over E I / L, with a reference rigidity E I. The centre line
+goes along x of the link's frame, y is across the thin side, z along the width. Curvatures are (twist, about y, about z).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.beams.beam import Beam
+from flexstage.beams.flexure.modes import FINE, gauss, polynomials, project
+from flexstage.beams.flexure.strip import LOADS, STRETCH_FOUR, STRETCH_TWO, fields
+from flexstage.beams.flexure.twist import held_modes
+from flexstage.beams.section import Section, cowper_rectangle, rectangle
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How many modes twist, bending about y and about z have, the loads of the plate's two fields, and the points along the flexure."""
+
+    twist: int = 6
+    across: int = 6
+    bending: int = 8
+    fields: tuple[int, int] = LOADS
+    points: int = 10
+
+
+DEFAULT = Resolution()
+STRESSES = Resolution(twist=3, across=4, bending=4)
+"""Of hinges whose compliance varies along them: moments of degree 0 and 1 are exact at rest, and two more degrees follow the load."""
+
+
+@dataclass(frozen=True, eq=False)
+class FlexureLaw:
+    """Tables of a flexure (docs/nonlinear.md, 3); leading axes are flexures of one kind of modes.
+
+    `form` (..., q, q) is the second derivative of the quadratic energy by all amplitudes: k of curvature, then e of the plate's fields.
+    `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k) are the curvatures of unit amplitudes at the points of the rule and at those
+    of the steps of rotation; `plate` (..., n, 2, e) the fields a2 and a4. `compliance` (..., n, 3) is the stretch and shear by force,
+    `trapeze` (...) I_p / A, `stretch` (..., 2) the stiffness against Gaussian curvature. `length` [m], `rigidity` [N m^2], `inertia`
+    (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m]. `half` (..., 2) are half thickness and width [m].
+    """
+
+    length: Array
+    rigidity: Array
+    form: Array
+    modes: Array
+    inner: Array
+    plate: Array
+    compliance: Array
+    trapeze: Array
+    stretch: Array
+    inertia: Array
+    half: Array
+
+    @property
+    def signature(self) -> tuple[int, ...]:
+        """What flexures must share to be computed together: points, modes of curvature, modes of the plate."""
+        return (*self.modes.shape[-3:], self.plate.shape[-1])
+
+
+def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *, warps: bool = False) -> FlexureLaw:
+    """A leaf with plate action whose ends are clamped (docs/nonlinear.md, 9 to 13); `warps`: the bodies at its ends let it warp.
+
+    Exact for small strains of a thin leaf but for the shapes across its width, which are two: right to 0.04 % in bending up to b^2 k / t of
+    20. Twist at clamped ends has one shape of warping.
+    """
+    length, thickness, width = (np.asarray(each, dtype=float) for each in (part.length, part.thickness, part.width))
+    young, poisson = float(material.modulus), float(material.contraction)
+    section = rectangle(thickness, width, cowper_rectangle(poisson))
+    rigidity = np.asarray(young * section.inertia_z)
+    rule = gauss(resolution.points)
+    twist, twist_form = _leaf_twist(resolution, section, material, length, rigidity, warps=warps)
+    size = resolution.twist + resolution.across + resolution.bending
+    shapes = fields(float(width / length), float(thickness / length), poisson, rule.size, resolution.fields)
+    plain = np.diag(1.0 / (2.0 * np.arange(resolution.bending) + 1.0))
+    factor = 1.0 / (1.0 - poisson * poisson)
+    form = _blocks(twist_form, _squares(resolution.across) * (section.inertia_y / section.inertia_z), plain * factor, shapes.form * factor)
+    pull = poisson * factor * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, : resolution.bending]
+    bend = slice(size - resolution.bending, size)
+    form[size:, bend], form[bend, size:] = pull, pull.T
+    modes, inner = _tables([twist, np.eye(resolution.across, rule.size), np.eye(resolution.bending, rule.size)], rule.size)
+    ratio = width * width / (thickness * length)
+    return FlexureLaw(
+        length=length,
+        rigidity=rigidity,
+        form=form,
+        modes=modes,
+        inner=inner,
+        plate=np.moveaxis(shapes.values, (0, 1, 2), (1, 2, 0)),
+        compliance=_spread(_force_compliance(section, material, rigidity / length**2), rule.size),
+        trapeze=np.asarray(section.polar / section.area / length**2),
+        stretch=12.0 * ratio * ratio * np.array([STRETCH_TWO, STRETCH_FOUR]),
+        inertia=_spread(_inertia(section, float(material.density)), rule.size),
+        half=0.5 * np.stack([thickness, width]),
+    )
+
+
+def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False) -> FlexureLaw:
+    """Any part that is a `Beam`, by modes of stress: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
+
+    At rest exactly the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch when it twists (Wagner).
+    """
+    places, weights, flexibility, inertia = _whole(part)
+    length = np.sum(weights)
+    weights, places = weights / length, places / length + 0.5
+    rigidity = 1.0 / (weights @ flexibility[:, 5])
+    counts = (resolution.twist, resolution.across, resolution.bending)
+    size = resolution.points
+    relative = flexibility * rigidity / np.array([length**2] * 3 + [1.0] * 3)
+    shapes = [relative[:, 3 + axis] * polynomials(count, places) for axis, count in enumerate(counts)]
+    forms = [shape * weights @ polynomials(count, places).T for shape, count in zip(shapes, counts, strict=True)]
+    modes, inner = _tables([project(shape, places, weights, size) for shape in shapes], size)
+    points = polynomials(size, gauss(size).points)
+    compliance = (project(relative[:, :3].T, places, weights, size) @ points).T
+    section = part.section
+    thickness, width, polar, area = (float(np.ravel(each)[0]) for each in (section.thickness, section.width, section.polar, section.area))
+    wagner = 12.0 * (width * width / (thickness * length)) ** 2 * STRETCH_TWO if flat else 0.0
+    return FlexureLaw(
+        length=length,
+        rigidity=rigidity,
+        form=_blocks(*forms),
+        modes=modes,
+        inner=inner,
+        plate=np.zeros((size, 2, 0)),
+        compliance=compliance,
+        trapeze=np.asarray(polar / area / length**2),
+        stretch=np.array([wagner, 0.0]),
+        inertia=(project(inertia[:, [0, 3, 4, 5]].T, places, weights, size) @ points).T,
+        half=0.5 * np.array([thickness, width]),
+    )
+
+
+def _whole(part: Beam) -> tuple[Array, Array, Array, Array]:
+    """Places about the centre, weights, flexibility and inertia at both halves of a beam, of one design."""
+    position, weight = np.ravel(part.points.position), np.ravel(part.points.rate * part.points.rule.weights)
+    flexibility, inertia = (np.broadcast_to(each, (len(position), 6)) for each in (part.flexibility, part.inertia))
+    weights, flexibility, inertia = (np.concatenate([each[::-1], each]) for each in (weight, flexibility, inertia))
+    return np.concatenate([-position[::-1], position]), weights, flexibility, inertia
+
+
+def _leaf_twist(
+    resolution: Resolution, section: Section, material: Material, length: Array, rigidity: Array, *, warps: bool
+) -> tuple[Array, Array]:
+    """Coefficients (k, n) of the modes of twist, and their quadratic form (docs/nonlinear.md, 9)."""
+    torsion = float(material.shear) * section.torsion / rigidity
+    count, fine = resolution.twist, gauss(FINE)
+    if warps:
+        return np.eye(count, resolution.points), torsion * _squares(count)
+    warping = float(material.modulus) * (0.0 if section.warping is None else section.warping) / (rigidity * length * length)
+    found = held_modes(count, fine.points, 0.5 * np.sqrt(torsion / warping))
+    form = torsion * _product(found.values, fine.weights) + warping * _product(found.slopes, fine.weights)
+    return project(found.values, fine.points, fine.weights, resolution.points), form
+
+
+def _product(values: Array, weights: Array) -> Array:
+    return values * weights @ values.T
+
+
+def _squares(count: int) -> Array:
+    """Integrals of the polynomials' products."""
+    return np.diag(1.0 / (2.0 * np.arange(count) + 1.0))
+
+
+def _tables(coefficients: list[Array], size: int) -> tuple[Array, Array]:
+    """Curvatures (n, 3, k) at the points and (3 (n + 1), 3, k) at those of the steps, of modes about x, y and z by their coefficients."""
+    rule = gauss(size)
+    total, done = sum(len(each) for each in coefficients), 0
+    found = np.zeros((size + len(rule.inner), 3, total))
+    at = polynomials(size, np.concatenate([rule.points, rule.inner]))
+    for axis, each in enumerate(coefficients):
+        found[:, axis, done : done + len(each)] = (each @ at).T
+        done += len(each)
+    return found[:size], found[size:]
+
+
+def _blocks(*blocks: Array) -> Array:
+    size = sum(len(block) for block in blocks)
+    result, done = np.zeros((size, size)), 0
+    for block in blocks:
+        result[done : done + len(block), done : done + len(block)] = block
+        done += len(block)
+    return result
+
+
+def _force_compliance(section: Section, material: Material, scale: Array) -> Array:
+    along = 1.0 / (float(material.modulus) * section.area)
+    lateral = section.shear / (float(material.shear) * section.area)
+    across = lateral if material.shear_across is None else lateral * float(material.shear) / float(material.shear_across)
+    return scale * np.array([along, across, lateral])
+
+
+def _inertia(section: Section, density: float) -> Array:
+    return density * np.array([section.area, section.polar, section.inertia_y, section.inertia_z])
+
+
+def _spread(row: Array, size: int) -> Array:
+    return np.broadcast_to(row, (size, len(row)))

@@ -1,0 +1,82 @@
+"""Polynomials along a flexure of unit length, rules of Gauss on it, and projections on what these rules integrate exactly."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from flexstage.base.number import Array
+from flexstage.spatial.rotation import GAUSS_THREE
+
+FINE = 200
+"""Points of the rule by which laws are integrated once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rule:
+    """A rule of Gauss on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant from 0 to each point.
+
+    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) the three points of Gauss in each interval between them.
+    """
+
+    points: Array
+    weights: Array
+    running: Array
+    knots: Array
+    inner: Array
+
+    @property
+    def size(self) -> int:
+        """How many points it has."""
+        return len(self.points)
+
+
+@functools.cache
+def gauss(size: int) -> Rule:
+    """The rule of `size` points.
+
+    >>> rule = gauss(4)
+    >>> bool(np.allclose(rule.running @ rule.points**3, rule.points**4 / 4))
+    True
+    """
+    nodes, weights = legendre.leggauss(size)
+    points = 0.5 * (nodes + 1.0)
+    to_coefficients = np.linalg.inv(polynomials(size, points).T)
+    antiderivatives = np.array([legendre.legval(nodes, legendre.legint(row, lbnd=-1)) for row in np.eye(size)])
+    running = 0.5 * antiderivatives.T @ to_coefficients
+    knots = np.concatenate([[0.0], points, [1.0]])
+    inner = (knots[:-1, None] + np.diff(knots)[:, None] * GAUSS_THREE).ravel()
+    return Rule(points, 0.5 * weights, running, knots, inner)
+
+
+def polynomials(count: int, places: Array) -> Array:
+    """Legendre's polynomials P_k(2 s - 1), k < `count`, at places s (p,): (count, p).
+
+    >>> polynomials(2, np.array([0.0, 1.0])).tolist()
+    [[1.0, 1.0], [-1.0, 1.0]]
+    """
+    return legendre.legvander(2.0 * np.asarray(places) - 1.0, count - 1).T
+
+
+def slopes(count: int, places: Array) -> Array:
+    """Their derivatives by s (count, p).
+
+    >>> slopes(2, np.array([0.5])).ravel().tolist()
+    [0.0, 2.0]
+    """
+    return np.array([2.0 * legendre.legval(2.0 * np.asarray(places) - 1.0, legendre.legder(row)) for row in np.eye(count)])
+
+
+def project(values: Array, places: Array, weights: Array, size: int) -> Array:
+    """Coefficients (..., size) on P_0 ... P_(size - 1) of functions known at `places` (p,) with `weights`, by least squares.
+
+    What a rule of `size` points integrates of these polynomials times others are then the moments of the functions themselves.
+
+    >>> rule = gauss(5)
+    >>> project(rule.points**2, rule.points, rule.weights, 3).round(12).tolist()
+    [0.333333333333, 0.5, 0.166666666667]
+    """
+    return values @ (polynomials(size, places) * weights).T * (2.0 * np.arange(size) + 1.0)

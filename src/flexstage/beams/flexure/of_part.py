@@ -1,0 +1,51 @@
+"""Which law a part follows at large displacements; of a kind that is not here, all that is known is its 6x6 about its centre."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from flexstage.beams.compliance import beam_of
+from flexstage.beams.flexure.law import DEFAULT, STRESSES, FlexureLaw, Resolution, beam_law, leaf_law
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.material import Material
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.part import Part
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+from flexstage.parts.rod import Rod
+
+
+def _of_leaf(part: Leaf, material: Material, resolution: Resolution) -> FlexureLaw:
+    if part.section is LeafSection.BEAM:
+        return beam_law(beam_of(part, material), resolution, flat=True)
+    return leaf_law(part, material, resolution)
+
+
+def _of_rod(part: Rod, material: Material, resolution: Resolution) -> FlexureLaw:
+    return beam_law(beam_of(part, material), resolution)
+
+
+def _of_hinge(part: Notch | Neck, material: Material, resolution: Resolution) -> FlexureLaw:
+    return beam_law(beam_of(part, material), replace(STRESSES, points=resolution.points))
+
+
+_KINDS: Mapping[type, Callable[[Any, Material, Resolution], FlexureLaw]] = {
+    Leaf: _of_leaf,
+    Rod: _of_rod,
+    Notch: _of_hinge,
+    Neck: _of_hinge,
+    ReinforcedLeaf: _of_hinge,
+}
+
+
+def flexure_law(part: Part, material: Material | None, resolution: Resolution = DEFAULT) -> FlexureLaw | None:
+    """The law of a part that bends, or `None` where only its 6x6 is known.
+
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> flexure_law(Rod("steel", length=0.1, diameter=0.002), steel).signature
+    (10, 3, 20, 0)
+    """
+    known = _KINDS.get(type(part))
+    return None if known is None or material is None else known(part, material, resolution)

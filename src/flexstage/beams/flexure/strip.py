@@ -1,0 +1,136 @@
+"""The clamped strip: how the section of a leaf curves across its width, in even shapes of Legendre's P2 and P4 with Mindlin's shear.
+
+Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b): zero mean, so that neither
+mixes with W'', and phi2'' = 1. Clamped ends forbid amplitudes and the rotations psi of the section in each shape (docs/nonlinear.md, 10).
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Legendre, legendre
+
+from flexstage.base.number import Array, Number
+from flexstage.beams.flexure.modes import FINE, gauss, polynomials
+
+_TERMS = 30
+"""Polynomials a field along the strip."""
+_CUT = 1e-14
+"""Share of the largest singular value below which a combination of fields is rounding."""
+LOADS = (6, 4)
+"""Line loads on a2 and on a4 whose answers are the modes of a leaf's fields."""
+STRETCH_TWO, STRETCH_FOUR = 1.0 / 720.0, 1.0 / 1296.0
+"""Integrals of phi2^2 and phi4^2 across the width, over b^5."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """Modes of the fields a2 and a4 of a leaf (docs/nonlinear.md, 11), one amplitude each, lengths over L, energies over D b / L.
+
+    `form` (..., e, e) is their quadratic form, `values` (..., 2, e, n) what a2 and a4 are at the points of a rule, and `coupling`
+    (..., 2, e, k) their integrals with P_k, k < n.
+    """
+
+    form: Array
+    values: Array
+    coupling: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Across:
+    """Integrals across the width over b: phi phi, phi' phi', phi'' phi'' and phi phi'', each (2, 2), for b = 1."""
+
+    plain: Array
+    sloped: Array
+    curved: Array
+    mixed: Array
+
+
+@functools.cache
+def _across() -> _Across:
+    shapes = [Legendre.basis(degree, domain=[-0.5, 0.5]) / 12.0 for degree in (2, 4)]
+    nodes, weights = legendre.leggauss(8)
+    value, slope, curve = (np.array([shape.deriv(order)(0.5 * nodes) for shape in shapes]) for order in (0, 1, 2))
+    weights = 0.5 * weights
+    return _Across(value * weights @ value.T, slope * weights @ slope.T, curve * weights @ curve.T, value * weights @ curve.T)
+
+
+@functools.cache
+def _along() -> tuple[Array, Array, Array]:
+    """(1 - u^2) P_k and its derivative by s at the fine points of [0, 1], and their weights."""
+    rule = gauss(FINE)
+    terms = [Legendre([2.0 / 3.0, 0.0, -2.0 / 3.0], domain=[0.0, 1.0]) * Legendre.basis(k, domain=[0.0, 1.0]) for k in range(_TERMS)]
+    return np.array([term(rule.points) for term in terms]), np.array([term.deriv()(rule.points) for term in terms]), rule.weights
+
+
+@functools.cache
+def _products() -> tuple[Array, Array, Array]:
+    """Integrals of f g, f' g' and f' g of the polynomials along the strip."""
+    value, slope, weights = _along()
+    return value * weights @ value.T, slope * weights @ slope.T, slope * weights @ value.T
+
+
+def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
+    """Quadratic form (120, 120) of a2, a4, psi2, psi4 (docs/nonlinear.md, 10) of a strip of unit length, over D b.
+
+    >>> form = stiffness(0.5, 0.005, 0.3)
+    >>> form.shape, bool(np.allclose(form, form.T))
+    ((120, 120), True)
+    """
+    across = _across()
+    square = width * width
+    plain, sloped, curved, mixed = square * square * across.plain, square * across.sloped, across.curved, square * across.mixed
+    shear = 5.0 * (1.0 - poisson) / (thickness * thickness) * plain
+    torsion = 0.5 * (1.0 - poisson) * sloped
+    value, slope, slope_value = _products()
+    amplitude = np.kron(curved, value) + np.kron(torsion + shear, slope)
+    rotation = np.kron(plain, slope) + np.kron(torsion + shear, value)
+    # 2 nu A02 psi' a + (torsion - shear) a' psi: rows a, columns psi
+    both = np.kron(poisson * mixed.T, slope_value.T) + np.kron(torsion - shear, slope_value)
+    return np.block([[amplitude, both], [both.T, rotation]])
+
+
+def fields(width: Number, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
+    """The modes of a leaf's fields: answers of the strip to line loads P_k on a2 and on a4; `width` and `thickness` over the length.
+
+    >>> fields(0.3, 0.003, 0.3, 10).values.shape
+    (2, 10, 10)
+    """
+    form = stiffness(width, thickness, poisson)
+    value, _, weights = _along()
+    moments = polynomials(size, gauss(FINE).points)
+    load = value * weights @ moments.T
+    right = np.zeros((4 * _TERMS, sum(loads)))
+    right[:_TERMS, : loads[0]], right[_TERMS : 2 * _TERMS, loads[0] :] = load[:, : loads[0]], load[:, : loads[1]]
+    answer = _solve(form, right)
+    answer = answer / np.sqrt(np.sum(answer * (form @ answer), axis=0))
+    amplitudes = np.stack([answer[:_TERMS].T, answer[_TERMS : 2 * _TERMS].T])
+    along = amplitudes @ value
+    coupling = along * weights @ moments.T
+    projected = coupling * (2.0 * np.arange(size) + 1.0) @ polynomials(size, gauss(size).points)
+    return Fields(answer.T @ form @ answer, projected, coupling)
+
+
+def _solve(form: Array, right: Array) -> Array:
+    root = np.sqrt(np.diag(form))
+    return np.linalg.lstsq(form / root / root[:, None], right / root[:, None], rcond=_CUT)[0] / root[:, None]
+
+
+def secant(beta: Number, poisson: Number, *, shapes: int = 2) -> Number:
+    """M / (E I k) of a long leaf bent to the uniform curvature k (docs/nonlinear.md, 12), I = b t^3 / 12; beta = b^2 k / t.
+
+    From 1 (a beam, beta = 0) towards 1 / (1 - nu^2); with P2 and P4 within 0.04 % of Ashwell's strip to beta = 20 (D. G. Ashwell,
+    J. Roy. Aero. Soc. 54, 1950), 0.2 % at 40.
+
+    >>> round(float(secant(10.0, 0.3)), 4)
+    1.0638
+    """
+    across, squared = _across(), poisson * poisson
+    stretch = 12.0 * (1.0 - squared) * beta * beta * np.diag([STRETCH_TWO, STRETCH_FOUR])
+    form = (across.curved + stretch)[:shapes, :shapes]
+    pull = -poisson * np.array([1.0, 10.0 / 3.0])[:shapes]
+    found = np.linalg.solve(form, pull)
+    # energy by k at the fields that minimise it: D b (k + nu (a2 + 10/3 a4) + stretch of the fields)
+    return (1.0 - pull @ found + found @ stretch[:shapes, :shapes] @ found) / (1.0 - squared)

@@ -1,0 +1,204 @@
+"""Stability: how many ways a state would leave its equilibrium, and the load at which the first opens (docs/nonlinear.md, 22 to 24)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.condense import system
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.graph import System, assemble
+from flexstage.models.nonlinear.stage import Nonlinear
+
+_FIRST, _MOST, _GROWTH = 1e-3, 1e6, 1.5
+_SEEN = 1e-6
+"""Work of the load on the motion, over their sizes, below which it does none."""
+
+
+class Kind(Enum):
+    """What happens at a critical load: a `LIMIT` that the load cannot pass, or a `BIFURCATION` into another way of giving."""
+
+    LIMIT = "limit"
+    BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, eq=False)
+class Critical:
+    """The `factor` on a load at which the stage gives way, the `shape` (n, 6) of its `bodies` doing so, and of which `kind` it is.
+
+    `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one.
+    """
+
+    factor: float
+    bodies: tuple[str, ...]
+    shape: Array
+    kind: Kind
+    link: str
+    state: State
+
+
+def unstable_motions(state: State) -> Array:
+    """How many independent motions (...) lower the potential of each case: zero if it is stable. -1 where a case has no state.
+
+    The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers.
+    """
+    whole = _system(state)
+    held = whole.stiffness.shape[-1] - state.model.freedoms
+    count = _negative(whole.stiffness) - held
+    for bent in whole.bent:
+        count = count + np.sum(_negative(_indefinite(system(bent.tangent))) - 6, axis=0)
+    return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
+
+
+def critical(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    *,
+    rest: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    most: float = _MOST,
+    tolerance: float = 1e-9,
+) -> Critical:
+    """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
+
+    The factor grows from 0.001 by steps of half, each state from the one before; the change of `unstable_motions` is then bisected, or
+    found as a zero of the stage's lowest stiffness. Raises `DesignError` for a load that is nothing, for a stage that is unstable without
+    it, and where nothing gives way up to `most`.
+    """
+    if not any(load.values()):
+        raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
+    search = _Search(model, dict(load), dict(rest or {}), weight)
+    last, low, high = search.at(0.0, None), 0.0, _FIRST
+    if search.motions(last) != 0:
+        raise refuse("stage", "it is not stable, or has no equilibrium, without the load", "Look at its weight and its stated forces")
+    while high <= most:
+        found = search.at(high, last)
+        if search.motions(found) != 0:
+            return _close(search, (low, high), last, tolerance)
+        last, low, high = found, high, _GROWTH * high
+    raise refuse("load", f"nothing gives way up to {most:g} times the load", "Name a larger load, or another one")
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """A load to be scaled, and what stays."""
+
+    model: Nonlinear
+    load: Mapping[str, float]
+    rest: Mapping[str, float]
+    weight: float
+
+    def at(self, factor: float, start: State | None) -> State:
+        scaled = {name: factor * value for name, value in self.load.items()}
+        together = {name: scaled.get(name, 0.0) + self.rest.get(name, 0.0) for name in {**self.rest, **scaled}}
+        return equilibrium(self.model, together, weight=self.weight, start=start)
+
+    @staticmethod
+    def motions(state: State) -> int:
+        return int(unstable_motions(state))
+
+
+def _close(search: _Search, between: tuple[float, float], last: State, tolerance: float) -> Critical:
+    """Bisect the count; once both sides are near, the stage's lowest stiffness is taken to zero instead."""
+    low, high = between
+    while high - low > tolerance * high:
+        middle = 0.5 * (low + high)
+        found = search.at(middle, last)
+        if search.motions(found) == 0:
+            last, low = found, middle
+        elif not bool(found.converged) or high - low > 1e-2 * high:
+            high = middle
+        else:
+            sharp = _zero(search, (low, middle), last, tolerance)
+            if sharp is None:
+                high = middle
+            else:
+                return _told(search, sharp, search.at(sharp, last))
+    return _told(search, 0.5 * (low + high), last)
+
+
+def _zero(search: _Search, between: tuple[float, float], start: State, tolerance: float) -> float | None:
+    """Where the stage's lowest stiffness is zero; `None` where it is not what changes sign."""
+
+    def lowest(factor: float) -> float:
+        found = search.at(factor, start)
+        return float(_lowest(found)[0]) if bool(found.converged) else np.nan
+
+    ends = [lowest(factor) for factor in between]
+    if not np.all(np.isfinite(ends)) or ends[0] * ends[1] >= 0.0:
+        return None
+    return float(scipy.optimize.brentq(lowest, *between, xtol=tolerance * between[1], rtol=1e-14))
+
+
+def _lowest(state: State) -> tuple[float, Array]:
+    """The lowest scaled stiffness among motions that keep what is held, and its motion (n,)."""
+    whole = _system(state)
+    matrix, freedoms = whole.stiffness[0], state.model.freedoms
+    scale = _scale(state.model)
+    stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
+    free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
+    values, vectors = np.linalg.eigh(free.T @ stiff @ free)
+    return values[0], free @ vectors[:, 0] / scale
+
+
+def _told(search: _Search, factor: float, state: State) -> Critical:
+    model = search.model
+    _, motion = _lowest(state)
+    bent = _system(state).bent
+    weakest = [
+        (float(np.min(np.abs(np.linalg.eigvalsh(_indefinite(system(each.tangent))[place, 0])))), name)
+        for group, each in zip(model.flexures, bent, strict=True)
+        for place, name in enumerate(group.names)
+    ]
+    inside = min(weakest, default=(1.0, ""))
+    own = inside[1] if inside[0] < 1e-7 else ""
+    pushed = model.dead(
+        replace(state.loads, inputs=_inputs(search), gravity=0.0 * state.loads.gravity, constant=0.0 * state.loads.constant)
+    )
+    work = _work(model, state, pushed, motion)
+    return Critical(factor, model.bodies, motion.reshape(-1, 6), Kind.LIMIT if work > _SEEN else Kind.BIFURCATION, own, state)
+
+
+def _inputs(search: _Search) -> Array:
+    names = [channel.name for channel in search.model.inputs]
+    return np.array([[search.load.get(name, 0.0) for name in names]])
+
+
+def _work(model: Nonlinear, state: State, dead: Array, motion: Array) -> float:
+    """The load's work on a motion over both their sizes, lengths over the model's."""
+    arms = (state.pose.turn[0, model.places.body] @ model.places.arm[..., None])[..., 0]
+    force = np.zeros((len(model.bodies) + 1, 6))
+    np.add.at(force, model.places.body, np.concatenate([dead[0, :, :3], dead[0, :, 3:] + np.cross(arms, dead[0, :, :3])], axis=-1))
+    scale = _scale(model)
+    scaled, moved = np.ravel(force[:-1]) / scale, motion * scale
+    size = np.linalg.norm(scaled) * np.linalg.norm(moved)
+    return float(abs(scaled @ moved) / size) if size > 0.0 else 0.0
+
+
+def _scale(model: Nonlinear) -> Array:
+    return np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+
+
+def _system(state: State) -> System:
+    return assemble(state.model, state.pose, state.loads, state.hold)
+
+
+def _indefinite(matrix: Array) -> Array:
+    """The symmetric form of a flexure's system: the rows of its end with reversed signs."""
+    size = matrix.shape[-1] - 6
+    result = np.array(matrix)
+    result[..., size:, :] *= -1.0
+    return 0.5 * (result + np.swapaxes(result, -1, -2))
+
+
+def _negative(matrix: Array) -> Array:
+    """How many eigenvalues of symmetric matrices (..., n, n), scaled by their rows, are negative."""
+    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
+    return np.sum(np.linalg.eigvalsh(np.nan_to_num(even / size[..., None] / size[..., None, :])) < 0.0, axis=-1)

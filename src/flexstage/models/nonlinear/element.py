@@ -1,0 +1,222 @@
+"""One flexure at large displacements: the mixed functional's residual and its derivatives (docs/nonlinear.md, 1 to 8).
+
+Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures,
+states have one more, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.beams.flexure.law import FlexureLaw
+from flexstage.beams.flexure.modes import Rule, gauss
+from flexstage.spatial.frame import cross_matrix
+from flexstage.spatial.rotation import cross, exponential, magnus
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """How a flexure lies: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, its rotation there and at its end.
+
+    `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end; `soft` (..., b, n, 3, 3) is R C_n R^T,
+    `tension` (..., b, n) is N; `force` at the end and `weight` are those it lies under.
+    """
+
+    rule: Rule
+    curvature: Array
+    plate: Array
+    turn: Array
+    end_turn: Array
+    rate: Array
+    place: Array
+    end: Array
+    soft: Array
+    tension: Array
+    force: Array
+    weight: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """Residual `gradient` (..., b, q) of the amplitudes and the blocks of the derivative (docs/nonlinear.md, 6).
+
+    `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n. Of a
+    flexure with weight, `hung` (..., b, 3, q) and `swayed` (..., b, 2, 3, 3) are what its mean place does by amplitudes, force and weight.
+    """
+
+    gradient: Array
+    hessian: Array
+    reach: Array
+    turning: Array
+    soft: Array
+    hung: Array | None = None
+    swayed: Array | None = None
+
+
+def shape(law: FlexureLaw, strain: Array, force: Array, weight: Array | None = None) -> Shape:
+    """The flexure at given amplitudes and end force; `weight` (..., b, 3) is its own load per length, over E I / L^3."""
+    rule = gauss(law.modes.shape[-3])
+    count = law.modes.shape[-1]
+    curvature = _apply(law.modes, strain[..., :count])
+    turn, end_turn = _turns(rule, _apply(law.inner, strain[..., :count]))
+    local = _local(turn, _forces(rule, force, weight))
+    compliance = law.compliance[..., None, :, :]
+    stretched = compliance * local
+    twist = curvature[..., 0]
+    stretched[..., 0] += 1.0 - 0.5 * law.trapeze[..., None, None] * twist * twist
+    rate = (turn @ stretched[..., None])[..., 0]
+    soft = (turn * compliance[..., None, :]) @ np.swapaxes(turn, -1, -2)
+    plate = _apply(law.plate, strain[..., count:])
+    end = rule.weights @ rate
+    return Shape(rule, curvature, plate, turn, end_turn, rate, rule.running @ rate, end, soft, local[..., 0], force, weight)
+
+
+def tangent(law: FlexureLaw, strain: Array, moment: Array, found: Shape) -> Tangent:
+    """Residual and derivatives at a shape (docs/nonlinear.md, 4 to 8)."""
+    rule, modes = found.rule, law.modes[..., None, :, :, :]
+    weights = rule.weights[:, None, None]
+    size, count = modes.shape[-3], modes.shape[-1]
+    forces = _forces(rule, found.force, found.weight)
+    moments = moment[..., None, :] + _lever(found, forces)
+    rates = found.turn @ modes
+    flat = rates.reshape(*rates.shape[:-3], size, 3 * count)
+    turning = (rule.weights @ flat).reshape(*rates.shape[:-3], 3, count)
+    turned = (rule.running @ flat).reshape(rates.shape)
+    axis = found.turn[..., 0]
+    twist = law.trapeze[..., None, None, None] * found.curvature[..., 0, None] * modes[..., 0, :]
+    lever = cross_matrix(forces)
+    carried = (found.soft @ lever - cross_matrix(found.rate)) @ turned - axis[..., None] * twist[..., None, :]
+    reach = np.sum(weights * carried, axis=-3)
+    bending = _local(found.turn, moments)
+    bending[..., 0] -= law.trapeze[..., None, None] * found.tension * found.curvature[..., 0]
+    geometric = _product(rates, weights * (cross_matrix(moments) @ turned)) - _product(turned, weights * (lever @ carried))
+    pulled = np.sum((cross(axis, forces)[..., None] * turned), axis=-2)
+    narrow = modes[..., 0, :]
+    tension = law.trapeze[..., None, None, None] * found.tension[..., None] * narrow
+    geometric -= _product(narrow[..., None, :], weights * tension[..., None, :]) + _product(
+        twist[..., None, :], weights * pulled[..., None, :]
+    )
+    gradient, hessian = _elastic(law, strain, found)
+    gradient[..., :count] -= _project(modes, rule.weights[:, None] * bending)
+    hessian[..., :count, :count] -= geometric
+    none = np.zeros((*reach.shape[:-1], hessian.shape[-1] - count))
+    reach, turning = np.concatenate([reach, none], -1), np.concatenate([turning, none], -1)
+    whole = Tangent(gradient, hessian, reach, turning, np.sum(weights * found.soft, axis=-3))
+    if found.weight is None:
+        return whole
+    left = (1.0 - rule.points)[:, None, None]
+    sways = [np.sum(weights * left**power * found.soft, axis=-3) for power in (1, 2)]
+    hung = np.concatenate([np.sum(weights * left * carried, axis=-3), none], -1)
+    return replace(whole, hung=hung, swayed=np.stack(sways, axis=-3))
+
+
+def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
+    """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included."""
+    quadratic = 0.5 * np.sum(strain * (strain @ law.form), axis=-1)
+    gauss_two, gauss_four = _gaussian(found)
+    stretch = law.stretch[..., None, None, :]
+    density = stretch[..., 0] * gauss_two * gauss_two + stretch[..., 1] * gauss_four * gauss_four
+    forces = _forces(found.rule, found.force, found.weight)
+    density = density + np.sum(forces * (found.soft @ forces[..., None])[..., 0], axis=-1)
+    return quadratic + 0.5 * density @ found.rule.weights
+
+
+def _apply(table: Array, amplitudes: Array) -> Array:
+    """Values (..., b, n, c) of a table (..., n, c, k) at amplitudes (..., b, k)."""
+    rows = table.reshape(*table.shape[:-3], table.shape[-3] * table.shape[-2], table.shape[-1])
+    return (amplitudes @ np.swapaxes(rows, -1, -2)).reshape(*amplitudes.shape[:-1], *table.shape[-3:-1])
+
+
+def _turns(rule: Rule, inner: Array) -> tuple[Array, Array]:
+    """Rotations (..., n, 3, 3) at the points and (..., 3, 3) at the end."""
+    steps = np.diff(rule.knots)
+    values = inner.reshape(*inner.shape[:-2], len(steps), 3, 3)
+    turns = exponential(magnus(steps, values[..., 0, :], values[..., 1, :], values[..., 2, :]))
+    for step in range(1, len(steps)):
+        turns[..., step, :, :] = turns[..., step - 1, :, :] @ turns[..., step, :, :]
+    return turns[..., :-1, :, :], turns[..., -1, :, :]
+
+
+def _forces(rule: Rule, force: Array, weight: Array | None) -> Array:
+    """The force (..., b, n, 3) that the flexure beyond each point exerts: the end's, and its weight (docs/nonlinear.md, 16)."""
+    if weight is None:
+        return np.broadcast_to(force[..., None, :], (*force.shape[:-1], rule.size, 3))
+    return force[..., None, :] + (1.0 - rule.points)[:, None] * weight[..., None, :]
+
+
+def _lever(found: Shape, forces: Array) -> Array:
+    """Integral from each point to the end of r' x f (..., b, n, 3)."""
+    if found.weight is None:
+        return cross(found.end[..., None, :] - found.place, forces)
+    return (found.rule.weights - found.rule.running) @ cross(found.rate, forces)
+
+
+def _local(turn: Array, vectors: Array) -> Array:
+    return (np.swapaxes(turn, -1, -2) @ vectors[..., None])[..., 0]
+
+
+def _product(one: Array, other: Array) -> Array:
+    """Sum over points of one^T other, (..., n, r, k) each."""
+    shape = np.broadcast_shapes(one.shape[:-3], other.shape[:-3])
+    left = one.reshape(*one.shape[:-3], -1, one.shape[-1])
+    right = other.reshape(*other.shape[:-3], -1, other.shape[-1])
+    return (np.swapaxes(left, -1, -2) @ right).reshape(*shape, left.shape[-1], right.shape[-1])
+
+
+def _project(table: Array, values: Array) -> Array:
+    """Sum over points of table^T values: (..., 1, n, c, k) and (..., b, n, c) give (..., b, k)."""
+    rows = table.reshape(*table.shape[:-3], -1, table.shape[-1])[..., 0, :, :]
+    return values.reshape(*values.shape[:-2], -1) @ rows
+
+
+def _gaussian(found: Shape) -> tuple[Array, Array]:
+    """Gaussian curvature (..., b, n) in the shapes of P2 and P4 (docs/nonlinear.md, 13), without signs."""
+    twist, bend = found.curvature[..., 0], found.curvature[..., 2]
+    two, four = _plate(found)
+    return twist * twist - bend * two, bend * four
+
+
+def _plate(found: Shape) -> tuple[Array, Array]:
+    return found.plate[..., 0], found.plate[..., 1]
+
+
+def _elastic(law: FlexureLaw, strain: Array, found: Shape) -> tuple[Array, Array]:
+    """First and second derivatives of the strain energy without stretch by forces (docs/nonlinear.md, 13)."""
+    gradient = strain @ law.form
+    hessian = np.broadcast_to(law.form[..., None, :, :], (*gradient.shape, gradient.shape[-1])).copy()
+    if not np.any(law.stretch):
+        return gradient, hessian
+    rows, first, second = _stretching(law, found)
+    weights = found.rule.weights
+    gradient = gradient + _project(rows, weights[:, None] * first)
+    hessian = hessian + _product(rows, weights[:, None, None] * (second @ rows))
+    return gradient, hessian
+
+
+def _stretching(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
+    """What stretches: rows (..., 1, n, 4, q) of k_x, k_z, a2 and a4, and its energy's derivatives by them (..., b, n, 4), (..., 4, 4)."""
+    count, fields = law.modes.shape[-1], law.plate.shape[-1]
+    rows = np.zeros((*law.modes.shape[:-2], 4, count + fields))
+    rows[..., 0, :count], rows[..., 1, :count] = law.modes[..., 0, :], law.modes[..., 2, :]
+    rows[..., 2:, count:] = law.plate
+    twist, bend = found.curvature[..., 0], found.curvature[..., 2]
+    two, four = _plate(found)
+    stiff_two, stiff_four = law.stretch[..., None, None, 0], law.stretch[..., None, None, 1]
+    curve = stiff_two * (twist * twist - bend * two)
+    first = np.stack(
+        [2.0 * curve * twist, -curve * two + stiff_four * bend * four * four, -curve * bend, stiff_four * bend * bend * four], -1
+    )
+    second = np.zeros((*twist.shape, 4, 4))
+    slope = np.stack([2.0 * twist, -two, -bend, np.zeros_like(twist)], -1)
+    second += stiff_two[..., None, None] * slope[..., :, None] * slope[..., None, :]
+    second[..., 0, 0] += 2.0 * curve
+    second[..., 1, 2] -= curve
+    second[..., 2, 1] -= curve
+    second[..., 1, 1] += stiff_four * four * four
+    second[..., 1, 3] += 2.0 * stiff_four * bend * four
+    second[..., 3, 1] += 2.0 * stiff_four * bend * four
+    second[..., 3, 3] += stiff_four * bend * bend
+    return rows[..., None, :, :, :], first, second

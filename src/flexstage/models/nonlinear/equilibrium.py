@@ -1,0 +1,171 @@
+"""Where a stage comes to rest under loads, strokes and its weight."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array, Number
+from flexstage.models.linear.channels import wrench_places
+from flexstage.models.nonlinear.hold import Hold
+from flexstage.models.nonlinear.newton import USUAL, Effort, Found, equilibrate
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import Loads, Pose, Status
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.rotation import logarithm
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A stage at rest under loads, in cases of any shape (...).
+
+    `status` tells how each search ended, `iterations` and `residual` (over lengths and stiffnesses) what it took; where a case did not
+    converge its numbers are NaN. `reactions` (..., h) are what holds the `held` coordinates [N, N m].
+    """
+
+    model: Nonlinear
+    loads: Loads
+    hold: Hold
+    pose: Pose
+    shape: tuple[int, ...]
+    status: Array
+    iterations: Array
+    residual: Array
+    held: tuple[str, ...]
+
+    @property
+    def converged(self) -> Array:
+        """Which cases (...) found their equilibrium."""
+        return self.status == Status.CONVERGED
+
+    @property
+    def reactions(self) -> Array:
+        """Forces and moments (..., h) that hold the held coordinates [N, N m]; what the holder exerts on the stage."""
+        count = self.pose.held.shape[1] - len(self.held)
+        return self._known(-self.pose.held[:, count:])
+
+    def displacement(self, place: str = "platform") -> Array:
+        """How far (..., 3) a body's reference, or a named point, has moved from where it is drawn [m]."""
+        body, arm = self._place(place)
+        moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ arm) - self.model.reference[body] - arm
+        return self._known(moved)
+
+    def rotation(self, body: str = "platform") -> Array:
+        """The rotation vector (..., 3) of a body, or of that of a named point [rad]."""
+        return self._known(logarithm(self.pose.turn[:, self._place(body)[0]]))
+
+    def twist(self, place: str = "platform") -> Array:
+        """Displacement and rotation vector (..., 6) of a place [m, rad]."""
+        return np.concatenate([self.displacement(place), self.rotation(place)], axis=-1)
+
+    def wrench(self, link: str) -> Array:
+        """What the second body exerts (..., 6) on a flexure's end, in the frame of its start, about its end [N, N m]."""
+        for number, group in enumerate(self.model.flexures):
+            if link in group.names:
+                place = group.names.index(link)
+                unit = group.law.rigidity[place] / group.law.length[place] ** np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+                return self._known(unit * self.pose.wrench[number][place])
+        names = [name for group in self.model.flexures for name in group.names]
+        raise refuse(link, "it is no flexure of this stage", suggest_nearest(link, names))
+
+    def _place(self, name: str) -> tuple[int, Array]:
+        return place(self.model, name)
+
+    def _known(self, values: Array) -> Array:
+        known = np.where((self.status == Status.CONVERGED).reshape(-1)[:, None], values, np.nan)
+        return known.reshape(*self.shape, values.shape[-1])
+
+
+def place(model: Nonlinear, name: str) -> tuple[int, Array]:
+    """The body's number and the drawn arm of a body's reference or a named point; refused for what is neither."""
+    if name in model.bodies:
+        return model.body(name), np.zeros(3)
+    known = wrench_places(model.assembly)
+    if name not in known:
+        raise refuse(name, "it is neither a body nor a point of this stage", suggest_nearest(name, [*model.bodies, *known]))
+    body = model.body(known[name].body)
+    return body, known[name].point - model.reference[body]
+
+
+def equilibrium(
+    model: Nonlinear,
+    loads: Mapping[str, Number] | None = None,
+    *,
+    hold: Mapping[str, Number] | None = None,
+    weight: Number = 1.0,
+    stated: Number = 1.0,
+    start: State | None = None,
+    effort: Effort = USUAL,
+) -> State:
+    """The equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`), numbers or arrays of cases.
+
+    `hold` imposes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`: component of the rotation vector [rad])
+    and finds what holds them. `weight` and `stated` are shares of gravity and of stated forces and preloads. Wrenches are dead: they keep
+    their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once; a case without an
+    equilibrium that Newton's method finds is NaN and says so in `status`. Raises `DesignError` for names that the stage does not have.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = equilibrium(nonlinear(parallelogram()), {"platform.fx": [100.0, 200.0]}, weight=0.0)
+    >>> (found.displacement()[:, 0] * 1e6).round(1).tolist()
+    [5.2, 10.3]
+    """
+    given, held = dict(loads or {}), dict(hold or {})
+    require([*_unknown_inputs(model, given), *_unknown_coordinates(model, held)])
+    arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (*given.values(), *held.values(), weight, stated)))
+    shape, flat = arrays[0].shape, [np.ravel(each) for each in arrays]
+    cases = flat[0].size
+    inputs = np.zeros((cases, len(model.inputs)))
+    names = [channel.name for channel in model.inputs]
+    for name, values in zip(given, flat, strict=False):
+        inputs[:, names.index(name)] = values
+    whole = Loads(inputs, flat[-2][:, None] * model.gravity, flat[-1])
+    holding = _hold(model, held, flat[len(given) : len(given) + len(held)], cases)
+    first = _first(model, start, holding, cases)
+    found = equilibrate(model, first, whole, holding, effort)
+    return state(model, whole, holding, found, (shape, tuple(held)))
+
+
+def state(model: Nonlinear, loads: Loads, hold: Hold, found: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
+    """The state of what was found, its cases in a shape, its held coordinates named."""
+    shape, held = labels
+    status, iterations, residual = (each.reshape(shape) for each in (found.status, found.iterations, found.residual))
+    return State(model, loads, hold, found.pose, shape, status, iterations, residual, held)
+
+
+def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pose:
+    pose = model.drawn(cases) if start is None else start.pose
+    if len(pose.position) != cases:
+        pose = pose.of(np.zeros(cases, dtype=int))
+    reactions = np.zeros((cases, len(model.hinges.locked) + len(hold.body)))
+    count = min(reactions.shape[1], pose.held.shape[1])
+    reactions[:, :count] = pose.held[:, :count]
+    return Pose(pose.position, pose.turn, pose.strain, pose.wrench, reactions)
+
+
+def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cases: int) -> Hold:
+    places = [name.rpartition(".") for name in held]
+    found = [place(model, owner) for owner, _, _ in places]
+    body = np.array([number for number, _ in found], dtype=int)
+    arm = np.array([arm for _, arm in found]).reshape(-1, 3)
+    component = np.array([COMPONENTS.index(name) for _, _, name in places], dtype=int)
+    return Hold(body, arm, component, model.reference[body] + arm, np.stack(values, axis=-1) if values else np.zeros((cases, 0)))
+
+
+def _unknown_inputs(model: Nonlinear, given: Mapping[str, Number]) -> Iterator[Finding]:
+    names = [channel.name for channel in model.inputs]
+    for name in given:
+        if name not in names:
+            yield Finding(name, "it is no load of this stage", suggest_nearest(name, names))
+
+
+def _unknown_coordinates(model: Nonlinear, held: Mapping[str, Number]) -> Iterator[Finding]:
+    places = [*model.bodies, *wrench_places(model.assembly)]
+    for name in held:
+        owner, _, component = name.rpartition(".")
+        if owner not in places or component not in COMPONENTS:
+            advice = suggest_nearest(name, [f"{each}.{component}" for each in places for component in COMPONENTS])
+            yield Finding(name, "it is no coordinate of this stage", advice)

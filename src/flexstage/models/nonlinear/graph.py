@@ -1,0 +1,270 @@
+"""The stage's residual and stiffness at a pose: links condensed to their bodies, six unknowns a body (docs/nonlinear.md, 17 to 20)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.beams.flexure.law import FlexureLaw
+from flexstage.models.nonlinear.condense import Answer, condense
+from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
+from flexstage.models.nonlinear.hinge import Ends, stiffen
+from flexstage.models.nonlinear.hold import Hold, gradients
+from flexstage.models.nonlinear.stage import Flexures, Nonlinear
+from flexstage.models.nonlinear.state import Loads, Pose
+from flexstage.spatial.frame import cross_matrix
+from flexstage.spatial.rotation import cross, exponential, logarithm
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """A group of flexures at a pose: frames and arms (l, b, ...) in space, how they lie, and the answer to their own system.
+
+    `lever` is h, from the first body's reference to the end; `arm` a_j, from the second's; `onset` a_i; `weight` (l, b, 3) the weight over
+    E I / L^3 in the start frames, absent without gravity. `gap` (l, b, 6) is how far the end lies off its body,
+    `wrench` (l, b, 6) what the body there exerts on it once its own system is solved.
+    """
+
+    frame: Array
+    onset: Array
+    lever: Array
+    arm: Array
+    weight: Array | None
+    lies: Shape
+    tangent: Tangent
+    gap: Array
+    answer: Answer
+    wrench: Array
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Residual (b, n) and stiffness (b, n, n) of bodies' freedoms and of reactions; the groups as they are bent."""
+
+    residual: Array
+    stiffness: Array
+    bent: tuple[Bent, ...]
+
+
+def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
+    """Residual and stiffness of the stage, the forces of flexures already brought up to date."""
+    cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
+    residual, stiffness = np.zeros((cases, size + count)), np.zeros((cases, size + count, size + count))
+    bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
+    for group, found in zip(model.flexures, bent, strict=True):
+        force, own = _flexure_terms(group.law, found)
+        _scatter(residual, stiffness, (group.first, group.second), force, own)
+    _add_hinges(model, pose, loads, residual, stiffness)
+    _add_loads(model, pose, loads, residual, stiffness)
+    _add_holds(hold, pose, residual, stiffness, size + len(model.hinges.locked))
+    kept = np.r_[: model.freedoms, size : size + count]
+    return System(residual[:, kept], stiffness[:, kept[:, None], kept], bent)
+
+
+def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
+    """A group of flexures between its bodies."""
+    law = group.law
+    turn, other = _gather(pose.turn, group.first), _gather(pose.turn, group.second)
+    frame = turn @ group.turn[:, None]
+    onset, arm = (_rotate(each, arms[:, None]) for each, arms in ((turn, group.arm_first), (other, group.arm_second)))
+    across = _gather(pose.position, group.second) + arm - _gather(pose.position, group.first) - onset
+    length = law.length[:, None, None]
+    weight = _weight(law, frame, loads)
+    strain, force, moment = pose.strain[number], pose.wrench[number][..., :3], pose.wrench[number][..., 3:]
+    lies = shape(law, strain, force, weight)
+    slope = tangent(law, strain, moment, lies)
+    twisted = logarithm(lies.end_turn @ _transpose(other @ group.turn[:, None]) @ frame)
+    gap = np.concatenate([lies.end - _rotate(_transpose(frame), across) / length, twisted], axis=-1)
+    answer = condense(slope, gap)
+    wrench = pose.wrench[number] + answer.still[..., -6:]
+    return Bent(frame, onset, across + onset, arm, weight, lies, slope, gap, answer, wrench)
+
+
+def end_motion(law: FlexureLaw, bent: Bent) -> Array:
+    """T (l, b, 6, 12): the motion of the end in the start frame, over the length, by those of both bodies (docs/nonlinear.md, 17)."""
+    back = _transpose(bent.frame)
+    none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
+    place = back @ np.concatenate([-eye, cross_matrix(bent.lever), eye, -cross_matrix(bent.arm)], axis=-1)
+    turn = np.concatenate([none, -back, none, back], axis=-1)
+    return np.concatenate([place / law.length[:, None, None, None], turn], axis=-2)
+
+
+def weight_motion(bent: Bent) -> Array:
+    """How the weight in the start frame changes (l, b, 3, 12) as the first body turns."""
+    assert bent.weight is not None  # noqa: S101  (asked for only where there is weight)
+    back = _transpose(bent.frame)
+    result = np.zeros((*back.shape[:-1], 12))
+    result[..., 3:6] = cross_matrix(bent.weight) @ back
+    return result
+
+
+def geometric(law: FlexureLaw, bent: Bent, force: Array, moment: Array) -> Array:
+    """The part (l, b, 12, 12) of the stiffness that comes from arms turning under the forces on the end (docs/nonlinear.md, 18)."""
+    scale = (law.rigidity / law.length)[:, None, None]
+    force_hat = cross_matrix(_rotate(bent.frame, force) * scale / law.length[:, None, None])
+    moment_hat = cross_matrix(_rotate(bent.frame, moment) * scale)
+    lever, arm, none = cross_matrix(bent.lever), cross_matrix(bent.arm), np.zeros_like(force_hat)
+    result = np.block(
+        [
+            [none, force_hat, none, none],
+            [-force_hat, lever @ force_hat + moment_hat, force_hat, -force_hat @ arm],
+            [none, -force_hat, none, none],
+            [none, -arm @ force_hat - moment_hat, none, force_hat @ arm],
+        ]
+    )
+    if bent.weight is not None:
+        weight, hanging = _weight_of(law, bent)
+        result[..., 3:6, 3:6] -= cross_matrix(weight) @ cross_matrix(hanging)
+    return result
+
+
+def _weight_of(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
+    """The weight (l, b, 3) [N] in space, and the arm of its centre from the first body's reference [m]."""
+    assert bent.weight is not None  # noqa: S101
+    rule = bent.lies.rule
+    mean = np.einsum("n,lbnc->lbc", rule.weights * (1.0 - rule.points), bent.lies.rate)
+    weight = _rotate(bent.frame, bent.weight) * (law.rigidity / law.length**2)[:, None, None]
+    return weight, bent.onset + law.length[:, None, None] * _rotate(bent.frame, mean)
+
+
+def _flexure_terms(law: FlexureLaw, bent: Bent) -> tuple[Array, Array]:
+    """Residual (l, b, 12) and stiffness (l, b, 12, 12) of flexures on their two bodies."""
+    count = law.form.shape[-1]
+    motion = end_motion(law, bent)
+    unit = (law.rigidity / law.length)[:, None, None]
+    units = np.concatenate([np.ones(3), np.ones(3)]) * unit
+    wrench = bent.wrench
+    residual = (_transpose(motion) @ (units * wrench)[..., None])[..., 0]
+    moved = bent.answer.moved
+    whole = moved[..., count:, :6] @ motion
+    result = _transpose(motion) @ (units[..., None] * whole)
+    if bent.weight is not None:
+        residual, result = _add_weight(law, bent, motion, residual, result)
+    return residual, result + geometric(law, bent, wrench[..., :3], wrench[..., 3:])
+
+
+def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, stiffness: Array) -> tuple[Array, Array]:
+    """What the flexures' own weight adds (docs/nonlinear.md, 16)."""
+    count, moved, found = law.form.shape[-1], bent.answer.moved, bent.tangent
+    assert found.hung is not None  # noqa: S101
+    assert found.swayed is not None  # noqa: S101
+    sway = weight_motion(bent)
+    unit = (law.rigidity / law.length)[:, None, None, None]
+    down = moved[..., :6] @ motion + moved[..., 6:] @ sway
+    mean = (
+        found.hung @ down[..., :count, :] + found.swayed[..., 0, :, :] @ down[..., count : count + 3, :] + found.swayed[..., 1, :, :] @ sway
+    )
+    stiffness = stiffness + unit * (_transpose(motion) @ (moved[..., count:, 6:] @ sway) - _transpose(sway) @ mean)
+    weight, hanging = _weight_of(law, bent)
+    residual = residual.copy()
+    residual[..., :3] -= weight
+    residual[..., 3:6] -= cross(hanging, weight)
+    return residual, stiffness
+
+
+def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Array) -> None:
+    hinges, size = model.hinges, model.freedoms + 6
+    if not hinges.names:
+        return
+    links, freedoms = hinges.locked.T
+    held = np.zeros((len(hinges.names), len(pose.position), 6))
+    held[links, :, freedoms] = pose.held[:, : len(links)].T
+    ends = hinge_ends(model, pose)
+    force, own, deformation, rows = stiffen(hinges, ends, loads.inputs, loads.constant, held)
+    _scatter(residual, stiffness, (hinges.first, hinges.second), force, own)
+    imposed = np.swapaxes(hinges.stroke @ loads.inputs.T, -1, -2)
+    for place, (link, freedom) in enumerate(hinges.locked):
+        residual[:, size + place] = deformation[link, :, freedom] - imposed[link, :, freedom]
+        for body, part in ((hinges.first[link], slice(0, 6)), (hinges.second[link], slice(6, 12))):
+            columns = slice(6 * body, 6 * body + 6)
+            stiffness[:, size + place, columns] += rows[link, :, freedom, part]
+            stiffness[:, columns, size + place] += rows[link, :, freedom, part]
+
+
+def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
+    """The poses of the bodies of links about centres."""
+    first, second = model.hinges.first, model.hinges.second
+    return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
+
+
+def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Array) -> None:
+    """Dead forces at points of bodies, and dead couples (docs/nonlinear.md, 19)."""
+    dead = model.dead(loads)
+    arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
+    moment = cross(arms, dead[..., :3]) + dead[..., 3:]
+    turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
+    for place, body in enumerate(model.places.body):
+        start = 6 * body
+        residual[:, start : start + 3] -= dead[:, place, :3]
+        residual[:, start + 3 : start + 6] -= moment[:, place]
+        stiffness[:, start + 3 : start + 6, start + 3 : start + 6] += turning[:, place]
+
+
+def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Array, start: int) -> None:
+    for place in range(len(hold.body)):
+        first = 6 * hold.body[place]
+        columns, row = slice(first, first + 6), start + place
+        reaction = pose.held[:, pose.held.shape[1] - len(hold.body) + place]
+        value, along, curved = gradients(hold, place, pose)
+        residual[:, row] = value - hold.value[:, place]
+        residual[:, columns] += reaction[:, None] * along
+        stiffness[:, row, columns] += along
+        stiffness[:, columns, row] += along
+        stiffness[:, columns, columns] += reaction[:, None, None] * curved
+
+
+def _scatter(residual: Array, stiffness: Array, joins: tuple[Array, Array], force: Array, own: Array) -> None:
+    """Add what links (l, b, 12) and (l, b, 12, 12) do to their two bodies."""
+    for link, bodies in enumerate(zip(*joins, strict=True)):
+        places = [slice(6 * body, 6 * body + 6) for body in bodies]
+        for row, rows in enumerate(places):
+            residual[:, rows] += force[link, :, 6 * row : 6 * row + 6]
+            for column, columns in enumerate(places):
+                stiffness[:, rows, columns] += own[link, :, 6 * row : 6 * row + 6, 6 * column : 6 * column + 6]
+
+
+def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> Pose:
+    """The pose after a share (b,) of the step (b, n), the unknowns inside flexures following at once."""
+    cases = len(pose.position)
+    moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)
+    strain, wrench = [], []
+    for number, group in enumerate(model.flexures):
+        inner = follow(group, bent[number], moved) * share[:, None]
+        count = group.law.form.shape[-1]
+        strain.append(pose.strain[number] + inner[..., :count])
+        wrench.append(pose.wrench[number] + inner[..., count:])
+    moved = moved * share[:, None, None]
+    turn = exponential(moved[..., 3:]) @ pose.turn
+    return Pose(pose.position + moved[..., :3], turn, tuple(strain), tuple(wrench), pose.held + share[:, None] * step[:, model.freedoms :])
+
+
+def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
+    """The step (l, b, q + 6) inside flexures as bodies move by (b, n + 1, 6)."""
+    both = np.concatenate([np.moveaxis(moved[:, each], 1, 0) for each in (group.first, group.second)], axis=-1)[..., None]
+    step = bent.answer.moved[..., :6] @ (end_motion(group.law, bent) @ both)
+    if bent.weight is not None:
+        step = step + bent.answer.moved[..., 6:] @ (weight_motion(bent) @ both)
+    return bent.answer.still + step[..., 0]
+
+
+def _weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
+    """The flexures' weight per length over E I / L^3 in their start frames; `None` without gravity."""
+    if not np.any(loads.gravity):
+        return None
+    density = np.mean(law.inertia[..., 0], axis=-1) * law.length**3 / law.rigidity
+    return density[:, None, None] * _rotate(_transpose(frame), loads.gravity)
+
+
+def _gather(array: Array, bodies: Array) -> Array:
+    """(b, n, ...) of bodies (l,) as (l, b, ...)."""
+    return np.moveaxis(array[:, bodies], 1, 0)
+
+
+def _rotate(turn: Array, vector: Array) -> Array:
+    return (turn @ np.broadcast_to(vector, turn.shape[:-1])[..., None])[..., 0]
+
+
+def _transpose(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

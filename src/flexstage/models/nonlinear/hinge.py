@@ -1,0 +1,103 @@
+"""Links known by their 6x6 about a centre, at large displacements: springs, stacks, given matrices, joints (docs/nonlinear.md, 15).
+
+Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the frame
+half-way, R_m = R_a exp(psi / 2): the same for exchanged ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.spatial.frame import cross_matrix
+from flexstage.spatial.rotation import exponential, exponential_rate, logarithm, logarithm_rate
+
+_STEP = 1e-30
+
+
+@dataclass(frozen=True, eq=False)
+class Hinges:
+    """Links about centres: bodies by number, the link's axes `turn` (l, 3, 3) as drawn, arms (l, 3) from the bodies' references.
+
+    `stiffness` (l, 6, 6); per input the free deformation `stroke` and the wrench `thrust` on the second body, both (l, 6, m); `push` (l, 6)
+    is the wrench on it as drawn. `locked` (c, 2) are pairs of link and freedom without any deformation.
+    """
+
+    names: tuple[str, ...]
+    first: Array
+    second: Array
+    turn: Array
+    arm_first: Array
+    arm_second: Array
+    stiffness: Array
+    stroke: Array
+    thrust: Array
+    push: Array
+    locked: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """Poses of the two bodies of links: positions (..., 3) and rotations (..., 3, 3)."""
+
+    first: Array
+    first_turn: Array
+    second: Array
+    second_turn: Array
+
+
+def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
+    """Deformations (..., 6) and their derivatives (..., 6, 12) by the motions of the two bodies; poses (..., l, b, 3)."""
+    turn = hinges.turn[:, None]
+    frame, other = ends.first_turn @ turn, ends.second_turn @ turn
+    arm = (ends.first_turn @ hinges.arm_first[:, None, :, None])[..., 0]
+    other_arm = (ends.second_turn @ hinges.arm_second[:, None, :, None])[..., 0]
+    gap = ends.second + other_arm - ends.first - arm
+    angle = logarithm(_transpose(frame) @ other)
+    back = _transpose(frame @ exponential(0.5 * angle))
+    turning = logarithm_rate(angle) @ _transpose(frame)
+    half = 0.5 * frame @ exponential_rate(0.5 * angle) @ turning
+    lever = cross_matrix(gap)
+    eye = np.broadcast_to(np.eye(3), back.shape)
+    # d = R_m^T gap: its change is R_m^T (d gap + gap x w_m), w_m = th_i + half (th_j - th_i)
+    moved = back @ np.concatenate([-eye, cross_matrix(arm) + lever @ (eye - half), eye, lever @ half - cross_matrix(other_arm)], axis=-1)
+    none = np.zeros_like(turning)
+    turned = np.concatenate([none, -turning, none, turning], axis=-1)
+    return np.concatenate([(back @ gap[..., None])[..., 0], angle], axis=-1), np.concatenate([moved, turned], axis=-2)
+
+
+def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
+    """What the links resist with (..., l, b, 6): elastic, less what inputs (b, m) and the pushes exert, and `held` by locked freedoms."""
+    free = np.swapaxes(hinges.stroke @ inputs.T, -1, -2)
+    own = np.swapaxes(hinges.thrust @ inputs.T, -1, -2) + pushing[:, None] * hinges.push[:, None]
+    return (hinges.stiffness[:, None] @ (deformation - free)[..., None])[..., 0] - own + held
+
+
+def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Array) -> tuple[Array, Array, Array, Array]:
+    """Residual (l, b, 12), its derivative (l, b, 12, 12) by complex steps, deformations and their derivatives."""
+    deformation, rows = deform(hinges, ends)
+    residual = _work(rows, exerted(hinges, deformation, inputs, pushing, held))
+    stepped, stepped_rows = deform(hinges, _nudge(ends))
+    work = _work(stepped_rows, exerted(hinges, stepped, inputs, pushing, held))
+    return residual, np.moveaxis(np.imag(work), 0, -1) / _STEP, deformation, rows
+
+
+def _work(rows: Array, wrench: Array) -> Array:
+    return (_transpose(rows) @ wrench[..., None])[..., 0]
+
+
+def _nudge(ends: Ends) -> Ends:
+    """The ends after a complex step in each of their twelve motions, on a new first axis."""
+    step = 1j * _STEP * np.eye(12)[:, None, None, :]
+    return Ends(
+        ends.first + step[..., :3],
+        exponential(step[..., 3:6]) @ ends.first_turn,
+        ends.second + step[..., 6:9],
+        exponential(step[..., 9:]) @ ends.second_turn,
+    )
+
+
+def _transpose(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

@@ -1,0 +1,65 @@
+"""Coordinates of bodies that are held at a value: what a drive does, and the reaction that it finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.state import Pose
+from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate
+
+_STEP = 1e-30
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """Held coordinates: of bodies by number (h,), at drawn arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
+
+    A translation is that of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
+    `origin` (h, 3) is where the points are drawn.
+    """
+
+    body: Array
+    arm: Array
+    component: Array
+    origin: Array
+    value: Array
+
+    def of(self, cases: Array) -> Hold:
+        """That of some cases."""
+        return Hold(self.body, self.arm, self.component, self.origin, self.value[cases])
+
+
+def nothing(cases: int) -> Hold:
+    """Nothing held."""
+    none = np.zeros(0, dtype=int)
+    return Hold(none, np.zeros((0, 3)), none, np.zeros((0, 3)), np.zeros((cases, 0)))
+
+
+def values(hold: Hold, place: int, pose: Pose) -> Array:
+    """How far the held coordinate has moved (b,)."""
+    body = hold.body[place]
+    return _coordinate(hold, place, pose.position[:, body], pose.turn[:, body])[0]
+
+
+def gradients(hold: Hold, place: int, pose: Pose) -> tuple[Array, Array, Array]:
+    """Value (b,) of a held coordinate, its gradient (b, 6) by the body's motion and the derivative (b, 6, 6) of that, by complex steps."""
+    position, turn = pose.position[:, hold.body[place]], pose.turn[:, hold.body[place]]
+    value, along = _coordinate(hold, place, position, turn)
+    step = 1j * _STEP * np.eye(6)[:, None]
+    _, stepped = _coordinate(hold, place, position + step[..., :3], exponential(step[..., 3:]) @ turn)
+    return value, along, np.moveaxis(np.imag(stepped), 0, -1) / _STEP
+
+
+def _coordinate(hold: Hold, place: int, position: Array, turn: Array) -> tuple[Array, Array]:
+    component = int(hold.component[place])
+    if component > 2:
+        angle = logarithm(turn)
+        rows = logarithm_rate(angle)[..., component - 3, :]
+        return angle[..., component - 3], np.concatenate([np.zeros_like(rows), rows], axis=-1)
+    arm = turn @ hold.arm[place]
+    value = position[..., component] + arm[..., component] - hold.origin[place, component]
+    unit = np.broadcast_to(np.eye(3)[component], arm.shape)
+    return value, np.concatenate([unit, np.cross(arm, unit)], axis=-1)

@@ -1,0 +1,231 @@
+"""A stage read for large displacements: bodies, flexures in groups of one kind, links about centres, and where loads act."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+
+from flexstage.base.digest import digest
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, stack
+from flexstage.beams.compliance import law
+from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
+from flexstage.beams.flexure.of_part import flexure_law
+from flexstage.beams.mass import mass
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.incidence import layout
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
+from flexstage.models.linear.channels import exerted_wrenches, imposed_strokes, input_channels, wrench_places
+from flexstage.models.linear.model import Channel
+from flexstage.models.nonlinear.hinge import Hinges
+from flexstage.models.nonlinear.state import Loads, Pose
+from flexstage.parts.part import push_of, span
+
+
+@dataclass(frozen=True, eq=False)
+class Flexures:
+    """Flexures whose tables have one shape: bodies by number, start frame `turn` (l, 3, 3) as drawn, arms (l, 3) to start and end."""
+
+    names: tuple[str, ...]
+    law: FlexureLaw
+    first: Array
+    second: Array
+    turn: Array
+    arm_first: Array
+    arm_second: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where dead loads act: a body's number and the drawn arm (d, 3) from its reference."""
+
+    body: Array
+    arm: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Nonlinear:
+    """A stage for large displacements: see `nonlinear`.
+
+    `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) as drawn. Dead loads act at `places`: first those of
+    the wrench inputs, then the stated forces with `stated` (d, 3), then the `masses` (d,).
+    """
+
+    assembly: Assembly
+    bodies: tuple[str, ...]
+    reference: Array
+    flexures: tuple[Flexures, ...]
+    hinges: Hinges
+    inputs: tuple[Channel, ...]
+    places: Places
+    stated: Array
+    masses: Array
+    inertia: Mapping[str, Array]
+    gravity: Array
+    provenance: str
+
+    @cached_property
+    def size(self) -> float:
+        """The length that translations are compared with [m]: that of the longest flexure, or the largest arm."""
+        lengths = [float(np.max(group.law.length)) for group in self.flexures]
+        arms = [np.max(np.abs(each), initial=0.0) for each in (self.hinges.arm_first, self.hinges.arm_second)]
+        return max(lengths) if lengths else float(max(*arms, 1e-3))
+
+    @property
+    def freedoms(self) -> int:
+        """Coordinates of the bodies."""
+        return 6 * len(self.bodies)
+
+    def body(self, name: str) -> int:
+        """A body's number."""
+        return len(self.bodies) if name == GROUND else self.bodies.index(name)
+
+    def drawn(self, cases: int) -> Pose:
+        """The drawn position of b cases, unloaded."""
+        count = len(self.bodies) + 1
+        sizes = [(len(group.names), cases, group.law.form.shape[-1]) for group in self.flexures]
+        return Pose(
+            np.broadcast_to(self.reference, (cases, count, 3)),
+            np.broadcast_to(np.eye(3), (cases, count, 3, 3)),
+            tuple(np.zeros(size) for size in sizes),
+            tuple(np.zeros((*size[:2], 6)) for size in sizes),
+            np.zeros((cases, len(self.hinges.locked))),
+        )
+
+    def dead(self, loads: Loads) -> Array:
+        """Dead wrenches (b, d, 6) at the places."""
+        wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
+        given = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
+        count = len(given) // 6
+        wrench[:, :count] = loads.inputs[:, given].reshape(-1, count, 6)
+        wrench[..., :3] += loads.constant[:, None, None] * self.stated + self.masses[:, None] * loads.gravity[:, None]
+        return wrench
+
+
+def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT) -> Nonlinear:
+    """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
+
+    Leaves, rods, notches and necks bend; all other links are their 6x6 in a frame that turns with them. Valid for small strains in the
+    flexures. Superelements, and batches of designs, are refused.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> [group.names for group in nonlinear(parallelogram()).flexures]
+    [('left', 'right'), ('B/back', 'B/front')]
+    """
+    assembly = expand(mechanism)
+    if assembly.superelements:
+        names = ", ".join(assembly.superelements)
+        raise refuse(names, "superelements at large displacements are not known", "Use the lumped model, or draw the part")
+    bodies = layout(assembly).bodies
+    reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
+    laws = {name: flexure_law(link.part, link.material, resolution) for name, link in assembly.links.items()}
+    number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
+    flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, number, reference)
+    centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
+    places, stated, masses = _places(mechanism, assembly, number, reference, centred)
+    carried = {name: moving_inertia(mechanism, placed) for name, placed in assembly.bodies.items()}
+    return Nonlinear(
+        assembly=assembly,
+        bodies=bodies,
+        reference=reference,
+        flexures=flexures,
+        hinges=_hinges(assembly, centred, number, reference),
+        inputs=input_channels(assembly),
+        places=places,
+        stated=stated,
+        masses=masses,
+        inertia={name: item for name, item in carried.items() if item is not None},
+        gravity=stack(mechanism.gravity),
+        provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}",
+    )
+
+
+def _one(value: Array, name: str) -> Array:
+    if np.asarray(value).ndim != 1:
+        raise refuse(name, "a batch of designs at large displacements is not known", "Read one design at a time")
+    return np.asarray(value, dtype=float)
+
+
+def _flexures(assembly: Assembly, laws: Mapping[str, FlexureLaw], number: Mapping[str, int], reference: Array) -> tuple[Flexures, ...]:
+    groups: dict[tuple[int, ...], list[str]] = {}
+    for name, item in laws.items():
+        groups.setdefault(item.signature, []).append(name)
+    return tuple(_group(assembly, names, [laws[name] for name in names], number, reference) for names in groups.values())
+
+
+def _group(assembly: Assembly, names: list[str], laws: list[FlexureLaw], number: Mapping[str, int], reference: Array) -> Flexures:
+    links = [assembly.links[name] for name in names]
+    together = FlexureLaw(**{each.name: np.stack([np.asarray(getattr(item, each.name)) for item in laws]) for each in fields(FlexureLaw)})
+    first, second = _numbers(links, number)
+    turn = np.stack([link.frame.rotation for link in links])
+    half = 0.5 * together.length[:, None] * turn[..., 0]
+    centre = np.stack([_one(link.frame.position, link.name) for link in links])
+    return Flexures(tuple(names), together, first, second, turn, centre - half - reference[first], centre + half - reference[second])
+
+
+def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Array, Array]:
+    first, second = ([number[link.joins[end]] for link in links] for end in (0, 1))
+    return np.array(first, dtype=int), np.array(second, dtype=int)
+
+
+def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping[str, int], reference: Array) -> Hinges:
+    first, second = _numbers(links.values(), number)
+    count, inputs = len(links), len(input_channels(assembly))
+    centre = np.array([_one(link.frame.position, link.name) for link in links.values()]).reshape(count, 3)
+    laws = [law(link.part, link.material) for link in links.values()]
+    free = {name: assembly.actuator(actuator).free_deformation for actuator, name in assembly.strokes.items()}
+    strokes, thrusts = imposed_strokes(assembly, free), exerted_wrenches(assembly)
+    none = np.zeros((6, inputs))
+    pushes = [push_of(link.part) for link in links.values()]
+    return Hinges(
+        names=tuple(links),
+        first=first,
+        second=second,
+        turn=np.array([link.frame.rotation for link in links.values()]).reshape(count, 3, 3),
+        arm_first=centre - reference[first],
+        arm_second=centre - reference[second],
+        stiffness=np.array([item.stiffness for item in laws]).reshape(count, 6, 6),
+        stroke=np.array([strokes.get(name, none) for name in links]).reshape(count, 6, inputs),
+        thrust=np.array([thrusts.get(name, none) for name in links]).reshape(count, 6, inputs),
+        push=np.array([[0.0 if push is None else push, 0, 0, 0, 0, 0] for push in pushes], dtype=float).reshape(count, 6),
+        locked=np.array([(place, freedom.index) for place, item in enumerate(laws) for freedom in item.locked], dtype=int).reshape(-1, 2),
+    )
+
+
+def _places(
+    mechanism: Mechanism, assembly: Assembly, number: Mapping[str, int], reference: Array, centred: Mapping[str, PlacedLink]
+) -> tuple[Places, Array, Array]:
+    """Places of wrench inputs, of stated forces and of masses: bodies', payloads' and halves of links about centres."""
+    inputs = [(number[place.body], place.point, np.zeros(3), 0.0) for place in wrench_places(assembly).values()]
+    forces = [(number[item.body], stack(item.at), stack(item.force), 0.0) for item in mechanism.forces.values()]
+    masses = [
+        (number[name], item.centre, np.zeros(3), float(item.mass))
+        for name, placed in assembly.bodies.items()
+        for item in carried_masses(mechanism, placed)
+    ]
+    halves = [half for link in centred.values() for half in _halves(link, number)]
+    rows = [*inputs, *forces, *masses, *halves]
+    body = np.array([row[0] for row in rows], dtype=int)
+    arms = np.array([row[1] for row in rows]).reshape(-1, 3) - reference[body]
+    return Places(body, arms), np.array([row[2] for row in rows]).reshape(-1, 3), np.array([row[3] for row in rows])
+
+
+def _halves(link: PlacedLink, number: Mapping[str, int]) -> list[tuple[int, Array, Array, float]]:
+    """What of a link's mass each of its bodies carries, and where."""
+    matrix = mass(link.part, link.material)
+    found = []
+    for end, body in enumerate(link.joins):
+        share = matrix[6 * end : 6 * end + 6, :6] + matrix[6 * end : 6 * end + 6, 6:12]
+        if share[0, 0] > 0.0:
+            along = share[5, 1] / share[1, 1]
+            found.append((number[body], link.frame.position + along * link.frame.rotation[:, 0], np.zeros(3), float(share[0, 0])))
+    return found
+
+
+def extent(model: Nonlinear) -> dict[str, float]:
+    """Lengths of all links [m], by name."""
+    return {name: float(span(link.part)) for name, link in model.assembly.links.items()}

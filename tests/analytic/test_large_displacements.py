@@ -1,0 +1,145 @@
+"""Large displacements against closed forms and published values: the elastica, columns, strips, cross pivots, beams in space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.base.number import Number
+from flexstage.base.scale import Z
+from flexstage.beams.flexure.strip import secant
+from flexstage.beams.section import rectangle
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.material import Material
+
+SOFT = Material(young=1.0, poisson=0.3, density=0.0)
+THIN = Leaf("soft", length=1.0, thickness=3e-5, width=1e-2, section=LeafSection.BEAM)
+RIGIDITY = 1e-2 * 3e-5**3 / 12.0
+"""E I of `THIN`."""
+
+
+def body(x: Number, y: Number, z: Number) -> Body:
+    return Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0), centre=(x, y, z), reference=(x, y, z))
+
+
+def stage(leaf: Leaf, bodies: dict[str, Body], links: dict[str, Link], material: Material = SOFT) -> Mechanism:
+    return Mechanism("", materials={"soft": material}, parts={"leaf": leaf}, bodies=bodies, links=links, gravity=(0.0, 0.0, 0.0))
+
+
+def cantilever(leaf: Leaf = THIN, material: Material = SOFT) -> Nonlinear:
+    link = Link(("ground", "platform"), "leaf", at=(0.5 * leaf.length, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    return nonlinear(stage(leaf, {"platform": body(leaf.length, 0.0, 0.0)}, {"leaf": link}, material))
+
+
+def with_law(model: Nonlinear, **tables: np.ndarray) -> Nonlinear:
+    (group,) = model.flexures
+    return replace(model, flexures=(replace(group, law=replace(group.law, **tables)),))
+
+
+def test_the_elastica_of_a_cantilever():
+    """Exact by elliptic integrals (shooting), F L^2 / (E I) = 1, 2, 5, 10."""
+    found = equilibrium(cantilever(), {"platform.fy": np.array([1.0, 2.0, 5.0, 10.0]) * RIGIDITY})
+    across, along = [0.30172077, 0.49345748, 0.71379152, 0.81060902], [0.94356676, 0.83935828, 0.61237164, 0.44500440]
+    assert found.displacement()[:, 1] == pytest.approx(across, abs=1e-7)
+    assert 1.0 + found.displacement()[:, 0] == pytest.approx(along, abs=1e-7)
+    assert found.rotation()[:, 2] == pytest.approx([0.46135195, 0.78174983, 1.21536812, 1.43028554], abs=1e-7)
+
+
+def test_a_column_that_shears_buckles_as_haringx_has_it():
+    """P (1 + P / GA) = pi^2 E I / (4 L^2) (J. A. Haringx, Philips Research Reports 3, 1948); Euler's load without shear."""
+    euler = np.pi**2 / 4.0
+    model = cantilever()
+    (group,) = model.flexures
+    sheared = np.array(group.law.compliance)
+    sheared[..., 1] = 1.0 / 200.0
+    found = critical(with_law(model, compliance=sheared), {"platform.fx": -RIGIDITY})
+    assert found.factor == pytest.approx(100.0 * (np.sqrt(1.0 + 4.0 * euler / 200.0) - 1.0), rel=1e-7)
+    assert found.kind is Kind.BIFURCATION
+    assert np.argmax(np.abs(found.shape[0])) in {1, 5}
+    assert critical(model, {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+
+
+def test_a_strip_bent_upright_buckles_sideways():
+    """4.0126 sqrt(E I G J) / L^2 at its tip (L. Prandtl, Kipp-Erscheinungen, 1899); 4.01259934 with more digits."""
+    model = cantilever()
+    (group,) = model.flexures
+    form = np.array(group.law.form)
+    form[..., 6:12, 6:12] *= 1e3  # no bending in its own plane
+    twisting = RIGIDITY / 1e-2 / 3e-5**3 * 12.0 / form[0, 0, 0]
+    found = critical(with_law(model, form=form), {"platform.fz": RIGIDITY})
+    assert found.factor == pytest.approx(4.01259934 * np.sqrt(twisting), rel=1e-6)
+
+
+@pytest.mark.parametrize(("beta", "factor"), [(1, 1.0029), (3, 1.0208), (5, 1.0402), (7, 1.0533), (10, 1.0634), (20, 1.0735)])
+def test_a_strip_stiffens_as_it_bends(beta: float, factor: float):
+    """Ashwell's strip (J. Roy. Aero. Soc. 54, 1950), nu = 0.3, by 14 functions across its width."""
+    assert secant(beta, 0.3) == pytest.approx(factor, abs=5e-4)
+
+
+def pivot(crossing: float) -> Nonlinear:
+    leaf = replace(THIN, thickness=1e-4)
+    along = {"left": np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0]), "right": np.array([np.sqrt(0.5), -np.sqrt(0.5), 0.0])}
+    links = {
+        name: Link(("ground", "platform"), "leaf", at=tuple((0.5 - crossing) * each), along=tuple(each), bends=Z)
+        for name, each in along.items()
+    }
+    return nonlinear(stage(leaf, {"platform": body(0.0, 0.0, 0.0)}, links))
+
+
+@pytest.mark.parametrize(
+    ("crossing", "moment", "shift"),
+    [
+        (0.5, [2.000033, 2.000833, 2.003328, 2.013241, 2.029538], [1.1785e-5, 2.9456e-4, 1.1774e-3, 4.6968e-3, 1.0520e-2]),
+        (0.0, [7.999918, 7.997963, 7.991870, 7.967756, 7.928472], None),
+    ],
+)
+def test_a_cross_pivot_turns(crossing: float, moment: list[float], shift: list[float] | None):
+    """Leaves at 90 degrees that cross at 0.5 and 0 of their length (W. H. Wittrick 1951; S. Zelenika and F. De Bona 2002), by shooting."""
+    angle = np.array([0.01, 0.05, 0.1, 0.2, 0.3])
+    found = equilibrium(pivot(crossing), hold={"platform.rz": angle})
+    rigidity = 1e-2 * 1e-4**3 / 12.0
+    assert found.reactions[:, 0] / angle / rigidity == pytest.approx(moment, rel=2e-6)
+    if shift is not None:
+        assert np.hypot(*found.displacement()[:, :2].T) == pytest.approx(shift, rel=1e-4)
+
+
+def test_tension_softens_a_cross_pivot():
+    """Crossing at the middle, loads -1, 1, 2 E I / L^2 along its symmetry axis, by shooting."""
+    rigidity = 1e-2 * 1e-4**3 / 12.0
+    found = equilibrium(pivot(0.5), {"platform.fx": np.array([-1.0, 1.0, 2.0]) * rigidity}, hold={"platform.rz": 1e-4})
+    assert found.reactions[:, 0] / 1e-4 / rigidity == pytest.approx([2.23438, 1.76311, 1.52344], rel=2e-4)
+
+
+def test_the_princeton_beam():
+    """Beam elements of ANSYS stored in EXUDYN (TestModels/ANCFBeamTest.py): 8.896 N at 0, 15, ... 90 degrees; its J is not said."""
+    leaf = Leaf("soft", length=0.508, thickness=3.2024e-3, width=12.3777e-3, section=LeafSection.BEAM)
+    angle = np.deg2rad(np.arange(0.0, 91.0, 15.0))
+    model = cantilever(leaf, Material(young=71.7e9, poisson=0.31, density=0.0))
+    found = equilibrium(model, {"platform.fz": 8.896 * np.cos(angle), "platform.fy": 8.896 * np.sin(angle)}).displacement()
+    edge = [0.010714176, 0.010613287, 0.010111696, 0.008837226, 0.006604665, 0.003538889, 0.0]
+    flat = [0.0, 0.042082321, 0.079394829, 0.108987937, 0.129887616, 0.142194370, 0.146245978]
+    assert found[:, 2] == pytest.approx(edge, rel=0.015, abs=1e-9)
+    assert found[:, 1] == pytest.approx(flat, rel=0.015, abs=1e-9)
+
+
+def test_a_guide_bears_so_much_misalignment():
+    """A foot turned about the normal of its leaf's width, in the middle of the leaf: 4 pi sqrt(E I G J) / (E I_y), whatever the length."""
+    length, spacing, thickness, width = 0.1, 0.05, 0.37e-3, 0.05
+    leaf = Leaf("soft", length, thickness, width, section=LeafSection.BEAM)
+    bodies = {"platform": body(length, 0.0, 0.0), "foot": body(0.5 * length, 0.5 * spacing, 0.0)}
+    links = {
+        name: Link((name, "platform"), "leaf", at=(0.5 * length, side * spacing, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+        for name, side in (("ground", -0.5), ("foot", 0.5))
+    }
+    section = rectangle(thickness, width)
+    expected = 4.0 * np.pi * np.sqrt(section.inertia_z * section.torsion / 2.6) / section.inertia_y
+    fixed = {f"foot.{name}": 0.0 for name in ("x", "y", "z", "rx", "rz")}
+    turned = {**fixed, "foot.ry": expected * np.array([1.0 - 1e-4, 1.0 + 1e-4])}
+    assert (unstable_motions(equilibrium(nonlinear(stage(leaf, bodies, links)), hold=turned)) > 0).tolist() == [False, True]

@@ -1,0 +1,205 @@
+"""Laws of large displacements: what holds of any stage, in any frame, under any load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.base.scale import Z
+from flexstage.beams.flexure.law import Resolution
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.hexapod import hexapod
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.tilt_stage import tilt_stage
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.condense import condense
+from flexstage.models.nonlinear.element import energy, shape, tangent
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.graph import assemble
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import Status
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.material import Material
+from flexstage.parts.rod import Rod
+from flexstage.spatial.frame import spatial_rotation
+from flexstage.spatial.rotation import exponential, magnus
+
+STEEL = Material(young=200e9, poisson=0.3, density=7800.0)
+LEAF = Leaf("steel", length=0.1, thickness=0.5e-3, width=0.02)
+UNIT = 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2
+"""E I / L^2 of `LEAF` [N]."""
+FINE = Resolution(10, 10, 14, (8, 6), 20)
+SPACE = np.array([3.0, 12.0, 2.0, 0.02, 0.03, -0.1])
+"""A load in all directions on a guide, over `UNIT`."""
+
+
+def guide(
+    turn: np.ndarray | None = None, *, swap: bool = False, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0), mass: float = 1.0
+) -> Mechanism:
+    """Two leaves 50 mm apart between ground and platform, perhaps turned in space, or one of them drawn from its other end."""
+    turn = np.eye(3) if turn is None else turn
+    joins = {"left": ("ground", "platform"), "right": ("platform", "ground") if swap else ("ground", "platform")}
+    sides = {"left": -0.025, "right": 0.025}
+    signs = {"left": 1.0, "right": -1.0 if swap else 1.0}
+    links = {
+        name: Link(joins[name], "leaf", tuple(turn @ [0.05, sides[name], 0.0]), tuple(signs[name] * turn[:, 0]), bends=tuple(turn[:, 2]))
+        for name in joins
+    }
+    place = tuple(turn @ [0.1, 0.0, 0.0])
+    body = Body(mass=mass, inertia=Inertia(1e-3, 1e-3, 1e-3), centre=place, reference=place)
+    return Mechanism("", materials={"steel": STEEL}, parts={"leaf": LEAF}, bodies={"platform": body}, links=links, gravity=gravity)
+
+
+def loads(values: np.ndarray) -> dict[str, np.ndarray]:
+    return dict(zip([f"platform.{name}" for name in ("fx", "fy", "fz", "mx", "my", "mz")], np.moveaxis(values, -1, 0), strict=True))
+
+
+def stiffness(state: State) -> np.ndarray:
+    return assemble(state.model, state.pose, state.loads, state.hold).stiffness
+
+
+@pytest.mark.parametrize("case", [double_triangle, hexapod])
+def test_at_rest_it_is_the_lumped_model(case: Callable[[], Mechanism]):
+    """Stacks, notches, necks and joints are exactly what they are at small displacements."""
+    stage = case()
+    model, small = nonlinear(stage), lumped(stage)
+    found = stiffness(equilibrium(model, weight=0.0, stated=0.0))[0]
+    expected = small.stiffness_matrix[: model.freedoms, : model.freedoms]
+    scale = np.sqrt(np.diag(expected))
+    assert np.max(np.abs(found - expected) / scale / scale[:, None]) < 1e-9
+
+
+@pytest.mark.parametrize("case", [parallelogram, tilt_stage])
+def test_leaves_at_rest_differ_by_the_shear_of_their_clamps(case: Callable[[], Mechanism]):
+    stage = case()
+    model, small = nonlinear(stage), lumped(stage)
+    found = stiffness(equilibrium(model, weight=0.0, stated=0.0))[0]
+    expected = small.stiffness_matrix[: model.freedoms, : model.freedoms]
+    values = np.linalg.eigvals(np.linalg.solve(expected, found[: model.freedoms, : model.freedoms])).real
+    assert values == pytest.approx(1.0, abs=3e-3)
+
+
+def test_the_steps_of_rotation_are_of_order_six():
+    def turned(steps: int) -> np.ndarray:
+        nodes = 0.5 + np.array([-1.0, 0.0, 1.0]) * np.sqrt(0.15)
+        total = np.eye(3)
+        for start in np.arange(steps) / steps:
+            values = [np.array([np.sin(3 * s), 2 * s * s, np.cos(5 * s)]) * 2.0 for s in start + nodes / steps]
+            total = total @ exponential(magnus(np.array(1.0 / steps), *values))
+        return total
+
+    exact = turned(64)
+    coarse, fine = (np.max(np.abs(turned(steps) - exact)) for steps in (4, 8))
+    assert 5.5 < np.log2(coarse / fine) < 6.6
+
+
+def test_the_frame_does_not_matter():
+    turn = exponential(np.array([0.7, -1.1, 0.4]))
+    here = equilibrium(nonlinear(guide()), loads(SPACE * UNIT)).twist()
+    there = equilibrium(nonlinear(guide(turn)), loads(spatial_rotation(turn) @ SPACE * UNIT)).twist()
+    assert spatial_rotation(turn).T @ there == pytest.approx(here, abs=1e-13)
+
+
+def test_tangents_are_the_slopes_of_reactions():
+    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0)))
+    held = {f"platform.{name}": value for name, value in zip(("x", "y", "z"), (-1e-3, 0.02, 4e-5), strict=True)}
+    step = 1e-6
+    moved = {name: value + step * np.eye(3)[:, [place]] * [[1, -1]] for place, (name, value) in enumerate(held.items())}
+    found = equilibrium(model, loads(np.array([0, 0, 0, 0.1, 0.01, 0.02])), hold=moved).reactions
+    slope = (found[:, 0] - found[:, 1]) / (2.0 * step)
+    matrix = stiffness(equilibrium(model, loads(np.array([0, 0, 0, 0.1, 0.01, 0.02])), hold=held))[0]
+    free, place = matrix[3:6, 3:6], slice(0, 3)
+    condensed = matrix[place, place] - matrix[place, 3:6] @ np.linalg.solve(free, matrix[3:6, place])
+    scale = np.sqrt(np.diag(condensed))
+    assert np.max(np.abs(slope - condensed) / scale / scale[:, None]) < 1e-5
+
+
+def asymmetry(model: Nonlinear, wrench: np.ndarray) -> float:
+    matrix = stiffness(equilibrium(model, loads(wrench * UNIT)))[0]
+    scale = np.sqrt(np.abs(np.diag(matrix)))
+    return float(np.max(np.abs(matrix - matrix.T) / scale / scale[:, None]))
+
+
+def test_stiffness_is_symmetric_without_dead_couples():
+    force = SPACE * [1, 1, 1, 0, 0, 0]
+    assert asymmetry(nonlinear(guide()), force) < 1e-6
+    assert asymmetry(nonlinear(guide(), resolution=FINE), force) < 1e-9
+    assert asymmetry(nonlinear(guide()), SPACE) > 1e-6
+
+
+@pytest.mark.parametrize(("resolution", "most"), [(Resolution(), 2e-6), (FINE, 5e-8)])
+def test_energy_is_the_work_of_forces(resolution: Resolution, most: float):
+    model = nonlinear(guide(), resolution=resolution)
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    share = np.concatenate([0.5 * (nodes + 1.0), [1.0]])
+    force = SPACE[:3] * UNIT
+    found = equilibrium(model, loads(np.concatenate([share[:, None] * force, np.zeros((len(share), 3))], axis=1)))
+    path = found.displacement() @ force
+    (group,) = model.flexures
+    lies = shape(group.law, found.pose.strain[0], found.pose.wrench[0][..., :3])
+    stored = energy(group.law, found.pose.strain[0], lies)
+    whole = np.sum(stored[:, -1] * group.law.rigidity / group.law.length)
+    complementary = 0.5 * weights @ path[:-1]
+    assert path[-1] - complementary == pytest.approx(whole, rel=most)
+
+
+def test_the_order_of_ends_does_not_matter():
+    wrench = loads(SPACE * UNIT)
+    assert equilibrium(nonlinear(guide(swap=True)), wrench).twist() == pytest.approx(
+        equilibrium(nonlinear(guide()), wrench).twist(), abs=1e-8
+    )
+
+
+def test_weight_hangs_where_masses_do():
+    """A leaf's own weight, in a frame that turns with its first body, is found alike from either end."""
+    heavy = [guide(swap=swap, gravity=(400.0, 600.0, -100.0), mass=1e-4) for swap in (False, True)]
+    one, other = (equilibrium(nonlinear(each), loads(SPACE * UNIT)) for each in heavy)
+    assert one.status == Status.CONVERGED
+    assert one.iterations < 12
+    assert other.twist() == pytest.approx(one.twist(), abs=1e-7)
+
+
+def test_a_batch_is_its_cases_and_the_whole_load_is_taken_at_once():
+    """Forces up to 20, -10 to 10 and moments -3 to 3 in units of E I / L^2; a finer grid of 1,500 in the full tests."""
+    model = nonlinear(guide())
+    grid = np.stack(np.meshgrid(np.linspace(-10, 10, 5), np.linspace(0, 20, 6), np.linspace(-3, 3, 3), indexing="ij"), -1).reshape(-1, 3)
+    wrench = np.zeros((len(grid), 6))
+    wrench[:, :2], wrench[:, 5] = grid[:, :2] * UNIT, grid[:, 2] * UNIT * 0.1
+    found = equilibrium(model, loads(wrench))
+    assert found.converged.all()
+    assert found.iterations.mean() < 8.0
+    alone = equilibrium(model, loads(wrench[37]))
+    assert alone.twist() == pytest.approx(found.twist()[37], abs=1e-12)
+
+
+def test_a_flexure_without_load_answers_with_its_compliance():
+    """The element by itself: rods of any proportions by beam theory."""
+    stage = Mechanism(
+        "",
+        materials={"steel": STEEL},
+        parts={"rod": Rod("steel", length=0.05, diameter=0.002)},
+        bodies={"platform": Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0), reference=(0.05, 0.0, 0.0))},
+        links={"rod": Link(("ground", "platform"), "rod", (0.025, 0.0, 0.0), (1.0, 0.0, 0.0), bends=Z)},
+    )
+    (group,) = nonlinear(stage).flexures
+    none = np.zeros((1, 1, group.law.form.shape[-1])), np.zeros((1, 1, 3))
+    found = condense(tangent(group.law, *none, shape(group.law, *none)), np.zeros((1, 1, 6)))
+    stiff = found.moved[0, 0, -6:]
+    area = np.pi * 1e-6
+    assert stiff[0, 0] == pytest.approx(0.05**2 * area / (np.pi / 4.0 * 1e-12), rel=1e-12)
+    assert stiff[3, 3] == pytest.approx(1.0 / 1.3, rel=1e-12)
+    assert np.allclose(stiff, stiff.T, atol=1e-9)
+
+
+def test_what_does_not_converge_is_not_a_number():
+    model = nonlinear(guide())
+    (group,) = model.flexures
+    broken = replace(model, flexures=(replace(group, law=replace(group.law, rigidity=np.array([np.nan, 1.0]))),))
+    found = equilibrium(broken, loads(SPACE * UNIT))
+    assert found.status == Status.SINGULAR
+    assert np.isnan(found.twist()).all()
