@@ -63,12 +63,13 @@ def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
     ()
     """
     assembly = expand(mechanism)
-    joints = _joints(assembly)
+    ends = _ends(assembly)
+    joints = _joints(assembly, ends)
     size = _span(np.array([point for points in joints.values() for point in points]).reshape(-1, 3))
     facets = [facet for body in assembly.bodies.values() for facet in _body(body, joints.get(body.name, []), size)]
     facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
-    facets += [facet for link in assembly.links.values() for facet in _link(link, assembly, size, steps)]
+    facets += [facet for name, link in assembly.links.items() for facet in _link(link, ends[name], size, steps)]
     facets += [facet for element in assembly.superelements.values() for facet in _superelement(element, size)]
     facets += [facet for name, sight in _sights(assembly) for facet in _gauge(name, sight, size)]
     references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
@@ -135,10 +136,14 @@ def _span(points: Array) -> float:
     return float(np.sqrt(extent @ extent)) or 1.0
 
 
-def _joints(assembly: Assembly) -> dict[str, list[Array]]:
+_Ends = Mapping[str, tuple[Array, Array]]
+"""Where each link meets its first and its second body, by the link's name."""
+
+
+def _joints(assembly: Assembly, ends: _Ends) -> dict[str, list[Array]]:
     joints: dict[str, list[Array]] = {}
-    for link in assembly.links.values():
-        for body, end in zip(link.joins, _ends(link, assembly), strict=True):
+    for name, link in assembly.links.items():
+        for body, end in zip(link.joins, ends[name], strict=True):
             joints.setdefault(body, []).append(end)
     for element in assembly.superelements.values():
         for port in element.ports.values():
@@ -146,12 +151,26 @@ def _joints(assembly: Assembly) -> dict[str, list[Array]]:
     return joints
 
 
-def _ends(link: PlacedLink, assembly: Assembly) -> tuple[Array, Array]:
-    """Where the link meets its first and its second body: the end nearer to what else each body holds."""
+def _ends(assembly: Assembly) -> _Ends:
+    """The ends of all links: those nearer to what else each body holds."""
+    held: dict[str, list[str]] = {}
+    for name, link in assembly.links.items():
+        for body in dict.fromkeys(link.joins):
+            held.setdefault(body, []).append(name)
+    places = {body: np.array([_first(assembly.links[name].frame.position) for name in names]) for body, names in held.items()}
+    ranks = {body: {name: rank for rank, name in enumerate(names)} for body, names in held.items()}
+    middles = {
+        (name, body): _middle(assembly, body, np.delete(places[body], ranks[body][name], axis=0))
+        for name, link in assembly.links.items()
+        for body in link.joins
+    }
+    return {name: _link_ends(link, middles[name, link.joins[0]], middles[name, link.joins[1]]) for name, link in assembly.links.items()}
+
+
+def _link_ends(link: PlacedLink, here: Array | None, there: Array | None) -> tuple[Array, Array]:
+    """Where a link meets its first body, whose other links are `here`, and its second, whose others are `there`."""
     frame = _frame(link.frame)
     half = 0.5 * part_length(link.part) * frame.rotation[:, 0]
-    centres = [_middle(body, link, assembly) for body in link.joins]
-    there, here = centres[1], centres[0]
     if there is None and here is None:
         forward = True
     elif there is None or here is None:
@@ -162,12 +181,11 @@ def _ends(link: PlacedLink, assembly: Assembly) -> tuple[Array, Array]:
     return (frame.position - half, frame.position + half) if forward else (frame.position + half, frame.position - half)
 
 
-def _middle(body: str, link: PlacedLink, assembly: Assembly) -> Array | None:
+def _middle(assembly: Assembly, body: str, others: Array) -> Array | None:
     """Mean position of a body's other links, else its reference; None for the ground."""
     if body == GROUND:
         return None
-    others = [_first(other.frame.position) for other in assembly.links.values() if body in other.joins and other is not link]
-    return np.mean(others, axis=0) if others else _first(assembly.bodies[body].reference)
+    return np.mean(others, axis=0) if len(others) else _first(assembly.bodies[body].reference)
 
 
 def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
@@ -219,8 +237,7 @@ def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iter
             yield line(np.stack([joint, nearest]), paint)
 
 
-def _link(link: PlacedLink, assembly: Assembly, size: float, steps: int) -> list[Facet]:
-    ends = _ends(link, assembly)
+def _link(link: PlacedLink, ends: tuple[Array, Array], size: float, steps: int) -> list[Facet]:
     frame = _frame(link.frame)
     forward = bool((ends[1] - ends[0]) @ frame.rotation[:, 0] >= 0.0)
     carriers = link.joins if forward else (link.joins[1], link.joins[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,15 +38,15 @@ class StageData:
     """A stage as a viewer shows it: its mesh, the things that it consists of by part number, and its motions.
 
     `bodies` are in the order of twists, the ground first; `size` is the diagonal of the box around everything and `centre` (3,) its middle
-    [m]; `reference` (3,) is the platform's. `links` are the part numbers that a motion's strain energy is told of. `notes` say what is not
-    shown, and why.
+    [m]; `bones` are the bodies with their reference points. `links` are the part numbers that a motion's strain energy is told of. `notes`
+    say what is not shown, and why.
     """
 
     name: str
     size: float
     centre: Array
     bodies: tuple[str, ...]
-    reference: Array
+    bones: Skeleton
     things: tuple[Thing, ...]
     labels: tuple[Label, ...]
     mesh: Mesh
@@ -72,7 +72,7 @@ class StageData:
             "centre": self.centre.tolist(),
             "bodies": list(self.bodies),
             "platform": self.bodies.index(PLATFORM) if PLATFORM in self.bodies else 0,
-            "reference": self.reference.tolist(),
+            "reference": self.bones.references.get(PLATFORM, np.zeros(3)).tolist(),
             "parts": [_part(thing) for thing in self.things],
             "labels": [self._label(each) for each in self.labels],
             "links": list(self.links),
@@ -117,29 +117,23 @@ def stage_data(
     not have is left out, with its reason among the notes. `text` is that of the design's file, whose lines things are found at. `count` is
     how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
     """
+    still = still_data(mechanism, text=text)
+    notes: list[str] = []
+    motions = tuple(_motions(mechanism, (model, kinematics, found), still.bones, count, notes))
+    return replace(still, motions=motions, notes=tuple(notes))
+
+
+def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
+    """The same without motions: no model is asked."""
     seen, assembly = scene(mechanism, steps=_STEPS), expand(mechanism)
     bodies, kinds = body_names(assembly.bodies), thing_kinds(seen.facets)
     describer = Describer(mechanism, assembly, line_numbers(text))
     numbers = {name: number for number, name in enumerate(bodies)}
     things = tuple(describer.thing(name, kind, (numbers[ends[0]], numbers[ends[1]])) for name, (kind, ends) in kinds.items())
     mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
-    bones = Skeleton(seen.references)
-    notes: list[str] = []
-    motions = tuple(_motions(mechanism, (model, kinematics, found), bones, count, notes))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
-    reference = seen.references.get(PLATFORM, np.zeros(3))
-    return StageData(
-        mechanism.name or "stage",
-        _size(seen, low, high),
-        0.5 * (low + high),
-        bodies,
-        reference,
-        things,
-        seen.labels,
-        mesh,
-        motions,
-        tuple(notes),
-    )
+    size, middle = _size(seen, low, high), 0.5 * (low + high)
+    return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), ())
 
 
 def _size(seen: Scene, low: Array, high: Array) -> float:

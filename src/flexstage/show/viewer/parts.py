@@ -48,6 +48,7 @@ class Describer:
         self._copies = unit_of_copy(mechanism)
         self._gauges = {name: key for key in mechanism.gauges for name in copy_names(key)}
         self._owners = {address: body for body, item in assembly.bodies.items() for address in item.solids}
+        self._links = {**assembly.links, **assembly.superelements}
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, bodies: tuple[int, int]) -> Thing:
@@ -59,8 +60,7 @@ class Describer:
 
     def _said(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
         """What it is, its address and its facts."""
-        links = {**self._assembly.links, **self._assembly.superelements}
-        if (link := links.get(name) or links.get(name.removesuffix(_FOOT))) is not None:
+        if (link := self._links.get(name) or self._links.get(name.removesuffix(_FOOT))) is not None:
             return "ground" if name.endswith(_FOOT) else kind_name(link.part), self._link_address(link), self._link_facts(link)
         if (gauge := self._assembly.gauges.get(name)) is not None:
             return gauge.gauge.kind, f"gauges.{self._gauges.get(name, name)}", self._data(gauge.gauge)
