@@ -10,11 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base.finding import DesignError
 from flexstage.base.scale import mm
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.lumped import lumped
@@ -132,10 +130,16 @@ def test_moduli_are_complex_analytic():
     np.testing.assert_allclose(np.imag(step.young) / 1e-30, (shifted.young - here.young) / 1e-6, rtol=1e-5)
 
 
-def test_the_solid_model_refuses_crystals_by_name():
-    piece = pytest.importorskip("flexstage.solid.fea.piece")
-    with pytest.raises(DesignError, match="isotropic materials only"):
-        piece.medium(expand(wafer()).links["a"].material)
+@given(st.integers(0, 2**32 - 1))
+def test_the_tensor_is_the_turned_one(seed):
+    turn = axes(*(tuple(each) for each in np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0].T[:2]))
+    np.testing.assert_allclose(SILICON.stiffness_tensor(turn) @ full_compliance(turn), np.eye(6), atol=1e-12)
+    np.testing.assert_allclose(SILICON.oriented(turn).tensor, SILICON.stiffness_tensor(turn))
+
+
+def test_a_link_in_a_mirrored_copy_is_drawn_in_right_handed_axes():
+    turn = axes((1.0, 2.0, 3.0), (3.0, 0.0, -1.0))
+    np.testing.assert_allclose(SILICON.oriented(turn * [1.0, -1.0, 1.0]).tensor, SILICON.oriented(turn).tensor)
 
 
 @pytest.mark.parametrize(

@@ -160,8 +160,7 @@ class Material(Description):
         s12 = -c12 / ((c11 - c12) * (c11 + 2.0 * c12))
         s44 = 1.0 / c44
         excess = s11 - s12 - 0.5 * s44
-        along, up = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if self.crystal is None else self.crystal
-        square = (axes(along, up) @ rotation) ** 2
+        square = self._lattice(rotation) ** 2
         own = s11[..., None] - excess[..., None] * (1.0 - np.sum(square * square, axis=-2))
         mixed = [np.sum(square[..., :, 0] * square[..., :, axis], axis=-1) for axis in (1, 2)]
         across, plane = (1.0 / (s44 + 4.0 * excess * each) for each in mixed)
@@ -170,8 +169,41 @@ class Material(Description):
             poisson=-(s12 + excess * mixed[1]) / np.sqrt(own[..., 0] * own[..., 2]),
             shear_modulus=plane,
             other_shear=across,
+            tensor=self.stiffness_tensor(_right_handed(rotation)),
             **{name: getattr(self, name) for name in _KEPT},
         )
+
+    def stiffness_tensor(self, rotation: Array) -> Array:
+        """Stiffness (..., 6, 6) [Pa] of a crystal in axes that are columns of `rotation` (..., 3, 3) in the stage: xx, yy, zz, yz, xz, xy.
+
+        It takes engineering shear strains. C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44) sum_a q_ai q_aj
+        q_ak q_al with q_a the crystal's axes (Nye 1957).
+
+        >>> silicon = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
+        >>> (silicon.stiffness_tensor(axes((1.0, 1.0, 0.0))).diagonal()[[0, 2, 5]] / 1e9).round(2).tolist()
+        [194.3, 165.64, 50.85]
+        """
+        c11, c12, c44 = (each[..., None, None] for each in self._constants)
+        lattice = self._lattice(rotation)
+        pairs = lattice[..., :, _FIRST] * lattice[..., :, _SECOND]
+        isotropic = c12 * _VOLUME + c44 * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+        return isotropic + (c11 - c12 - 2.0 * c44) * (np.swapaxes(pairs, -1, -2) @ pairs)
+
+    def _lattice(self, rotation: Array) -> Array:
+        """Axes (..., 3, 3), columns in the stage, as columns in the crystal."""
+        along, up = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if self.crystal is None else self.crystal
+        return axes(along, up) @ rotation
+
+
+_FIRST, _SECOND = (0, 1, 2, 1, 0, 0), (0, 1, 2, 2, 2, 1)
+_VOLUME: Array = np.pad(np.ones((3, 3)), (0, 3))
+
+
+def _right_handed(rotation: Array) -> Array:
+    """The axes with y where z and x put it: links in mirrored copies are drawn in such."""
+    x, y, z = np.moveaxis(rotation, -1, 0)
+    hand = np.sign(np.real(np.linalg.det(rotation)))[..., None]
+    return np.stack([x, hand * y, z], axis=-1)
 
 
 _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatigue_limit", "allowable_stress", *_CUBIC, "crystal")
@@ -179,9 +211,13 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """A cubic crystal in a part's own axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy."""
+    """A cubic crystal in a part's own axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy.
+
+    `tensor` (..., 6, 6) is all of it, as `stiffness_tensor` tells it.
+    """
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
+    tensor: Array = field(default_factory=lambda: np.full((6, 6), np.nan))
 
     @property
     def twist_ratio(self) -> Number:

@@ -23,6 +23,7 @@ from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
 from flexstage.parts.compound import Compound
 from flexstage.parts.given import Given, Origin
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE
+from flexstage.solid.fea.piece import is_mirrored, medium
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
 from flexstage.spatial.frame import COMPONENTS, mirror, spatial_rotation
 
@@ -153,8 +154,10 @@ def _symmetrise(hinge: SolidHinge) -> Array:
     matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
     matrix[~known] = matrix[:, ~known] = 0.0
     matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form.part, hinge.form.material))))
-    mirrors = [mirror(axis) for axis in ((0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2))]
-    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form.part) else [])]:
+    material, own = hinge.form.material, medium(hinge.form.material)
+    axes = (0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2)
+    mirrors = [mirror(axis) for axis in axes if is_mirrored(own, axis)]
+    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form.part) and not material.is_cubic else [])]:
         matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
     return matrix
 

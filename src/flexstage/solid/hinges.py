@@ -177,20 +177,20 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     if not found:
         raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
     solved = compute({name: _turn(hinge.form) for name, hinge in found.items()})
-    return {name: SolidHinge(each.shared, each.form, each.links, _turn_back(solved[name], each.roots)) for name, each in found.items()}
+    return {name: SolidHinge(each.shared, each.form, each.links, _turn_back(solved[name], each.form)) for name, each in found.items()}
 
 
-def _is_turned(roots: Roots) -> bool:
-    """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end."""
-    return roots.first and not roots.second
+def _is_turned(form: HingeForm) -> bool:
+    """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end; not of a crystal."""
+    return form.roots.first and not form.roots.second and not form.material.is_cubic
 
 
 def _turn(form: HingeForm) -> HingeForm:
-    return form._replace(roots=form.roots.mirrored) if _is_turned(form.roots) else form
+    return form._replace(roots=form.roots.mirrored) if _is_turned(form) else form
 
 
-def _turn_back(found: HingeSolid, roots: Roots) -> HingeSolid:
-    if not _is_turned(roots):
+def _turn_back(found: HingeSolid, form: HingeForm) -> HingeSolid:
+    if not _is_turned(form):
         return found
     across = mirror(0)  # hinges are symmetric but for their roots
     compliance, stiffness, whole = (across @ each @ across for each in (found.compliance, found.stiffness, found.whole))

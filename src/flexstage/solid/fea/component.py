@@ -194,7 +194,7 @@ def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> 
     links = [node for node in nodes if node in graph.forms]
     bodies = [node for node in nodes if node not in graph.forms]
     place = graph.assembly.links[links[0]].frame if not bodies and len(links) == 1 else frames.get(_group(nodes[0]), identity())
-    pieces = [*_body_pieces(graph, bodies), *_link_pieces(graph, links)]
+    pieces = [*_body_pieces(graph, bodies, place), *_link_pieces(graph, links, place)]
     name = bodies[0] if bodies else links[0]
     own, fixed = _own_joints(graph, links, graph.owner[nodes[0]])
     foreign = _footprints(graph, bodies, graph.owner[nodes[0]])
@@ -214,19 +214,19 @@ def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> 
     )
 
 
-def _body_pieces(graph: _Graph, bodies: list[str]) -> Iterator[Piece]:
+def _body_pieces(graph: _Graph, bodies: list[str], place: Frame) -> Iterator[Piece]:
     for body in bodies:
         for address, placed in graph.assembly.bodies[body].solids.items():
-            yield Piece(address, placed.solid, medium(graph.materials[placed.solid.material]), placed.frame, body)
+            yield Piece(address, placed.solid, medium(graph.materials[placed.solid.material], place.rotation), placed.frame, body)
 
 
-def _link_pieces(graph: _Graph, links: list[str]) -> Iterator[Piece]:
+def _link_pieces(graph: _Graph, links: list[str], place: Frame) -> Iterator[Piece]:
     for name in links:
         link, form = graph.assembly.links[name], graph.forms[name]
         if isinstance(form, Piezo):
             yield Piece(name, form, stack_medium(form), link.frame)
         elif link.material is not None:
-            yield Piece(name, form, medium(link.material), link.frame)
+            yield Piece(name, form, medium(link.material, place.rotation), link.frame)
 
 
 def _own_joints(graph: _Graph, links: list[str], owner: str) -> tuple[list[Interface], list[Joint]]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.solid.fea.mesh import PieceMesh
-from flexstage.solid.fea.piece import MILLIMETRES
+from flexstage.solid.fea.piece import MILLIMETRES, Medium
 from flexstage.spatial.frame import Frame
 
 _PER_METRE = 1.0 / MILLIMETRES
@@ -30,6 +30,7 @@ class Field:
     lame: ngsolve.CoefficientFunction
     shear: ngsolve.CoefficientFunction
     density: ngsolve.CoefficientFunction
+    tensor: ngsolve.CoefficientFunction | None = None
 
     @property
     def size(self) -> int:
@@ -50,7 +51,11 @@ class Field:
         return one.reshape(3, -1)[0], place.reshape(3, -1).T / MILLIMETRES
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-        """Hooke's law: 2 mu strain + lambda tr(strain) I [Pa, with strains per m]."""
+        """Hooke's law: 2 mu strain + lambda tr(strain) I, or by the tensor where a medium is a crystal [Pa, with strains per m]."""
+        if self.tensor is not None:
+            pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+            found = self.tensor * ngsolve.CoefficientFunction(tuple(strain[i, j] + (0.0 if i == j else strain[j, i]) for i, j in pairs))
+            return ngsolve.CoefficientFunction(tuple(found[entry] for entry in (0, 5, 4, 5, 1, 3, 4, 3, 2)), dims=(3, 3))
         return 2.0 * self.shear * strain + self.lame * ngsolve.Trace(strain) * ngsolve.Id(3)
 
 
@@ -78,7 +83,20 @@ def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
         coefficient([medium.lame for medium in media]),
         coefficient([medium.shear for medium in media]),
         coefficient([medium.density for medium in media]),
+        _tensor([_rows(medium) for medium in media], coefficient) if any(medium.tensor for medium in media) else None,
     )
+
+
+def _rows(medium: Medium) -> Array:
+    """The stiffness (6, 6) of a medium."""
+    if medium.tensor is not None:
+        return np.array(medium.tensor)
+    return medium.lame * np.pad(np.ones((3, 3)), (0, 3)) + medium.shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+
+
+def _tensor(rows: list[Array], coefficient: Callable[[list[float]], ngsolve.CoefficientFunction]) -> ngsolve.CoefficientFunction:
+    entries = np.stack(rows, axis=-1).reshape(36, -1)
+    return ngsolve.CoefficientFunction(tuple(coefficient([float(value) for value in entry]) for entry in entries), dims=(6, 6))
 
 
 def _escape(name: str) -> str:

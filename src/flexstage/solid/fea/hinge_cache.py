@@ -6,15 +6,13 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from flexstage.base.finding import DesignError, Finding
 from flexstage.solid.fea.cache import HINGES
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.memory import Counts, needed
 from flexstage.solid.fea.parts import Ways, obtain
-from flexstage.solid.fea.piece import form_digest
+from flexstage.solid.fea.piece import form_digest, medium
 from flexstage.solid.fea.reducing import StoredJob
 from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.worker import Call
@@ -85,5 +83,6 @@ def _ignore(_finding: Finding) -> None:
 
 
 def _key(form: HingeForm, asked: Accuracy) -> str:
-    stiffness = (float(np.real(form.material.modulus)), float(np.real(form.material.contraction)))
+    own = medium(form.material)
+    stiffness = (own.young, own.poisson, own.tensor)
     return hashlib.sha256(f"{form_digest(form.part)} {stiffness} {form.roots} {asked}".encode()).hexdigest()[:32]

@@ -8,18 +8,24 @@ from typing import TypeAlias
 import numpy as np
 
 from flexstage.base.digest import digest
-from flexstage.base.finding import Finding, refuse
-from flexstage.base.number import Number
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
 from flexstage.base.register import Register
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.body import Cylinder, Solid
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
-from flexstage.parts.material import Material
+from flexstage.parts.material import Material, Oriented
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
+
+_DIGITS = 10
+"""Of the tensor of a crystal, relative to its largest entry: copies of a unit must come out equal."""
+
+_CROSSED = 1e-9
+"""What couples stretching with shear, over the largest entry, where there is nothing but rounding."""
 
 MILLIMETRES = 1e3
 """CAD units per metre."""
@@ -33,11 +39,16 @@ Form: TypeAlias = Shaped | Solid
 
 @dataclass(frozen=True)
 class Medium:
-    """An isotropic elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3]."""
+    """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
+
+    Of a crystal `tensor` are the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear strains);
+    its modulus is then that along x, its ratio makes the shear modulus a mean of the planes xy and xz: both serve stubs of hinges alone.
+    """
 
     young: float
     poisson: float
     density: float
+    tensor: tuple[tuple[float, ...], ...] | None = None
 
     @property
     def shear(self) -> float:
@@ -73,16 +84,44 @@ class Piece:
     body: str | None = None
 
 
-def medium(material: Material) -> Medium:
-    """The medium of a material. Raises `DesignError` for a crystal.
+def medium(material: Material, rotation: Array | None = None) -> Medium:
+    """The medium of a material; of a crystal in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
+
+    Without these the drawing has the axes of the part that the crystal is seen from, or else the stage's.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
+    >>> from flexstage.spatial.frame import axes
+    >>> silicon = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
+    >>> round(medium(silicon).young / 1e9), round(medium(silicon, axes((1.0, 1.0, 0.0))).young / 1e9)
+    (130, 169)
     """
-    if material.is_cubic:
-        what = "a crystal is stiffer in some directions than in others, and the solid model knows isotropic materials only"
-        raise refuse("materials", what, "Use the lumped model, or state young and poisson that stand for the direction that counts")
-    return Medium(_single(material.modulus), _single(material.contraction), _single(material.density))
+    density = _single(material.density)
+    if not material.is_cubic:
+        return Medium(_single(material.modulus), _single(material.contraction), density)
+    seen = material.tensor if rotation is None and isinstance(material, Oriented) else material.stiffness_tensor(_stage(rotation))
+    unit = 10 ** (int(np.log10(np.max(np.real(seen)))) - _DIGITS)
+    tensor = np.round(np.real(seen) / unit) * unit + 0.0
+    soft = np.linalg.inv(tensor)
+    young, shear = float(1.0 / soft[0, 0]), float(1.0 / np.sqrt(soft[4, 4] * soft[5, 5]))
+    return Medium(young, 0.5 * young / shear - 1.0, density, tuple(tuple(row) for row in tensor.tolist()))
+
+
+def is_mirrored(own: Medium, axis: int) -> bool:
+    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing, as all are but crystals.
+
+    >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
+    True
+    """
+    if own.tensor is None:
+        return True
+    odd = np.array([(pair.count(axis) % 2) for pair in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], dtype=bool)
+    crossed = np.array(own.tensor)[np.ix_(odd, ~odd)]
+    return bool(np.max(np.abs(crossed)) < _CROSSED * own.tensor[0][0])
+
+
+def _stage(rotation: Array | None) -> Array:
+    return np.eye(3) if rotation is None else rotation
 
 
 def stack_medium(stack: Piezo) -> Medium:
