@@ -5,14 +5,17 @@ from __future__ import annotations
 import base64
 import functools
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
+from types import MappingProxyType
 from typing import TypeAlias
 
 from flexstage.base.text import printable
 from flexstage.show.render import templates
 from flexstage.show.table import Table
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.fragment import bundle, data_script
 
 
 @dataclass(frozen=True)
@@ -24,10 +27,24 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """An SVG element with a caption (plain text)."""
+    """An SVG element with a caption (plain text); `plays` is the motion of the page's viewer that it shows ("mode 1")."""
 
     svg: str
     caption: str = ""
+    plays: str = ""
+
+
+@dataclass(frozen=True)
+class Viewer:
+    """A stage that turns and moves: the page's data called `key`, beginning with a `motion` ("mode 1"), data called `ghost` behind it.
+
+    `instead` stands there in print, and where there are no scripts or no WebGL.
+    """
+
+    key: str
+    instead: tuple[Block, ...]
+    motion: str = ""
+    ghost: str = ""
 
 
 @dataclass(frozen=True)
@@ -69,7 +86,7 @@ class Legend:
     entries: tuple[tuple[str, str], ...]
 
 
-Block: TypeAlias = Prose | Picture | Facts | Abreast | Folded | Legend | Table
+Block: TypeAlias = Prose | Picture | Viewer | Facts | Abreast | Folded | Legend | Table
 
 
 @dataclass(frozen=True)
@@ -118,19 +135,21 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
     return Folded(title, kept) if kept else None
 
 
-def page(head: Head, sections: Sequence[Section]) -> str:
-    """The whole page as HTML; every text that comes in is escaped, SVG is taken as it is.
+def page(head: Head, sections: Sequence[Section], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
+    """The whole page as HTML; every text that comes in is escaped, SVG is taken as it is. `stages` are the data of its viewers by key.
 
     Of scripts the browser runs the page's own alone, and it may load nothing: the page's policy says so.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True
     """
-    style, script = (_static(name) for name in ("report.css", "report.js"))
-    return printable(templates().page(head, sections, style, script, _policy(script)), keep="\n\t")
+    scripts = [_static("report.js"), *([bundle()] if stages else [])]
+    told = printable(templates().page(head, sections, _static("report.css"), _policy(scripts)), keep="\n\t")
+    data = "".join(data_script(key, each) for key, each in stages.items())
+    return told + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
 
 
-def _policy(*scripts: str) -> str:
+def _policy(scripts: Iterable[str]) -> str:
     """What the browser may do: run these scripts, apply styles inside, show pictures inside; load nothing."""
     sums = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(each.encode()).digest()).decode()}'" for each in scripts)
     return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; img-src data: blob:"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import flexstage
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison
@@ -15,7 +17,9 @@ from flexstage.show.sections.mechanics import kinematics_section, lost_motion_se
 from flexstage.show.sections.overview import change_section, headline, requirement_section, summary_section
 from flexstage.show.sections.reach import strength_section, workspace_section
 from flexstage.show.sections.sources import description_section, limit_section, reference_section
-from flexstage.show.sections.stage import drawing_section, stage_section
+from flexstage.show.sections.stage import drawing_section, first_motion, stage_section
+from flexstage.show.viewer.data import StageData, stage_data
+from flexstage.show.viewer.motions import Group
 
 
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
@@ -31,9 +35,9 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     '<!doctype html>'
     """
     mechanism = analysis.mechanism
-    seen = scene(mechanism)
+    seen, data = scene(mechanism), _turning(analysis)
     sections = (
-        stage_section(seen),
+        stage_section(seen, motion=first_motion(data)),
         requirement_section(analysis),
         caveat_section(mechanism),
         change_section(analysis, compared),
@@ -52,7 +56,13 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
         limit_section(analysis),
         reference_section(analysis),
     )
-    return page(_head(analysis), [each for each in sections if each is not None])
+    return page(_head(analysis), [each for each in sections if each is not None], {"stage": data})
+
+
+def _turning(analysis: Analysis) -> StageData:
+    """The stage for its viewer, with what its model knows: of the ideal one motions of the platform alone."""
+    data = stage_data(analysis.mechanism, model=analysis.linear, kinematics=analysis.kinematics, found=analysis.modes)
+    return data if analysis.linear is not None else replace(data, motions=tuple(each for each in data.motions if each.group is Group.AXIS))
 
 
 def _head(analysis: Analysis) -> Head:

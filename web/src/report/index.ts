@@ -1,5 +1,8 @@
-// What a report does where scripts run: its tables are copied and saved. Without scripts, and in print, it is all there too.
+// What a report does where scripts run: its tables are copied and saved, its pictures of motions play. Without scripts, and in print, it is all there too.
 
+import { addPlays, joinViewers } from "./play";
 import { addTools } from "./tables";
 
 addTools();
+addPlays();
+joinViewers();

@@ -1,5 +1,6 @@
 // The viewer of a stage: `flexstage.view(element, data, options)`, and all `<div data-flexstage="ID">` of a page, which it finds by itself:
-// ID is that of a `<script type="application/json">` with the stage's data, `data-motion="mode 1"` the motion that is shown first.
+// ID is that of a `<script type="application/json">` with the stage's data, `data-motion="mode 1"` the motion that is shown first, `data-ghost` the
+// ID of another stage that is shown as its ghost. An element whose viewer has begun says so by a "flexstage" event.
 
 import type { Controller, MotionGroup, MotionKey, Options, Probe, StageData } from "./types";
 import { Viewer } from "./viewer";
@@ -61,8 +62,9 @@ export function start(): void {
     for (const { target, isIntersecting } of entries) {
       if (!isIntersecting || !(target instanceof HTMLElement) || target.flexstage) continue;
       near.unobserve(target);
-      const data = stageOf(target.dataset["flexstage"] ?? ""), motion = motionOf(target.dataset["motion"]);
-      if (data) view(target, data, motion ? { motion } : {});
+      const data = stageOf(target.dataset["flexstage"] ?? ""), motion = motionOf(target.dataset["motion"]), ghost = stageOf(target.dataset["ghost"] ?? "");
+      if (data) view(target, data, { ...(motion ? { motion } : {}), ...(ghost ? { ghost } : {}) });
+      target.dispatchEvent(new Event("flexstage", { bubbles: true }));
     }
   }, { rootMargin: "200px" });
   for (const each of document.querySelectorAll("[data-flexstage]")) near.observe(each);

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Folded, Legend, Picture, Section, section
+from flexstage.show.page import Abreast, Folded, Legend, Picture, Prose, Section, Viewer, section
 from flexstage.show.plan import plan_figure, rings
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import Scene
 from flexstage.show.scene.view import Side, legend
 from flexstage.show.tables.description import composition_table, link_table
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.motions import Group
 
 _WIDTH = 4.4
 _SIDES = (
@@ -19,8 +21,10 @@ _SIDES = (
 )
 
 
-def stage_section(seen: Scene) -> Section | None:
-    """The stage as it is seen first, from its scene.
+def stage_section(seen: Scene, *, motion: str = "", ghost: str = "", said: str = "") -> Section | None:
+    """The stage as it is seen first, from its scene: the page's data "stage", beginning with `motion`, and those called `ghost` behind it.
+
+    `said` is what stands below it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.scene.stage import scene
@@ -29,7 +33,20 @@ def stage_section(seen: Scene) -> Section | None:
     """
     corner = to_svg(stage_picture(seen), "corner", "The stage from above its front corner")
     caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
-    return section("The stage", [Picture(corner, caption), Legend(legend(seen))])
+    viewer = Viewer("stage", (Picture(corner, caption),), motion, ghost)
+    return section("The stage", [viewer, Legend(legend(seen)), Prose(said) if said else None])
+
+
+def first_motion(data: StageData) -> str:
+    """The motion that a viewer begins with: the lowest mode of the platform, else what there is, else none.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.viewer.data import stage_data
+    >>> first_motion(stage_data(double_triangle()))
+    'mode 1'
+    """
+    ranked = sorted(data.motions, key=lambda each: (each.group is not Group.MODE, "beside" in each.remark))
+    return f"{ranked[0].group.value} {ranked[0].name}" if ranked else ""
 
 
 def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
