@@ -22,6 +22,7 @@ from flexstage.models.lumped import lumped
 from flexstage.show.document import FORMAT
 from tests.apps.command import Command, design_in
 from tests.hygiene.source import ROOT
+from tests.show.stages import seldom
 from tools.json_page import PAGE, written
 
 MODELS = ("ideal", "mapped", "lumped")
@@ -176,7 +177,7 @@ MOUNTS = ("mirror-mount", "telescope-mount")
 """Cases in which nothing is meant to move."""
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.full if name in ALIKE else ()) for name in sorted(CASES)])
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.full) if name in ALIKE else seldom(name) for name in sorted(CASES)])
 def test_every_case_is_analysed(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
     ended = flexstage("analyse", "stage.toml", "--json", "out.json")

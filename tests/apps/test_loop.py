@@ -53,7 +53,8 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
 
 SEVERAL = ("xy-stage-floating", "bridge")
 """Cases that are tried always; the others in full only."""
-OTHERS = sorted(set(CASES) - {"double-triangle", "parallelogram", "mirror-mount", "telescope-mount"})
+UNREAD = {"mirror-mount", "telescope-mount", "leaf-guide", "resonator", "quad-suspension"}
+OTHERS = sorted(set(CASES) - {"double-triangle", "parallelogram"} - UNREAD)
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in SEVERAL else pytest.mark.full) for name in OTHERS])

@@ -25,6 +25,8 @@ from flexstage.spatial.frame import COMPONENTS
 from tests.elsewhere.exudyn_model import System, frequencies, matrices, stroked, system
 
 ROUNDING = 1e-14
+CANCELLED = {"pointing-stage": 1e-13}
+"""Where stiffnesses cancel: the hub of a cartwheel turns as softly as its leaves bend, on arms along which they stretch."""
 
 
 def _loaded() -> fs.Mechanism:
@@ -67,7 +69,7 @@ def test_matrices_agree_entry_by_entry(name: str) -> None:
     model, peer = _both(name)
     for found, ours in zip(matrices(peer), (model.inertia_matrix, model.stiffness_matrix), strict=True):
         scale = np.sqrt(np.diag(ours))
-        assert np.max(np.abs(ours - found) / scale / scale[:, None]) < ROUNDING
+        assert np.max(np.abs(ours - found) / scale / scale[:, None]) < CANCELLED.get(name, ROUNDING)
 
 
 @pytest.mark.parametrize("actuator", ["B1", "B4"])

@@ -73,7 +73,7 @@ def test_one_material_scales_without_stress(mechanism, coefficient, datum):
     np.testing.assert_allclose(found.gauges.values, 0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [name for name in CASES if name != "quad-suspension"])  # which is of springs, of no material
 def test_every_case_of_one_material_scales(name):
     alike = of_one_material(case(name), 10e-6)
     model = lumped(alike)

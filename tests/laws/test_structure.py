@@ -18,6 +18,7 @@ from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.linear.static import static_gain
+from flexstage.parts.amplified import Amplified
 from flexstage.parts.body import Block, Body, Imported, Inertia
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.freedom import ALL, Freedom
@@ -184,6 +185,18 @@ def test_what_has_no_mirror_image_is_refused_by_name():
         place={"A": Placement("arm", Pose(mirror=Normal.Z))},
     )
     assert any("arm/lug.lug is drawn in a STEP file, which cannot be mirrored" in str(finding) for finding in check(stage))
+
+
+def test_an_amplified_actuator_has_the_mirror_image_of_a_given_matrix_and_pushes_as_its_image():
+    random = np.random.default_rng(5)
+    factor, shift = random.normal(size=(6, 6)), tuple(random.normal(size=6))
+    part = Amplified(stroke=1e-4, deformation=shift, matrix=tuple(map(tuple, 1e6 * (factor @ factor.T + 6.0 * np.eye(6)))))
+    signs = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # across y
+    np.testing.assert_array_equal(part.mirrored.between, signs[:, None] * part.between * signs)
+    np.testing.assert_array_equal(part.mirrored.free_deformation, signs * part.free_deformation)
+    assert part.mirrored.mirrored == part
+    solid = replace(part, mass=0.1, inertia=Inertia(1e-6, 2e-6, 3e-6, xy=1e-7, xz=2e-7, yz=3e-7))
+    assert solid.mirrored.inertia == Inertia(1e-6, 2e-6, 3e-6, xy=-1e-7, xz=2e-7, yz=-3e-7)
 
 
 def test_a_compound_is_mirrored_member_by_member():

@@ -5,12 +5,19 @@ from __future__ import annotations
 import functools
 from dataclasses import replace
 
+import pytest
+
 from flexstage.analysis.complete import Analysis, Model, analyse
+from flexstage.cases.file_case import FileCase
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.report import report
 
 NAMES = tuple(CASES)
+"""All shipped cases."""
+
+SEVERAL = tuple(name for name, each in CASES.items() if not isinstance(each, FileCase))
+"""Those that costly tests try always; cases in design files, which differ in what they say and not in how, in full only."""
 HOSTILE = '<script>alert("1 & 2")</script>'
 
 
@@ -49,3 +56,8 @@ def hostile() -> Mechanism:
 
 def _renamed(body: str) -> str:
     return body if body in ("platform", "ground") else f"<b>{body}"
+
+
+def seldom(name: str) -> object:
+    """The name of a case as a parameter of a costly test."""
+    return name if name in SEVERAL else pytest.param(name, marks=pytest.mark.full)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.number import Number, Table, stack
+from flexstage.base.number import Number, Table
 from flexstage.cases.bridge import Bridge, bridge
+from flexstage.cases.case import Case, Shipped
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, SM_REF_B_REFITTED, double_triangle
+from flexstage.cases.file_case import FileCase
 from flexstage.cases.hexapod import Hexapod, hexapod
 from flexstage.cases.mirror_mount import MirrorMount, mirror_mount
 from flexstage.cases.parallelogram import Parallelogram, parallelogram
@@ -21,42 +21,10 @@ from flexstage.cases.tilt_stage import TiltStage, tilt_stage
 from flexstage.cases.tip_tilt import TipTilt, tip_tilt
 from flexstage.cases.voice_coil_stage import VoiceCoilStage, voice_coil_stage
 from flexstage.cases.xy_stage import XYStage, xy_stage
-from flexstage.mechanism.address import get
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import round_to_digits
 
-
-@dataclass(frozen=True)
-class Case:
-    """A shipped case: `draw` makes a description from `parameters`, here its own; `summary` says in one line what it is."""
-
-    draw: Callable[[Any], Mechanism]
-    parameters: Any
-    summary: str
-
-    def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
-        """The description with some parameters `stated` otherwise: texts with units, or SI numbers; arrays make it a batch.
-
-        Tags of numbers that come out otherwise are dropped: their source no longer says them.
-
-        >>> CASES["hexapod"].build({"slope": "50 deg"}).name
-        'hexapod'
-        """
-        own = self.draw(self.parameters)
-        return own if not stated else _honest(self.draw(with_parameters(self.parameters, stated)), own)
-
-
-def _honest(mechanism: Mechanism, own: Mechanism) -> Mechanism:
-    """The description without tags of numbers that are not those of the case's `own`."""
-    tags = {key: tag for key, tag in mechanism.tags.items() if key in own.tags and _same(get(mechanism, key), get(own, key))}
-    return mechanism if len(tags) == len(mechanism.tags) else replace(mechanism, tags=Table(tags))
-
-
-def _same(first: Any, second: Any) -> bool:
-    return bool(np.all(stack(first) == stack(second)))
-
-
-CASES: Mapping[str, Case] = {
+CASES: Mapping[str, Shipped] = {
     "double-triangle": Case(
         double_triangle, SM_REF_B, "six axes: three direct units inside, three levers outside (Shin & Moon), buildable"
     ),
@@ -79,6 +47,21 @@ CASES: Mapping[str, Case] = {
     "telescope-mount": Case(
         telescope_mount, TelescopeMount(), "no axis: a mirror on three bipods of blades, a second one on struts above it"
     ),
+    **{
+        each.name: each
+        for each in (
+            FileCase("leaf-guide", "one axis: a platform on two wide leaves, as published with solid elements"),
+            FileCase("resonator", "one axis: a plate of polysilicon on four straight legs, as published with formulas"),
+            FileCase("quad-suspension", "one axis: four masses on blade springs and silica fibres, as published for a detector"),
+            FileCase("voice-coil-xy", "two axes of long travel: carriages on double parallelograms, pushed by voice coils"),
+            FileCase("three-rrr", "x, y and rz: a plate on three legs of notches, levers and stacks (3-RRR)"),
+            FileCase("stewart", "six axes: a Stewart platform on six amplified actuators"),
+            FileCase("scott-russell", "one axis: a stack amplified by a Scott Russell linkage of notches"),
+            FileCase("scanner", "one fast axis: a stack in a bridge of leaf hinges"),
+            FileCase("pointing-stage", "one rotation: an arm on two cartwheel hinges, pushed by a stack"),
+            FileCase("z-stage", "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil"),
+        )
+    },
 }
 
 
@@ -89,15 +72,14 @@ def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism
     the description a batch. Numbers that do not vary are rounded to twelve digits. Raises `DesignError` with the nearest name where there
     is no case or no parameter of this name, and for values that cannot be.
 
-    >>> case("hexapod").name
-    'hexapod'
+    >>> import numpy as np
     >>> case("hexapod", {"slope": "50 deg", "neck.thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
     [0.0025, 0.003]
     """
     return round_to_digits(shipped_case(name).build(parameters))
 
 
-def shipped_case(name: str) -> Case:
+def shipped_case(name: str) -> Shipped:
     """The shipped case of that name. Raises `DesignError` with the nearest name where there is none.
 
     >>> shipped_case("hexapod").summary

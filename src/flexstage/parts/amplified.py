@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, TypeAlias
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, ClassVar, Self, TypeAlias
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.mass import tensor
 from flexstage.parts.material import Material
-from flexstage.parts.stated import Stated, is_even, point_masses, symmetry_findings, turns_into_itself
+from flexstage.parts.stated import Stated, is_even, mirror_rows, point_masses, symmetry_findings, turns_into_itself
 
 _Along: TypeAlias = Annotated[Number, STIFFNESS, POSITIVE]
 _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS, POSITIVE]
@@ -74,6 +74,11 @@ class BetweenFaces(StrokeActuator):
         return np.linalg.inv(stack(self.compliance)) if self.matrix is None else stack(self.matrix)
 
     @property
+    def mirrored(self) -> Self:
+        """What its own mirror across y shows: couplings, products of inertia and deformations that tell left from right reversed."""
+        return replace(self, **dict(_reversed(self)))  # pyright: ignore[reportArgumentType] (its kinds are dataclasses)
+
+    @property
     def blocking_force(self) -> Number:
         """Force along x of the fully driven actuator, its faces held: (k s)_x times its stroke [N]."""
         return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
@@ -98,6 +103,19 @@ class BetweenFaces(StrokeActuator):
             yield from asymmetric
             if not asymmetric and np.any(np.linalg.eigvalsh(_scaled(own)) <= 0.0):
                 yield Finding(stated[0], "it is not positive definite", "Check signs and units of its entries")
+
+
+def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
+    """The fields that a mirror across y changes, as it shows them."""
+    for name, value in ((name, getattr(part, name, None)) for name in ("matrix", "compliance", "deformation", "inertia")):
+        if value is None:
+            continue
+        if name == "inertia":
+            yield name, replace(value, xy=-value.xy, yz=-value.yz)
+        elif name == "deformation":
+            yield name, tuple(sign * each for sign, each in zip((1.0, -1.0, 1.0, -1.0, 1.0, -1.0), value, strict=True))
+        else:
+            yield name, mirror_rows(value)
 
 
 def _scaled(matrix: Array) -> Array:

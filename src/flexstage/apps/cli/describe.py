@@ -14,12 +14,11 @@ import flexstage
 from flexstage.analysis.cautions import caveats, model_findings
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
-from flexstage.cases.registry import CASES
-from flexstage.cases.registry import case as shipped_case
+from flexstage.cases.registry import shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dumps, loads, shipped_catalogue
+from flexstage.mechanism.store import loads, shipped_catalogue
 from flexstage.mechanism.store import schema as design_schema
 from flexstage.mechanism.store.file import read_text
 from flexstage.mechanism.store.lines import with_lines
@@ -62,13 +61,13 @@ def new(
     if target is None:
         raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
     stated = _stated(parameter or ())
-    mechanism = shipped_case(case, stated)
+    start = shipped_case(case)
     require_writable([(str(target), target)])
     if target.exists() and not force:
         require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
-    text = dumps(mechanism, {"": _heading(case, CASES[case].summary, str(target), stated)})
+    text = start.text(stated, _heading(case, start.summary, str(target), stated))
     write(target, f"#:schema ./{SCHEMA_FILE}\n{text}", str(target))
-    announce(f"Wrote {target} ({case}: {CASES[case].summary}). Next: flexstage analyse {target}")
+    announce(f"Wrote {target} ({case}: {start.summary}). Next: flexstage analyse {target}")
 
 
 def _stated(assignments: Sequence[str]) -> dict[str, str]:
