@@ -132,7 +132,7 @@ export class FigureTable {
     const missing = Object.entries({ ...figures.value?.missing, ...reach.value?.missing }).map(([name, reason]) => h("p", { className: "quiet" }, h("b", {}, name), ` ${reason}`));
     this.cells.clear();
     const closed = new Set([...this.body.querySelectorAll("details:not([open])")].map((each) => each.getAttribute("data-group")));
-    const parts = [...groups.map(([name, rows]) => folded(name, this.table(rows), true)), this.losses(), ...matrices];
+    const parts = [...groups.map(([name, rows]) => folded(name, this.table(rows), true)), this.strokes(), this.losses(), ...matrices];
     for (const each of parts) if (each && closed.has(each.getAttribute("data-group"))) each.open = false;
     fill(this.body, ...parts, ...missing);
   }
@@ -152,6 +152,15 @@ export class FigureTable {
     const old = h("span", { className: "quiet" }, digits(before === null ? null : before / each.factor));
     const others = pins.map((pin) => digits(divided(this.pinned(each.name, pin), each.factor)));
     return [name, old, now, h("small", {}, change(each.value, before)), ...others];
+  }
+
+  private strokes(): HTMLDetailsElement | null {
+    const axes = new Map(this.studio.state.value?.axes.map((each) => [each.name, each]));
+    const rows = (this.studio.reach.value?.strokes ?? []).map((each) => {
+      const scale = axes.get(each.coordinate) ?? { unit: "", factor: 1 };
+      return [each.coordinate, shown(each.low, scale, 4), shown(each.high, scale, 4), each.limiting];
+    });
+    return rows.length ? folded("Single-axis strokes", table(["", "from", "to", "limited by"], rows, "figures"), true) : null;
   }
 
   private losses(): HTMLDetailsElement | null {
