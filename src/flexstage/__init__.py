@@ -56,6 +56,7 @@ HOMES = {
     "models.nonlinear.stage": "nonlinear",
     "models.nonlinear.equilibrium": "equilibrium",
     "models.nonlinear.critical": "critical",
+    "models.nonlinear.linearise": "linearise",
     "models.finite": "forward_kinematics inverse_kinematics",
     "analysis.statics": "freedom_stiffness statics",
     "analysis.mass_matrix": "mass_matrix",

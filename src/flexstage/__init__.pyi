@@ -137,6 +137,9 @@ from flexstage.models.nonlinear.critical import (
 from flexstage.models.nonlinear.equilibrium import (
     equilibrium as equilibrium,
 )
+from flexstage.models.nonlinear.linearise import (
+    linearise as linearise,
+)
 from flexstage.models.nonlinear.stage import (
     nonlinear as nonlinear,
 )

@@ -113,6 +113,28 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, found: Shape) -> Tang
     return replace(whole, hung=hung, swayed=np.stack(sways, axis=-3))
 
 
+def mode_paths(law: FlexureLaw, found: Shape) -> tuple[Array, Array, Array]:
+    """How points move (..., b, n, 3, k) and turn by unit amplitudes of curvature, the start at rest and the end force as it is.
+
+    And (..., b, 2, n, 3, 3) the integrals of R C_n R^T to each point: how it moves by force, and by weight (docs/nonlinear.md, 25).
+    """
+    rule, modes = found.rule, law.modes[..., None, :, :, :]
+    forces = _forces(rule, found.force, found.weight)
+    rates = found.turn @ modes
+    turned = _running(rule, rates)
+    twist = law.trapeze[..., None, None, None] * found.curvature[..., 0, None] * modes[..., 0, :]
+    carried = (found.soft @ cross_matrix(forces) - cross_matrix(found.rate)) @ turned - found.turn[..., 0, None] * twist[..., None, :]
+    left = (1.0 - rule.points)[:, None, None]
+    soft = np.stack([_running(rule, found.soft), _running(rule, left * found.soft)], axis=-4)
+    return _running(rule, carried), turned, soft
+
+
+def _running(rule: Rule, values: Array) -> Array:
+    """Integrals (..., n, r, k) from the start to each point."""
+    flat = values.reshape(*values.shape[:-2], values.shape[-2] * values.shape[-1])
+    return (rule.running @ flat).reshape(values.shape)
+
+
 def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
     """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included."""
     quadratic = 0.5 * np.sum(strain * (strain @ law.form), axis=-1)

@@ -49,13 +49,13 @@ class State:
 
     def displacement(self, place: str = "platform") -> Array:
         """How far (..., 3) a body's reference, or a named point, has moved from where it is drawn [m]."""
-        body, arm = self._place(place)
+        body, arm = self.place(place)
         moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ arm) - self.model.reference[body] - arm
         return self._known(moved)
 
     def rotation(self, body: str = "platform") -> Array:
         """The rotation vector (..., 3) of a body, or of that of a named point [rad]."""
-        return self._known(logarithm(self.pose.turn[:, self._place(body)[0]]))
+        return self._known(logarithm(self.pose.turn[:, self.place(body)[0]]))
 
     def twist(self, place: str = "platform") -> Array:
         """Displacement and rotation vector (..., 6) of a place [m, rad]."""
@@ -71,7 +71,8 @@ class State:
         names = [name for group in self.model.flexures for name in group.names]
         raise refuse(link, "it is no flexure of this stage", suggest_nearest(link, names))
 
-    def _place(self, name: str) -> tuple[int, Array]:
+    def place(self, name: str) -> tuple[int, Array]:
+        """The number of a body, and the drawn arm of its reference or of a named point on it."""
         return place(self.model, name)
 
     def _known(self, values: Array) -> Array:

@@ -17,7 +17,7 @@ from flexstage.beams.flexure.of_part import flexure_law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import layout
-from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.mechanism.mechanism import GROUND, Damping, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import exerted_wrenches, imposed_strokes, input_channels, wrench_places
 from flexstage.models.linear.model import Channel
@@ -66,6 +66,7 @@ class Nonlinear:
     masses: Array
     inertia: Mapping[str, Array]
     gravity: Array
+    damping: Damping | None
     provenance: str
 
     @cached_property
@@ -140,6 +141,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT) -> Nonl
         masses=masses,
         inertia={name: item for name, item in carried.items() if item is not None},
         gravity=stack(mechanism.gravity),
+        damping=mechanism.damping,
         provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}",
     )
 

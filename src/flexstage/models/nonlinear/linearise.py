@@ -1,0 +1,379 @@
+"""Small motions about a state as a `LinearModel`: coordinates are the bodies and the flexures' amplitudes (docs/nonlinear.md, 25)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.beams.compliance import viscous_damping
+from flexstage.beams.mass import mass
+from flexstage.mechanism.mechanism import GROUND, PLATFORM
+from flexstage.models.linear.channels import (
+    Motions,
+    absolute,
+    gauge_rows,
+    output_channels,
+    twist_places,
+    wrench_owners,
+    wrench_places,
+)
+from flexstage.models.linear.elimination import eliminate
+from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
+from flexstage.models.nonlinear.element import mode_paths
+from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.graph import Bent, assemble, end_motion, geometric, hinge_ends, weight_motion
+from flexstage.models.nonlinear.hinge import stiffen
+from flexstage.models.nonlinear.stage import Flexures, Nonlinear
+from flexstage.parts.part import inner
+from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform
+
+_SHAKEN = " (link)"
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """A link's matrices (b, 12 + m, 12 + m) for the motions of its bodies and its m own amplitudes."""
+
+    elastic: Array
+    geometric: Array
+    mass: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Coordinates:
+    """Bodies' freedoms, then every flexure's own: how many each has, in order."""
+
+    model: Nonlinear
+    own: Mapping[str, int]
+
+    @property
+    def size(self) -> int:
+        return self.model.freedoms + sum(self.own.values())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        bodies = (f"{body}.{component}" for body in self.model.bodies for component in COMPONENTS)
+        return (*bodies, *(f"{link}.mode{number + 1}" for link, count in self.own.items() for number in range(count)))
+
+    def body(self, number: int) -> Array:
+        """Selector (6, n) of a body's freedoms, zero of the ground."""
+        result = np.zeros((6, self.size))
+        if number < len(self.model.bodies):
+            result[:, 6 * number : 6 * number + 6] = np.eye(6)
+        return result
+
+    def link(self, name: str, joins: tuple[int, int]) -> Array:
+        """Selector (12 + m, n) of a link's two bodies and its own amplitudes."""
+        before = list(self.own)[: list(self.own).index(name)] if name in self.own else list(self.own)
+        start = self.model.freedoms + sum(self.own[each] for each in before)
+        inside = np.eye(self.own.get(name, 0), self.size, k=start)
+        return np.concatenate([self.body(joins[0]), self.body(joins[1]), inside])
+
+
+def linearise(state: State) -> LinearModel:
+    """Small motions about a state, all cases of it as a batch: modes, responses and losses of a displaced or loaded stage.
+
+    What was held is released: stiffness is that of the free stage under the force that held it. Plate fields follow without mass. Stiffness
+    is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are not told (`unknown`). Gauges look
+    along their drawn lines. Raises `DesignError` where no case has a state.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.equilibrium import equilibrium
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> model = linearise(equilibrium(nonlinear(parallelogram()), {"B": 10e-6}))
+    >>> model.coordinates[0], "geometric" in model.stiffness
+    ('platform.x', True)
+    """
+    if not np.any(state.converged):
+        raise refuse("stage", "no case has an equilibrium to move about", "Look at the status of the state, or ask for less load")
+    model = state.model
+    whole = assemble(model, state.pose, state.loads, state.hold)
+    links = {name: item for group, bent in zip(model.flexures, whole.bent, strict=True) for name, item in _flexures(group, bent).items()}
+    own = {name: item.mass.shape[-1] - 12 for name, item in links.items()}
+    order = _Coordinates(model, own)
+    joins = {
+        name: (int(one), int(other))
+        for group in (*model.flexures, model.hinges)
+        for name, one, other in zip(group.names, group.first, group.second, strict=True)
+    }
+    return _assembled(state, order, joins, links)
+
+
+def _assembled(state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], links: Mapping[str, _Linear]) -> LinearModel:
+    model, assembly = state.model, state.model.assembly
+    stiffness: dict[str, Contribution] = {}
+    bending = np.zeros((len(state.pose.position), order.size, order.size))
+    for name, item in links.items():
+        select = order.link(name, joins[name])
+        stiffness[name] = Contribution(select, item.elastic, _loss(model, name))
+        bending += select.T @ item.geometric @ select
+    rows, remains = _hinges(state)
+    for place, name in enumerate(model.hinges.names):
+        select = order.link(name, joins[name])
+        stiffness[name] = Contribution(rows[place] @ select, model.hinges.stiffness[place], _loss(model, name))
+        bending += select.T @ remains[place] @ select
+    bending[:, : model.freedoms, : model.freedoms] += _turning(model, state)
+    stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
+    inertia, seen = _inertia(state, order, joins, links)
+    force, output, feedthrough = _channels(state, order, rows, joins)
+    basis, kept = _free(model, rows, order, joins)
+    known = np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
+    imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
+    rigid = np.zeros((len(state.pose.position), order.size, 6))
+    rigid[:, : model.freedoms] = _rigid(state)
+    carried = strain_forces(inertia, seen) if inertia else np.zeros_like(rigid)
+    names = order.names
+    return _shaped(
+        state,
+        LinearModel(
+            coordinates=tuple(names[index] for index in kept),
+            stiffness={name: Contribution(known * (item.operator @ basis), item.law, item.loss_factor) for name, item in stiffness.items()},
+            inertia={name: Contribution(item.operator @ basis, item.law) for name, item in inertia.items()},
+            inputs=model.inputs,
+            force=np.swapaxes(basis, -1, -2) @ force,
+            imposed=imposed,
+            outputs=output_channels(assembly),
+            output=output @ basis,
+            feedthrough=feedthrough,
+            rigid=rigid[:, list(kept)],
+            rigid_output=np.where(absolute(assembly)[:, None], output @ rigid, 0.0),
+            base_inertia=np.swapaxes(basis, -1, -2) @ carried,
+            damping=model.damping,
+            idle=(),
+            provenance=f"about a state of the {model.provenance}",
+            unknown=tuple(f"{name}.{force}" for group in model.flexures for name in group.names for force in FORCES),
+            viscous=_viscous(model),
+        ),
+    )
+
+
+def _shaped(state: State, model: LinearModel) -> LinearModel:
+    """The model with its cases in the shape of the state's."""
+    cases = len(state.pose.position)
+
+    def reshape(value: object) -> object:
+        if isinstance(value, Contribution):
+            return replace(value, operator=reshape(value.operator), law=reshape(value.law))
+        if isinstance(value, dict):
+            return {name: reshape(each) for name, each in value.items()}
+        if isinstance(value, np.ndarray) and value.ndim == 3 and len(value) == cases:
+            return value.reshape(*state.shape, *value.shape[1:])
+        return value
+
+    return replace(model, **{each.name: reshape(getattr(model, each.name)) for each in fields(LinearModel)})
+
+
+def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
+    """Every flexure of a group, by name."""
+    law, found = group.law, bent.tangent
+    motion = end_motion(law, bent)
+    sway = weight_motion(bent) if bent.weight is not None else np.zeros((*motion.shape[:-2], 3, 12))
+    follow, own = _constrain(law.form[:, None], found.turning, motion[..., 3:, :])
+    amplitudes = np.concatenate([follow, own], axis=-1)
+    padding = np.zeros((*motion.shape[:-2], 6, own.shape[-1]))
+    ends, swayed = np.concatenate([motion, padding], -1), np.concatenate([sway, padding[..., :3, :]], -1)
+    gap = found.reach @ amplitudes - ends[..., :3, :]
+    if found.swayed is not None:
+        gap = gap + found.swayed[..., 0, :, :] @ swayed
+    hung = np.linalg.solve(found.soft, gap)
+    unit = (law.rigidity / law.length)[:, None, None, None]
+    elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(gap) @ hung
+    rest = _transpose(amplitudes) @ ((found.hessian - law.form[:, None]) @ amplitudes)
+    if found.hung is not None and found.swayed is not None:
+        mixed = _transpose(swayed) @ (found.hung @ amplitudes)
+        rest = rest - mixed - _transpose(mixed) - _transpose(swayed) @ (found.swayed[..., 1, :, :] @ swayed)
+    turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
+    rest = unit * rest
+    rest[..., :12, :12] += turned
+    masses = _mass(group, bent, amplitudes, hung, swayed)
+    return {
+        name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
+        for place, name in enumerate(group.names)
+    }
+
+
+def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
+    """Amplitudes that turn the end with its body (..., q, 12), and those (..., q, q - 3) that do not turn it, scaled by their stiffness."""
+    root = 1.0 / np.sqrt(np.diagonal(form, axis1=-2, axis2=-1))
+    scaled = turning * root[..., None, :]
+    follow = root[..., None] * (_transpose(scaled) @ np.linalg.solve(scaled @ _transpose(scaled), turned))
+    _, _, vectors = np.linalg.svd(scaled)
+    return follow, root[..., None] * _transpose(vectors[..., 3:, :])
+
+
+def _mass(group: Flexures, bent: Bent, amplitudes: Array, hung: Array, swayed: Array) -> Array:
+    """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with its start, bends and stretches with its amplitudes."""
+    law, lies = group.law, bent.lies
+    paths, turned, soft = mode_paths(law, lies)
+    length = law.length[:, None, None, None, None]
+    frame = bent.frame[..., None, :, :]
+    count = amplitudes.shape[-1]
+    inside = paths @ amplitudes[..., None, : paths.shape[-1], :] - soft[..., 0, :, :, :] @ hung[..., None, :, :]
+    inside = inside + soft[..., 1, :, :, :] @ swayed[..., None, :, :]
+    place = length * (frame @ inside)
+    turn = frame @ (turned @ amplitudes[..., None, : paths.shape[-1], :])
+    arm = bent.onset[..., None, :] + length[..., 0] * (frame @ lies.place[..., None])[..., 0]
+    place = place + _pad(np.concatenate([np.broadcast_to(np.eye(3), (*arm.shape, 3)), -cross_matrix(arm)], axis=-1), count)
+    turn = turn + _pad(np.concatenate([np.zeros((*arm.shape, 3)), np.broadcast_to(np.eye(3), (*arm.shape, 3))], axis=-1), count)
+    local = _transpose(lies.turn) @ (_transpose(frame) @ turn)
+    weights = law.length[:, None, None] * lies.rule.weights
+    along, about = (weights[..., None] * law.inertia[:, None, :, part] for part in (slice(0, 1), slice(1, 4)))
+    moved = np.einsum("lbnci,lbncj->lbij", place, along[..., None] * place)
+    return moved + np.einsum("lbnci,lbncj->lbij", local, about[..., None] * local)
+
+
+def _pad(matrix: Array, count: int) -> Array:
+    return np.concatenate([matrix, np.zeros((*matrix.shape[:-1], count - matrix.shape[-1]))], axis=-1)
+
+
+def _hinges(state: State) -> tuple[Array, Array]:
+    """Deformations of links about centres by their bodies' motions (l, b, 6, 12), and what is not elastic in their stiffness."""
+    model = state.model
+    hinges, cases = model.hinges, len(state.pose.position)
+    if not hinges.names:
+        return np.zeros((0, cases, 6, 12)), np.zeros((0, cases, 12, 12))
+    links, freedoms = hinges.locked.T
+    held = np.zeros((len(hinges.names), cases, 6))
+    held[links, :, freedoms] = state.pose.held[:, : len(links)].T
+    _, own, _, rows = stiffen(hinges, hinge_ends(model, state.pose), state.loads.inputs, state.loads.constant, held)
+    return rows, own - _transpose(rows) @ hinges.stiffness[:, None] @ rows
+
+
+def _turning(model: Nonlinear, state: State) -> Array:
+    """What dead forces add to the stiffness of bodies (b, n, n) as their arms turn."""
+    cases = len(state.pose.position)
+    result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
+    dead = model.dead(state.loads)
+    arms = (state.pose.turn[:, model.places.body] @ model.places.arm[..., None])[..., 0]
+    turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
+    for place, number in enumerate(model.places.body):
+        part = slice(6 * number + 3, 6 * number + 6)
+        result[:, part, part] += turning[:, place]
+    return result[:, : model.freedoms, : model.freedoms]
+
+
+def _rigid(state: State) -> Array:
+    """Motion (b, n, 6) of bodies that move with the ground, its twist given at the platform's reference."""
+    position = state.pose.position
+    centre = position[:, state.model.body(PLATFORM)]
+    carries = [transport(position[:, number] - centre) for number in range(len(state.model.bodies))]
+    return np.concatenate(carries, axis=-2)
+
+
+def _inertia(
+    state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], links: Mapping[str, _Linear]
+) -> tuple[dict[str, Contribution], dict[str, Array]]:
+    """Masses of bodies and links, and the motion of each with the ground."""
+    model, pose = state.model, state.pose
+    centre = pose.position[:, model.body(PLATFORM)]
+    inertia: dict[str, Contribution] = {}
+    seen: dict[str, Array] = {}
+    for name, matrix in model.inertia.items():
+        number = model.body(name)
+        turn = spatial_rotation(pose.turn[:, number])
+        inertia[name] = Contribution(order.body(number), turn @ matrix @ _transpose(turn))
+        seen[name] = transport(pose.position[:, number] - centre)
+    for name, item in links.items():
+        carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
+        still = np.zeros((len(centre), item.mass.shape[-1] - 12, 6))
+        inertia[name + _SHAKEN] = Contribution(order.link(name, joins[name]), item.mass)
+        seen[name + _SHAKEN] = np.concatenate([*carries, still], axis=-2)
+    for place, name in enumerate(model.hinges.names):
+        matrix = mass(model.assembly.links[name].part, model.assembly.links[name].material)
+        ends = _hinge_twists(state, place)
+        both = np.zeros((len(centre), 12, 12))
+        both[:, :6, :6], both[:, 6:, 6:] = ends
+        carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
+        inertia[name + _SHAKEN] = Contribution(both @ order.link(name, joins[name]), matrix)
+        seen[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
+    return inertia, seen
+
+
+def _hinge_twists(state: State, place: int) -> tuple[Array, Array]:
+    """The twists (b, 6, 6) of a link's ends at its centre, in the frames of each body, by the bodies' own."""
+    hinges, pose = state.model.hinges, state.pose
+    found = []
+    for bodies, arms in ((hinges.first, hinges.arm_first), (hinges.second, hinges.arm_second)):
+        turn = pose.turn[:, bodies[place]]
+        arm = turn @ arms[place]
+        found.append(_transpose(spatial_rotation(turn @ hinges.turn[place])) @ transport(arm))
+    return found[0], found[1]
+
+
+def _channels(state: State, order: _Coordinates, rows: Array, joins: Mapping[str, tuple[int, int]]) -> tuple[Array, Array, Array]:
+    """Forces of inputs (b, n, m), and outputs (b, p, n) with their feed-through (p, m)."""
+    model, assembly = state.model, state.model.assembly
+    cases, inputs = len(state.pose.position), len(model.inputs)
+    motions = Motions(
+        {name: np.broadcast_to(order.body(model.body(name)), (cases, 6, order.size)) for name in model.bodies}, _at(state, order)
+    )
+    force = np.zeros((cases, order.size, inputs))
+    start = inputs - 6 * len(wrench_places(assembly))
+    for place, twist in enumerate(_moved_twists(state, order, wrench_places(assembly))):
+        force[:, :, start + 6 * place : start + 6 * place + 6] += _transpose(twist)
+    for place, name in enumerate(model.hinges.names):
+        force += _transpose(rows[place] @ order.link(name, joins[name])) @ model.hinges.thrust[place]
+    told = [*_moved_twists(state, order, twist_places(assembly)), *gauge_rows(assembly, motions)]
+    passed = [np.zeros((row.shape[-2], inputs)) for row in told]
+    for name in wrench_owners(assembly):
+        place = model.hinges.names.index(name) if name in model.hinges.names else None
+        law = np.zeros((6, 6)) if place is None else model.hinges.stiffness[place]
+        told.append(np.zeros((6, order.size)) if place is None else law @ rows[place] @ order.link(name, joins[name]))
+        passed.append(np.zeros((6, inputs)) if place is None else -law @ model.hinges.stroke[place] - model.hinges.thrust[place])
+    output = np.concatenate([np.broadcast_to(row, (cases, *row.shape[-2:])) for row in told], axis=-2)
+    return force, output, np.concatenate(passed)
+
+
+def _moved_twists(state: State, order: _Coordinates, places: Mapping[str, object]) -> list[Array]:
+    """The twist (b, 6, n) of every place where it now is, in the stage's axes."""
+    found = []
+    for name in places:
+        number, arm = state.place(name)
+        found.append(transport(state.pose.turn[:, number] @ arm) @ order.body(number))
+    return found
+
+
+def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
+    def twist(body: str, frame: Frame) -> Array:
+        if body == GROUND:
+            return np.zeros((6, order.size))
+        number = state.model.body(body)
+        return twist_transform(frame, state.pose.position[:, number]) @ order.body(number)
+
+    return twist
+
+
+def _free(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> tuple[Array, tuple[int, ...]]:
+    """What the locked freedoms leave: motions (..., n, k) and the coordinates they are named after."""
+    if not len(model.hinges.locked):
+        return np.eye(order.size), tuple(range(order.size))
+    locked = np.stack(
+        [
+            rows[link, :, freedom] @ order.link(model.hinges.names[link], joins[model.hinges.names[link]])
+            for link, freedom in model.hinges.locked
+        ],
+        axis=-2,
+    )
+    scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in order.names])
+    solution = eliminate(locked, scale, keep=tuple(range(6)))
+    return solution.basis, solution.independent
+
+
+def _loss(model: Nonlinear, name: str) -> float:
+    link = model.assembly.links[name]
+    holder = inner(link.part) if link.material is None else link.material
+    value = getattr(holder, "loss_factor", None)
+    return 0.0 if value is None else value
+
+
+def _viscous(model: Nonlinear) -> dict[str, Array]:
+    found = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
+    return {name: damping for name, damping in found.items() if damping is not None}
+
+
+def _transpose(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
