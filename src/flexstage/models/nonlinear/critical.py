@@ -14,9 +14,12 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.condense import system
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import System, assemble
+from flexstage.models.nonlinear.newton import Effort
 from flexstage.models.nonlinear.stage import Nonlinear
 
-_FIRST, _MOST, _GROWTH = 1e-3, 1e6, 1.5
+_FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
+_NEAR = Effort(halvings=0)
+"""Each state starts from one beside it."""
 _SEEN = 1e-6
 """Work of the load on the motion, over their sizes, below which it does none."""
 
@@ -67,7 +70,7 @@ def critical(
 ) -> Critical:
     """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
 
-    The factor grows from 0.001 by steps of half, each state from the one before; the change of `unstable_motions` is then bisected, or
+    The factor doubles from 0.001, each state from the one before; the change of `unstable_motions` is then bisected, or
     found as a zero of the stage's lowest stiffness. Raises `DesignError` for a load that is nothing, for a stage that is unstable without
     it, and where nothing gives way up to `most`.
     """
@@ -97,7 +100,7 @@ class _Search:
     def at(self, factor: float, start: State | None) -> State:
         scaled = {name: factor * value for name, value in self.load.items()}
         together = {name: scaled.get(name, 0.0) + self.rest.get(name, 0.0) for name in {**self.rest, **scaled}}
-        return equilibrium(self.model, together, weight=self.weight, start=start)
+        return equilibrium(self.model, together, weight=self.weight, start=start, effort=_NEAR)
 
     @staticmethod
     def motions(state: State) -> int:
@@ -133,7 +136,10 @@ def _zero(search: _Search, between: tuple[float, float], start: State, tolerance
     ends = [lowest(factor) for factor in between]
     if not np.all(np.isfinite(ends)) or ends[0] * ends[1] >= 0.0:
         return None
-    return float(scipy.optimize.brentq(lowest, *between, xtol=tolerance * between[1], rtol=1e-14))
+    try:
+        return float(scipy.optimize.brentq(lowest, *between, xtol=tolerance * between[1], rtol=1e-14))
+    except ValueError:  # some state between them was not found
+        return None
 
 
 def _lowest(state: State) -> tuple[float, Array]:

@@ -13,7 +13,6 @@ from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, Status, put
 
-_HALVINGS = 6
 _CHUNK = 512
 """Cases at once: what they need stays in the processor's caches."""
 
@@ -22,13 +21,14 @@ _CHUNK = 512
 class Effort:
     """When a search ends: steps below `step` (lengths over the flexures', radians), gaps below `gap`; after so many iterations.
 
-    `limit` is the largest step.
+    `limit` is the largest step. What fails is loaded in 2, 4, ... 2^`halvings` steps.
     """
 
     step: float = 1e-9
     gap: float = 1e-6
     iterations: int = 25
     limit: float = 1.5
+    halvings: int = 6
 
 
 USUAL = Effort()
@@ -80,7 +80,7 @@ def _join(parts: list[Found]) -> Found:
 def _by_halves(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, tried: tuple[Effort, Found]) -> Found:
     effort, found = tried
     rest = Loads(np.zeros_like(loads.inputs), np.zeros_like(loads.gravity), np.zeros_like(loads.constant))
-    for halving in range(1, _HALVINGS + 1):
+    for halving in range(1, effort.halvings + 1):
         failed = np.flatnonzero(found.status != Status.CONVERGED)
         if not failed.size:
             return found
