@@ -222,6 +222,17 @@ def test_state_space_in_mat_has_the_natural_frequencies_and_the_static_gain(flex
     assert space["inputs"][0] == "B1 [m]"
 
 
+def test_modes_are_seen_in_motion_as_a_page_or_as_a_glb_file(flexstage: Command, tmp_path: Path) -> None:
+    for name, begin in (("seen.html", b"<!doctype html>"), ("seen.GLB", b"glTF")):
+        ended = flexstage("modes", "stage.toml", "--view", name)
+        assert (ended.code, ended.err) == (0, f"Wrote {name}\n")
+        assert (tmp_path / name).read_bytes().startswith(begin)
+    ended = flexstage("modes", "stage.toml", "--view", "seen.png")
+    assert ended.code == 2
+    assert "ends neither in .html nor in .glb" in ended.err
+    assert not (tmp_path / "seen.png").exists()
+
+
 def test_plan_is_drawn_in_every_format(flexstage: Command, tmp_path: Path) -> None:
     for ending, start in {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}.items():
         assert flexstage("plan", "stage.toml", "-o", f"plan.{ending}").code == 0

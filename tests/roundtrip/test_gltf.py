@@ -1,4 +1,4 @@
-"""A stage's surface and modes written as GLB and read back: sizes, bounds, targets and animations hold what the standard asks."""
+"""Surfaces and modes as GLB, of solids and of theory, read back: sizes, bounds, targets and animations hold what the standard asks."""
 
 from __future__ import annotations
 
@@ -9,13 +9,17 @@ import pygltflib as gl
 import pytest
 
 from flexstage.analysis.modes import Modes, modes
+from flexstage.cases.registry import case
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.lumped import lumped
 from flexstage.parts.body import Block, Body
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.solid.exchange.gltf import Motion, Surface, gltf, surfaces
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.fea.parts import Ways
+from flexstage.solid.moving import to_glb
 from flexstage.solid.read import SolidRead, read_solid, solids
 
 KINDS = {"SCALAR": 1, "VEC3": 3}
@@ -159,3 +163,27 @@ def test_without_motions_there_is_a_still_surface(shown: dict[str, Surface]) -> 
     assert document is not None
     assert not document.animations
     assert all(not primitive.targets for mesh in document.meshes for primitive in mesh.primitives)
+
+
+def test_a_stage_of_rigid_bodies_and_bending_links_moves_by_the_lumped_model_without_finite_elements() -> None:
+    stage = case("parallelogram")
+    document = gl.GLTF2.load_from_bytes(to_glb(stage, modes=2))
+    assert document is not None
+    members = {node.name: document.meshes[node.mesh] for node in document.nodes if node.mesh is not None}
+    assembly = expand(stage)
+    assert set(members) == {"ground", *assembly.bodies, *assembly.links, *assembly.gauges}
+    assert [each.name for each in document.animations] == members["platform"].extras["targetNames"]
+    assert [each.name[:7] for each in document.animations] == ["mode 1 ", "mode 2 "]
+    found = modes(lumped(stage))
+    reference = np.asarray(assembly.bodies["platform"].reference)
+    (primitive,) = members["platform"].primitives
+    places = values(document, primitive.attributes.POSITION)
+    for number, target in enumerate(primitive.targets):
+        twist = found.platform_shapes[:, number]
+        shift = twist[:3] + np.cross(twist[3:], places - reference)
+        drawn = values(document, target["POSITION"])
+        scale = np.sum(drawn * shift) / np.sum(shift**2)
+        np.testing.assert_allclose(drawn, scale * shift, rtol=0.0, atol=1e-6 * np.abs(drawn).max())  # 32 bits
+    largest = max(np.linalg.norm(values(document, each.primitives[0].targets[0]["POSITION"]), axis=1).max() for each in members.values())
+    everything = np.vstack([values(document, each.primitives[0].attributes.POSITION) for each in members.values()])
+    assert largest == pytest.approx(0.05 * np.linalg.norm(np.ptp(everything, axis=0)), rel=1e-6)

@@ -9,6 +9,7 @@ HOMES = {
     "fea.hinge": "hinge_compliance",
     "fea.model": "model",
     "exchange.matrices": "export_superelement",
+    "moving": "to_glb",
     "resolution": "Resolution",
     "hinges": "solid_hinges",
     "units": "solid_units",

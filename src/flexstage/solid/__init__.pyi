@@ -26,6 +26,9 @@ from flexstage.solid.hinges import (
 from flexstage.solid.modes import (
     fea_modes as fea_modes,
 )
+from flexstage.solid.moving import (
+    to_glb as to_glb,
+)
 from flexstage.solid.resolution import (
     Resolution as Resolution,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -14,21 +15,24 @@ from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
+from flexstage.analysis.modes import Modes
 from flexstage.analysis.random_response import random_response
 from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import SideBySide, walk
 from flexstage.base.unit import parse
-from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
+from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
 from flexstage.show.table import Table
@@ -39,6 +43,9 @@ from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
+from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.view import View
+from flexstage.solid.moving import glb_of
 from flexstage.spatial.frame import COMPONENTS
 
 
@@ -151,16 +158,43 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
 
 
 def modes(
-    design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
+    design: Design,
+    *,
+    model: ModelName = Model.LUMPED,
+    view: Annotated[
+        Path | None,
+        text_option("--view", "STAGE.HTML", "Write the stage in motion: a page that stands alone (.html), or a GLB file (.glb)."),
+    ] = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Natural frequencies, names and shapes.
 
-    Which modes are the platform's, which are local, and by what margin.
+    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
-    found = platform_modes(mechanism, elastic_model(mechanism, model))
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
+    ending = None if view is None else _view_ending(view)
+    linear = elastic_model(mechanism, model)
+    found = platform_modes(mechanism, linear)
+    if view is not None:
+        save(view, _moving(mechanism, linear, found, ending), "--view")
     answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv, xlsx=xlsx)
+
+
+def _view_ending(path: Path) -> str:
+    """The kind of file that is wanted, by its ending; refused where it is none of the two."""
+    ending = path.suffix.lower()
+    if ending not in {".html", ".glb"}:
+        raise refuse("--view", f'"{path}" ends neither in .html nor in .glb', "Name a page, stage.html, or a GLB file, stage.glb")
+    return ending
+
+
+def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None) -> str | bytes:
+    """The stage with its modes, as a page or as a GLB file."""
+    shown = stage_data(mechanism, model=linear, found=found)
+    return glb_of(shown) if ending == ".glb" else View(shown, "mode 1").html
 
 
 def response(  # noqa: PLR0913 (its options)
