@@ -100,4 +100,5 @@ const KEYS: Key[] = [
 listen(KEYS);
 // What tests and whoever measures may ask.
 Object.assign(window, { studio });
+window.addEventListener("hashchange", () => location.reload()); // another token in the same tab
 studio.connection.open();

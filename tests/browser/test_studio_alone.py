@@ -1,0 +1,204 @@
+"""The studio's page against a server that the test plays: slow answers, lost connections, other pages' texts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, Route, WebSocketRoute
+
+from flexstage.apps.studio.protocol import Amount, Done, Engine, Judgement, Problem, Refusal, State, Verdicts, Welcome
+from flexstage.apps.studio.wire import encode
+from tests.browser.conftest import Watch
+from tests.hygiene.source import SRC
+
+HOST = "http://127.0.0.1:9"
+FILES = {
+    name: SRC / folder / name
+    for folder, names in {"apps/studio/static": ("studio.html", "studio.js", "studio.css"), "show/static": ("viewer.js",)}.items()
+    for name in names
+}
+KINDS = {".html": "text/html", ".js": "text/javascript", ".css": "text/css"}
+TEXT = 'format = "flexstage 1"\nname = "one leaf"\n\n[parts.leaf]\nthickness = "0.5 mm"\n'
+THICKNESS = "parts.leaf.thickness"
+
+
+class Server:
+    """Answers what the test says, by the kind of a request; keeps all requests."""
+
+    def __init__(self, page: Page) -> None:
+        self.heard: list[dict[str, Any]] = []
+        self.holds: set[str] = set()
+        self.refuses: dict[str, Refusal] = {}
+        self.socket: WebSocketRoute | None = None
+        page.route(f"{HOST}/**", self._file)
+        page.route_web_socket(f"{HOST.replace('http', 'ws')}/**", self._open)
+
+    def _file(self, route: Route) -> None:
+        path = FILES[Path(route.request.url.partition("#")[0]).name]
+        route.fulfill(body=path.read_bytes(), headers={"content-type": KINDS[path.suffix], "content-security-policy": "default-src 'self'"})
+
+    def _open(self, socket: WebSocketRoute) -> None:
+        self.socket = socket
+        socket.on_message(self._hear)
+
+    def _hear(self, text: str | bytes) -> None:
+        said = json.loads(text)
+        self.heard.append(said)
+        if said["kind"] == "hello":
+            self.say(Welcome(1, "0", 1, 1), state(1), verdicts(1))
+        elif said["kind"] not in self.holds:
+            self.answer(said)
+
+    def answer(self, said: dict[str, Any]) -> None:
+        refusal = self.refuses.get(said["kind"])
+        self.say(Done(said["id"]) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
+
+    def say(self, *messages: Any) -> None:
+        assert self.socket is not None
+        for each in messages:
+            self.socket.send(encode(each))
+
+    def of(self, kind: str) -> list[dict[str, Any]]:
+        return [each for each in self.heard if each["kind"] == kind]
+
+
+def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Problem, ...] = (), value: float = 5e-4) -> State:
+    amount = Amount(THICKNESS, "parts.leaf", value, f"{1e3 * value:g} mm", "m", "mm", 1e-3, "length", 2e-4, 1e-3, 5e-4, None, 5, "")
+    saved = text == TEXT
+    return State(
+        revision,
+        page,
+        "leaf.toml",
+        "one leaf",
+        text,
+        "",
+        saved,
+        not problems,
+        0,
+        True,
+        False,
+        problems,
+        (),
+        (amount,),
+        (),
+        (),
+        (),
+        (),
+        (),
+        {"leaf": 4},
+        (),
+    )
+
+
+def verdicts(revision: int) -> Verdicts:
+    found = Judgement("frequency.1", "at least 50 Hz", "", "Hz", "Hz", 1.0, 50.0, 60.0, 60.0, 0.2, True, "", 6)
+    return Verdicts(revision, (found,), 1.0)
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser) -> Iterator[Page]:
+    watch = Watch((HOST, HOST.replace("http", "ws")))
+    made = watch.over(browser.new_page(viewport={"width": 1440, "height": 900}))
+    yield made
+    made.close()
+    assert not watch.errors
+    assert not watch.requests
+
+
+@pytest.fixture
+def server(page: Page) -> Server:
+    made = Server(page)
+    page.goto("about:blank")
+    page.goto(f"{HOST}/studio.html#token=abc")
+    until(page, lambda: bool(made.of("derive")))
+    return made
+
+
+def until(page: Page, holds: Any) -> None:
+    for _ in range(400):
+        if holds():
+            return
+        page.wait_for_timeout(25)
+    pytest.fail("it did not come within ten seconds")
+
+
+def drag(page: Page, *places: int) -> None:
+    move = "([address, at]) => { const s = document.querySelector(`[data-address='${address}'] input[type=range]`); s.value = String(at); s.dispatchEvent(new Event('input')); }"
+    for each in places:
+        page.evaluate(move, [THICKNESS, each])
+
+
+def test_the_first_message_is_the_token_which_leaves_the_address(page: Page, server: Server) -> None:
+    assert server.heard[0] == {"kind": "hello", "token": "abc", "version": 1}
+    assert page.url == f"{HOST}/studio.html"
+    assert "frequency.1" in page.inner_text("#verdicts")
+    assert "+20 %" in page.inner_text("#verdicts")
+
+
+def test_of_many_moves_the_server_gets_the_first_and_the_newest(page: Page, server: Server) -> None:
+    server.holds = {"drag"}
+    page.evaluate(f"() => document.querySelector(\"[data-address='{THICKNESS}'] input\").dispatchEvent(new PointerEvent('pointerdown'))")
+    drag(page, 400, 450, 500, 550, 600)
+    until(page, lambda: len(server.of("drag")) == 1)
+    server.answer(server.of("drag")[0])
+    until(page, lambda: len(server.of("drag")) == 2)
+    # the slider goes from 0.2 mm to 1 mm in 1000 steps
+    assert [each["value"] for each in server.of("drag")] == pytest.approx([5.2e-4, 6.8e-4])
+    assert len(server.of("grip")) == 1
+
+
+def test_a_rest_sends_the_number_in_five_digits(page: Page, server: Server) -> None:
+    drag(page, 333)
+    until(page, lambda: bool(server.of("rest")))
+    assert server.of("rest")[0]["value"] == pytest.approx(4.664e-4, rel=1e-12)
+
+
+def test_findings_stand_at_their_line_and_a_click_goes_there(page: Page, server: Server) -> None:
+    broken = TEXT.replace('"0.5 mm"', '"0.5"')
+    server.say(state(2, broken, problems=(Problem(THICKNESS, "found a number without unit.", "Write for example 0.5 mm.", 5, None),)))
+    until(page, lambda: "line 5" in page.inner_text("#problems"))
+    page.locator("#problems button").click()
+    assert page.locator("#editor .cm-activeLine").inner_text() == 'thickness = "0.5"'
+    assert page.locator("#editor .cm-lint-marker-error").count() == 1
+    assert "frequency.1" in page.inner_text("#verdicts")
+
+
+def test_save_waits_for_what_was_typed(page: Page, server: Server) -> None:
+    server.holds = {"edit"}
+    page.locator("#editor .cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("# thin")
+    page.keyboard.press("Control+s")
+    until(page, lambda: bool(server.of("edit")))
+    assert server.of("edit")[0]["text"] == TEXT + "# thin"
+    assert not server.of("save")
+    server.answer(server.of("edit")[0])
+    until(page, lambda: bool(server.of("save")))
+
+
+def test_another_pages_text_is_never_merged_with_what_is_typed(page: Page, server: Server) -> None:
+    server.refuses = {"edit": Refusal(0, (Problem("text", "another page changed it", ""),), True)}
+    page.locator("#editor .cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("# mine")
+    theirs = TEXT.replace("0.5", "0.7")
+    server.say(state(2, theirs, page=2, value=7e-4))
+    until(page, lambda: page.get_by_role("button", name="take theirs").count() == 1)
+    assert "# mine" in page.inner_text("#editor .cm-content")
+    page.get_by_role("button", name="take theirs").click()
+    assert "0.7 mm" in page.inner_text("#editor .cm-content")
+    assert "# mine" not in page.inner_text("#editor .cm-content")
+
+
+def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:
+    assert server.socket is not None
+    server.say(Engine("computes", "modes", 2.0))
+    until(page, lambda: page.inner_text("#engine") == "modes, 2 s")
+    server.socket.close(code=1001)
+    until(page, lambda: "lost" in page.inner_text("#engine"))
+    until(page, lambda: len(server.of("hello")) == 2)
+    until(page, lambda: "lost" not in page.inner_text("#engine"))
