@@ -91,7 +91,8 @@ def test_wide_leaf_of_a_component_library():
     """Clamped-free silicon leaf, 100 x 20 x 2 um: modes of an ANSYS model [kHz] (Kolchuzhin, LMGT_MEMS_component_library, clamped_beam).
 
     Bending 275.44 and 1733.7, in its plane 2684.3, twist 3011.6 and 9206.6. The massless platform keeps the tip from warping, which is
-    free there; the source's third bending mode lies above any beam's or plate's, presumably by its mesh.
+    free there; the source's third bending mode lies above any beam's or plate's, presumably by its mesh. The solid model of this package,
+    with that tip, has 275.30, 1722.5, 2681.2, 2945.4 and 8979.5: theory is within 0.15 % of it, and 0.7 % in the leaf's plane.
     """
     silicon = Material(young=169e9, poisson=0.066, density=2329.0)
     blade = Leaf("steel", 100e-6, 2e-6, 20e-6, inner_modes=4)
@@ -186,10 +187,10 @@ FULL = pytest.mark.full
 @pytest.mark.parametrize(
     ("size", "order", "error"),
     [
-        ((10, 0.5, 2), 3, (0.006, 0.045)),
-        pytest.param((20, 0.5, 4), 3, (0.002, 0.02), marks=FULL),
-        pytest.param((20, 0.2, 4), 3, (0.003, 0.006), marks=FULL),
-        pytest.param((20, 0.2, 10), 3, (0.004, 0.010), marks=FULL),
+        ((10, 0.5, 2), 3, (0.004, 0.04)),
+        pytest.param((20, 0.5, 4), 3, (0.002, 0.015), marks=FULL),
+        pytest.param((20, 0.2, 4), 3, (0.001, 0.003), marks=FULL),
+        pytest.param((20, 0.2, 10), 3, (0.005, 0.003), marks=FULL),
     ],
 )
 def test_modes_of_solids(size, order, error):

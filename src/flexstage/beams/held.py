@@ -1,14 +1,14 @@
 """Modes of prismatic parts while both ends are held: bending across the part, and twist.
 
 Ritz's method with polynomials that vanish at both ends, as many more than modes are asked for that the lowest are right to 1e-4 or
-better. Bending is Timoshenko's: deflection w, rotation psi of the section. The section of a plate also curves the other way, by
-w(x, z) = w + kappa (z^2 - b^2/12), which its clamped ends forbid (kappa = kappa' = 0 there):
+better. Bending is Timoshenko's: deflection w, rotation psi of the section. A plate (Kirchhoff's) also bends across its width: its
+deflection is w, or phi z in twist, plus Legendre polynomials of even degree, or odd, in z, which its clamped ends forbid,
 
-    2 U = integral of D b (psi'^2 + 4 nu psi' kappa + 4 kappa^2) + D (b^5/180) kappa''^2 + 2 (1 - nu) D (b^3/3) kappa'^2
-          + S (w' - psi)^2 dx,    D = E t^3 / (12 (1 - nu^2)), S the shear stiffness.
+    2 U = integral of D (w_xx^2 + 2 nu w_xx w_zz + w_zz^2 + 2 (1 - nu) w_xz^2) + S (w' - psi)^2 dx,   D = E t^3 / (12 (1 - nu^2)),
 
-A narrow one bends with E I, a short wide one with E I / (1 - nu^2). Twist: 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0
-at ends that cannot warp.
+with psi' for the w_xx of the mean and S the shear stiffness. A narrow one bends with E I, a short wide one with E I / (1 - nu^2). Shear at
+its edges makes it softer in twist: 2 (1 - nu) D b is taken as G J of its section. A beam twists by 2 U = integral of G J phi'^2 + E C_w
+phi''^2 dx, with phi' = 0 at ends that cannot warp.
 
 A complex step in any number passes through the modes to first order, as they are simple.
 """
@@ -16,6 +16,7 @@ A complex step in any number passes through the modes to first order, as they ar
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -26,6 +27,8 @@ from flexstage.base.number import Array, Number
 
 _MORE = 14
 """Polynomials a field, beside as many as modes are asked for."""
+_EVEN, _ODD = (2, 4, 6), (1, 3, 5)
+"""Degrees of the polynomials across a plate."""
 _FIRST_LOBE = -0.9
 """Where a mode's first lobe is positive, of half the length."""
 
@@ -52,13 +55,17 @@ class Bending:
 
 @dataclass(frozen=True, eq=False)
 class Torsion:
-    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: its ends may warp), inertia and rho C_w per length."""
+    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: its ends may warp), inertia and rho C_w per length.
+
+    As a `plate` it has D b^3 / 12 for its warping, and polynomials of higher degree across its width.
+    """
 
     length: Number
     rigidity: Number
     inertia: Number
     warping: Number | None = None
     warping_inertia: Number = 0.0
+    plate: Plate | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,21 +96,18 @@ def held_bending(axis: int, part: Bending, count: int, stations: Array) -> Held:
     one, slope, mixed = plain.product(0, 0), plain.product(1, 1), plain.product(1, 0)
     stiff = {(0, 0): (part.shear / half, slope), (0, 1): (-part.shear, mixed)}
     heavy = {(0, 0): (part.mass * half, one), (1, 1): (part.rotary * half, one)}
-    bending = part.rigidity
+    bending, fields = part.rigidity, 2
     blocks = [stiff, {(1, 1): (part.shear * half, one)}]
     if part.plate is not None:
-        width, poisson = part.plate.width, part.plate.poisson
-        bending = part.rigidity / (1.0 - poisson * poisson)
-        square = width * width
-        own = clamped.product(0, 0)
-        blocks += [
-            {(1, 2): (2.0 * poisson * bending, plain.product(1, 0, clamped)), (2, 2): (4.0 * bending * half, own)},
-            {(2, 2): (bending * square * square / 180.0 / half**3, clamped.product(2, 2))},
-            {(2, 2): (2.0 * (1.0 - poisson) * bending * square / 3.0 / half, clamped.product(1, 1))},
-        ]
-        heavy[2, 2] = (part.mass * square * square / 180.0 * half, own)
+        width, poisson, across = part.plate.width, part.plate.poisson, _across(_EVEN)
+        bending, fields = part.rigidity / (1.0 - poisson * poisson), 2 + len(_EVEN)
+        scale = width * width / 6.0
+        blocks += _plate_blocks(clamped, _EVEN, bending / width * scale * scale, part, first=2)
+        curling = [2.0 * poisson * bending * scale / (width * width) * bend for bend in across.curling]
+        blocks += [{(1, 2 + number): (each, plain.product(1, 0, clamped))} for number, each in enumerate(curling)]
+        shares = 0.5 * scale * scale * part.mass * half
+        heavy |= {(2 + number, 2 + number): (shares * each, clamped.product(0, 0)) for number, each in enumerate(across.square)}
     blocks.append({(1, 1): (bending / half, slope)})
-    fields = 2 if part.plate is None else 3
     squares, vectors = _modes(_matrix(blocks, fields, size), _matrix([heavy], fields, size), count)
     deflection, rotation = (_transpose(vectors[..., field * size : (field + 1) * size, :]) @ plain.at(stations) for field in (0, 1))
     return _signed(axis, squares, deflection, rotation, _transpose(vectors[..., :size, :]) @ plain.at(np.array([_FIRST_LOBE])))
@@ -124,9 +128,66 @@ def held_twist(part: Torsion, count: int, stations: Array) -> Held:
     if part.warping is not None:
         stiff.append({(0, 0): (part.warping / half**3, basis.product(2, 2))})
         heavy.append({(0, 0): (part.warping_inertia / half, slope)})
-    squares, vectors = _modes(_matrix(stiff, 1, size), _matrix(heavy, 1, size), count)
-    first, moved = (_transpose(vectors) @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
+    fields = 1
+    if part.plate is not None and part.warping is not None:
+        fields = len(_ODD)
+        stiff = _plate_blocks(basis, _ODD, 3.0 * part.warping / part.plate.width, part, first=0, shear=_edges(part, part.warping))
+        shares = 1.5 * _across(_ODD).square
+        heavy += [{(number, number): (part.inertia * share * half, basis.product(0, 0))} for number, share in enumerate(shares) if number]
+    squares, vectors = _modes(_matrix(stiff, fields, size), _matrix(heavy, fields, size), count)
+    first, moved = (_transpose(vectors[..., :size, :]) @ basis.at(places) for places in (np.array([_FIRST_LOBE]), stations))
     return _signed(3, squares, moved, None, first)
+
+
+def _edges(part: Torsion, warping: Number) -> Number:
+    """G J over that of a plate without its edges, 2 (1 - nu) D b."""
+    assert part.plate is not None  # noqa: S101  (asked of plates alone)
+    return part.rigidity * part.plate.width * part.plate.width / (24.0 * (1.0 - part.plate.poisson) * warping)
+
+
+@dataclass(frozen=True, eq=False)
+class _Across:
+    """Integrals over [-1, 1] of Legendre polynomials across a plate: squares (n,), products (n, n) of first and second derivatives.
+
+    `mixed` (n, n) are those of each with the second derivative of another, `curling` (n,) of the second derivative alone.
+    """
+
+    square: Array
+    slope: Array
+    bend: Array
+    mixed: Array
+    curling: Array
+
+
+@functools.cache
+def _across(degrees: tuple[int, ...]) -> _Across:
+    places, weights = _gauss(max(degrees) + 1)
+    series = np.eye(max(degrees) + 1)[:, list(degrees)]
+    plain, slope, bend = (legendre.legval(places, legendre.legder(series, order, axis=0) if order else series) for order in range(3))
+    return _Across((plain**2) @ weights, (slope * weights) @ slope.T, (bend * weights) @ bend.T, (plain * weights) @ bend.T, bend @ weights)
+
+
+def _plate_blocks(
+    basis: _Basis, degrees: tuple[int, ...], rigidity: Number, part: Bending | Torsion, *, first: int, shear: Number = 1.0
+) -> list[dict[tuple[int, int], tuple[Number, Array]]]:
+    """Kirchhoff's energy of fields across a plate, `first` the place of the first one: `rigidity` is D times their scale squared.
+
+    `shear` is a factor on what twisting costs.
+    """
+    assert part.plate is not None  # noqa: S101  (asked of plates alone)
+    across, half, poisson, side = _across(degrees), 0.5 * part.length, part.plate.poisson, 0.5 * part.plate.width
+    blocks: list[dict[tuple[int, int], tuple[Number, Array]]] = []
+    for one, other in itertools.combinations_with_replacement(range(len(degrees)), 2):
+        place = (first + one, first + other)
+        mixed = across.mixed[one, other] * basis.product(2, 0) + across.mixed[other, one] * basis.product(0, 2)
+        blocks += [
+            {place: (rigidity / side**3 * half, across.bend[one, other] * basis.product(0, 0))},
+            {place: (2.0 * (1.0 - poisson) * shear * rigidity / side / half, across.slope[one, other] * basis.product(1, 1))},
+            {place: (poisson * rigidity / side / half, mixed)},
+        ]
+        if one == other:
+            blocks.append({place: (rigidity * side / half**3, across.square[one] * basis.product(2, 2))})
+    return blocks
 
 
 def join(arrays: Iterable[Array]) -> Array:
