@@ -383,8 +383,8 @@ export interface Welcome {
  * The text and what it says; pushed at every change. `digest` is that of the file on disk.
  *
  * `sound`: the text is a design. If not, `problems` say why, and numbers and figures are those of the last one that was. `changed`
- * counts numbers that differ from the file's, `page` is the one whose request made the change (0: the server), `pins` the pinned
- * designs. `links` are those of the expanded stage, with the line of each.
+ * counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made the change (0: the
+ * server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
  */
 export interface State {
   kind: "state";
@@ -469,6 +469,13 @@ export interface Reach {
   strokes: Stroke[];
   missing: Record<string, string>;
   milliseconds: number;
+}
+
+/** What is doubtful or taken by default in a revision; the last that is told of it. */
+export interface Cautions {
+  kind: "cautions";
+  revision: number;
+  cautions: Problem[];
 }
 
 /**
@@ -593,10 +600,11 @@ export interface Jobs {
   jobs: JobState[];
 }
 
-/** A request was done, and nothing else answers it; a new job's number. */
+/** A request was done, and nothing else answers it: the text's revision is this one now; a new job's number. */
 export interface Done {
   kind: "done";
   to: number;
+  revision: number;
   job: number | null;
 }
 
@@ -644,6 +652,7 @@ export type Said =
   | Figures
   | Verdicts
   | Reach
+  | Cautions
   | Card
   | Place
   | Motion

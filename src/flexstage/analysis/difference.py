@@ -9,6 +9,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.complete import Analysis
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.requirements import Verdict
+from flexstage.analysis.statics import Statics
+from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.quantity import SHARE
 from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -93,44 +98,54 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
     >>> [figure.name for figure in key_figures(analyse(double_triangle(), Model.MAPPED))][8:10]
     ['frequency.platform.2', 'frequency.platform.3']
     """
-    found = (*_requirement_figures(analysis), *_frequencies(analysis), *_stiffness(analysis), *_losses(analysis), *_reach(analysis))
+    found = (
+        *requirement_figures(analysis.verdicts),
+        *frequency_figures(analysis.modes),
+        *stiffness_figures(analysis.statics),
+        *loss_figures(analysis.lost_motion),
+        *reach_figures(analysis.workspace),
+    )
     named = {figure.name: figure for figure in reversed(found)}
     return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
 
 
-def _requirement_figures(analysis: Analysis) -> Iterator[KeyFigure]:
-    for verdict in analysis.verdicts:
+def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
+    """What requirements ask about, as far as it is known."""
+    for verdict in verdicts:
         if verdict.value is not None:
             asked = verdict.requirement
             name = asked.key if asked.point == PLATFORM else f"{asked.key} at {asked.point}"
             yield KeyFigure(name, asked.quantity.si, float(verdict.value))
 
 
-def _frequencies(analysis: Analysis) -> Iterator[KeyFigure]:
-    if analysis.modes is None:
+def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
+    """The platform's frequencies."""
+    if found is None:
         return
-    for number, index in enumerate(analysis.modes.platform, start=1):
-        yield KeyFigure(f"frequency.platform.{number}", "Hz", float(analysis.modes.frequencies[index]))
+    for number, index in enumerate(found.platform, start=1):
+        yield KeyFigure(f"frequency.platform.{number}", "Hz", float(found.frequencies[index]))
 
 
-def _stiffness(analysis: Analysis) -> Iterator[KeyFigure]:
-    if analysis.statics is None:
+def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
+    """The platform's stiffness along and about each axis, all other freedoms free."""
+    if found is None:
         return
-    compliance = np.diag(analysis.statics.compliance.values)
+    compliance = np.diag(found.compliance.values)
     for name, value, top, bottom in zip(COMPONENTS, compliance, WRENCH_UNITS, TWIST_UNITS, strict=True):
         if value > 0.0:
             yield KeyFigure(f"stiffness.{name}", f"{top}/{bottom}", float(1.0 / value))
 
 
-def _losses(analysis: Analysis) -> Iterator[KeyFigure]:
-    if analysis.lost_motion is None:
+def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
+    """What each actuator loses of its own motion."""
+    if found is None:
         return
-    for name in analysis.lost_motion.loss.rows:
-        yield KeyFigure(f"loss.{name}", "1", float(analysis.lost_motion.loss.at(name, name)))
+    for name in found.loss.rows:
+        yield KeyFigure(f"loss.{name}", "1", float(found.loss.at(name, name)))
 
 
-def _reach(analysis: Analysis) -> Iterator[KeyFigure]:
-    reach = analysis.workspace
+def reach_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
+    """Strokes of the platform, and how far hinges and columns are from their limits."""
     if reach is None:
         return
     strokes = reach.single if reach.corrected is None else reach.corrected

@@ -16,8 +16,8 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 
 
-def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
-    """Judge every `[require]` line of a description by the lumped model.
+def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
+    """Judge every `[require]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
 
     What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
     that cannot be read.
@@ -27,7 +27,7 @@ def judge(mechanism: Mechanism) -> tuple[Verdict, ...]:
     [True, True, True, True, True, True, True, True]
     """
     lines = requirements(mechanism)
-    bench = Bench(mechanism, _required_strokes(lines))
+    bench = bench or Bench(mechanism, _required_strokes(lines))
     return tuple(_verdict(bench, line) for line in lines)
 
 

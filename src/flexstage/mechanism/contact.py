@@ -111,6 +111,38 @@ def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     return (*_alike(told, assembly), *_unseen(things.values()))
 
 
+@dataclass(frozen=True)
+class Gap:
+    """Two outlines that no joint connects, and how far apart they are [m]; negative where they overlap."""
+
+    first: str
+    second: str
+    distance: float
+
+
+def gaps(mechanism: Mechanism, within: float) -> tuple[Gap, ...]:
+    """Overlaps, and gaps of at most `within` [m], between outlines that do not belong together; on the first design of a batch.
+
+    The two of a pair belong to different bodies, or are links, or a link and a body that it does not join. Round faces are followed within
+    `SAGITTA`. Imported shapes are left out.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> gaps(parallelogram(), 1e-4)
+    ()
+    """
+    things = _things(expand(with_drawn_parts(mechanism)))
+    seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
+    drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
+    found: list[Gap] = []
+    for one, other in near_pairs([thing.outline for thing in seen], within):
+        first, second = seen[one], seen[other]
+        if not _belong(first, second) and not _meet_in_a_point(first, second, drawn_bodies):
+            deep = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])[0]
+            apart = -deep if deep > TOUCHING else _gap(first, second)
+            found += [Gap(first.name, second.name, apart)] if apart <= within else []
+    return tuple(found)
+
+
 def _things(assembly: Assembly) -> dict[str, _Thing]:
     found = {outline.name: outline for outline in outlines(assembly)}
     owned = [(body.name, body.solids) for body in assembly.bodies.values()] + [(GROUND, assembly.ground)]

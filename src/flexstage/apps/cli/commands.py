@@ -56,6 +56,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage check stage.toml"),
     Command("schema", _DESCRIBE, "Print the JSON Schema of a kind of file, for editors.", f"{_CLI}.describe:schema",
             "flexstage schema > flexstage.schema.json"),
+    Command("studio", _DESCRIBE, "Open a stage in the browser: change it, see what it does.", "flexstage.apps.studio.command:studio",
+            "flexstage studio stage.toml"),
     Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_CLI}.describe:plan",
             "flexstage plan stage.toml -o plan.svg"),
     Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_CLI}.describe:catalogue",

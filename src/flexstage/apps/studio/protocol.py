@@ -455,8 +455,8 @@ class State:
     """The text and what it says; pushed at every change. `digest` is that of the file on disk.
 
     `sound`: the text is a design. If not, `problems` say why, and numbers and figures are those of the last one that was. `changed`
-    counts numbers that differ from the file's, `page` is the one whose request made the change (0: the server), `pins` the pinned
-    designs. `links` are those of the expanded stage, with the line of each.
+    counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made the change (0: the
+    server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
     """
 
     revision: int
@@ -546,6 +546,14 @@ class Reach:
     strokes: tuple[Stroke, ...]
     missing: dict[str, str]
     milliseconds: float
+
+
+@dataclass(frozen=True)
+class Cautions:
+    """What is doubtful or taken by default in a revision; the last that is told of it."""
+
+    revision: int
+    cautions: tuple[Problem, ...]
 
 
 @dataclass(frozen=True)
@@ -680,9 +688,10 @@ class Jobs:
 
 @dataclass(frozen=True)
 class Done:
-    """A request was done, and nothing else answers it; a new job's number."""
+    """A request was done, and nothing else answers it: the text's revision is this one now; a new job's number."""
 
     to: int
+    revision: int
     job: int | None = None
 
 
@@ -731,6 +740,7 @@ Said: TypeAlias = (
     | Figures
     | Verdicts
     | Reach
+    | Cautions
     | Card
     | Place
     | Motion

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Generator
@@ -13,6 +14,9 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from flexstage.base.progress import Step, seconds_left
 from flexstage.base.text import printable
+
+LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
+"""Variable of the environment that asks for lines, and the word that each of them begins with."""
 
 
 class ProgressBar:
@@ -38,6 +42,18 @@ class ProgressBar:
             self._shown.update(self._task, description=printable(text), completed=fraction, left=left)
 
 
+class ProgressLines(ProgressBar):
+    """Tells each step as a line on stderr, for a program that shows it: `progress`, the fraction, seconds left or a dash, the text."""
+
+    def __init__(self) -> None:
+        super().__init__(None)
+
+    def step(self, step: Step) -> None:
+        """Tell a step of a computation."""
+        left = "-" if step.left is None else f"{step.left:.1f}"
+        print(f"{LINE} {step.fraction:.4f} {left} {printable(f'{self.about}{step.text}')}", file=sys.stderr, flush=True)  # noqa: T201
+
+
 def _clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
@@ -45,7 +61,10 @@ def _clock(seconds: float) -> str:
 
 @contextmanager
 def progress_bar() -> Generator[ProgressBar]:
-    """A bar that is gone when the work is done."""
+    """A bar that is gone when the work is done; lines where the environment asks for them (`FLEXSTAGE_PROGRESS=lines`)."""
+    if os.environ.get(LINES):
+        yield ProgressLines()
+        return
     console = Console(file=sys.stderr)
     if not console.is_terminal:
         yield ProgressBar(None)

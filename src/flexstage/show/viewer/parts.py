@@ -90,11 +90,11 @@ class Describer:
 
     def _data(self, record: object) -> tuple[Fact, ...]:
         if id(record) not in self._facts:
-            self._facts[id(record)] = tuple(_numbers(record))
+            self._facts[id(record)] = tuple(part_facts(record))
         return self._facts[id(record)]
 
 
-def _numbers(record: object) -> Iterator[Fact]:
+def part_facts(record: object) -> Iterator[Fact]:
     """The single numbers of a description, under the names that they are set by; places and matrices are seen or looked up."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):

@@ -1,0 +1,44 @@
+"""The command `studio`: a stage in a window of the browser, changed by hand and computed as one goes."""
+
+from __future__ import annotations
+
+import asyncio
+import webbrowser
+from typing import Annotated
+
+import typer
+
+from flexstage.apps.studio.server import run
+from flexstage.base.finding import refuse
+from flexstage.show.command.options import Design
+from flexstage.show.command.output import announce
+from flexstage.show.command.terminal import print_note
+
+
+def studio(
+    design: Design,
+    *,
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the browser, or only tell the address.")] = True,
+) -> None:
+    """Open a stage in the browser: change it, see what it does.
+
+    The page is served to this computer alone, to whoever has the address that is told here; Ctrl+C ends it.
+
+    A file with mistakes is opened too: they are shown at their lines.
+    """
+
+    def started(url: str) -> None:
+        announce(f"Studio of {design}: {url}")
+        print_note("Ctrl+C ends it.")
+        if browser and not webbrowser.open(url):
+            print_note("No browser was found: open the address yourself.")
+
+    try:
+        asyncio.run(run(design, port, started))
+    except OSError as error:
+        raise refuse(
+            f"--port {port}", f"it cannot be listened at: {error.strerror or error}", "Choose another one, or leave it out"
+        ) from None
+    except KeyboardInterrupt:
+        print_note("The studio has ended.")

@@ -1,0 +1,149 @@
+"""A process beside the studio's server that does one task after another, the most urgent first, and is started anew where it dies."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import queue
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+from flexstage.apps.studio.engine import Outcome, work
+from flexstage.base.finding import Finding
+from flexstage.base.jobs import Heard, Word, Worker
+
+_AGAIN = "The process that computes is started anew; ask again, and report it if this happens twice"
+
+
+class Urgency(IntEnum):
+    """What goes before what."""
+
+    NOW = 0
+    """What somebody waits for."""
+    SOON = 1
+    """Figures of the present design."""
+    LATER = 2
+    """Whatever can wait."""
+
+
+@dataclass(order=True)
+class _Task:
+    urgency: Urgency
+    number: int
+    call: tuple[Any, ...] = field(compare=False)
+    answer: asyncio.Future[Outcome | None] = field(compare=False)
+    wanted: Callable[[], bool] = field(compare=False)
+
+
+def _always() -> bool:
+    return True
+
+
+class Helper:
+    """One process. `told` hears when it starts to compute (the task's name), has done (empty), and when it died (its last words)."""
+
+    def __init__(self, died: Callable[[str], None]) -> None:
+        self._died = died
+        self._numbers = itertools.count()
+        self._waiting: asyncio.PriorityQueue[_Task] = asyncio.PriorityQueue()
+        self._worker: Worker | None = None
+        self._now: tuple[_Task, asyncio.Future[Outcome]] | None = None
+        self._since = 0.0
+        self._runner: asyncio.Task[None] | None = None
+        self.spent = 0.0
+        """Processor time of all tasks [s]."""
+
+    @property
+    def process(self) -> int | None:
+        """Number of the process, if it runs."""
+        return None if self._worker is None else self._worker.process.pid
+
+    def busy(self, urgency: Urgency) -> float:
+        """For how long it has been doing a task of that urgency [s]."""
+        return time.monotonic() - self._since if self._now is not None and self._now[0].urgency == urgency else 0.0
+
+    async def ask(self, *call: Any, urgency: Urgency = Urgency.NOW, wanted: Callable[[], bool] = _always) -> Outcome | None:
+        """Task and arguments done, after what is more urgent; nothing where it is not `wanted` any more when its turn comes."""
+        if self._runner is None:
+            self._runner = asyncio.create_task(self._run())
+        answer: asyncio.Future[Outcome | None] = asyncio.get_running_loop().create_future()
+        self._waiting.put_nowait(_Task(urgency, next(self._numbers), call, answer, wanted))
+        return await answer
+
+    def start_anew(self) -> None:
+        """End the process and what it does; it is started again for the next task."""
+        if self._worker is not None:
+            self._worker.process.kill()
+
+    async def close(self) -> None:
+        """End it."""
+        if self._runner is not None:
+            self._runner.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._runner
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            await asyncio.to_thread(worker.end)
+
+    async def _run(self) -> None:
+        while True:
+            task = await self._waiting.get()
+            if task.answer.cancelled():
+                continue
+            if not task.wanted():
+                task.answer.set_result(None)
+                continue
+            outcome = await self._do(task)
+            self.spent += outcome.seconds
+            if not task.answer.done():
+                task.answer.set_result(outcome)
+
+    async def _do(self, task: _Task) -> Outcome:
+        """What comes of a task; where the process dies over it, that."""
+        done: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
+        self._now, self._since = (task, done), time.monotonic()
+        try:
+            if self._worker is None:
+                self._worker = self._start()
+            await asyncio.to_thread(self._worker.ask, *task.call)
+            return await done
+        except EOFError as error:
+            return Outcome(None, (Finding(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
+        except OSError as error:
+            return Outcome(None, (Finding(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
+        finally:
+            self._now = None
+
+    def _start(self) -> Worker:
+        heard: Heard = queue.SimpleQueue()
+        loop = asyncio.get_running_loop()
+        worker = Worker(work, heard)
+        threading.Thread(target=_pass_on, args=(heard, loop, self._hear), daemon=True).start()
+        return worker
+
+    def _hear(self, worker: Worker, word: Word, value: Any) -> None:
+        """In the loop's thread: what a process said."""
+        waits = self._now[1] if self._now is not None and worker is self._worker else None
+        if word is Word.ENDED and worker is self._worker:
+            self._worker, words = None, worker.last_words()
+            worker.end()
+            self._died(words)
+            if waits is not None and not waits.done():
+                waits.set_exception(EOFError(words))
+        elif waits is not None and not waits.done():
+            waits.set_result(value if word is Word.DONE else Outcome(None, getattr(value, "findings", ()), 0.0))
+
+
+def _pass_on(heard: Heard, loop: asyncio.AbstractEventLoop, hear: Callable[[Worker, Word, Any], None]) -> None:
+    """What a process says goes to the loop, until it ends."""
+    while True:
+        worker, word, value = heard.get()
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            loop.call_soon_threadsafe(hear, worker, word, value)
+        if word is Word.ENDED:
+            return

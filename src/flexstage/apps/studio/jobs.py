@@ -1,0 +1,225 @@
+"""Jobs of the studio: commands of the command line in processes of their own, one after another, with their progress and reports."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import secrets
+import signal
+import sys
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.history import Stored
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.jobs import environment
+from flexstage.base.store import make_temporary_folder, write
+from flexstage.show.command.progress import LINE, LINES
+
+_WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx")
+_STUDIES = ("sweep", "optimise")
+_LINES = 12
+"""Last lines of what a job said that are kept."""
+_PATIENCE = 3.0
+"""How long a job may take to clean up when it is ended [s]."""
+_MOST = 50
+
+
+@dataclass
+class _Job:
+    """A job: what it was asked, how it stands, its process while it runs, the files that are gone with it."""
+
+    number: int
+    request: say.Run
+    text: str
+    state: say.JobState
+    process: asyncio.subprocess.Process | None = None
+    files: list[Path] = field(default_factory=list[Path])
+
+
+class Jobs:
+    """All jobs of a session on the design in a file; `tell` hears how they stand, `optimum` the text of a better design."""
+
+    def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
+        self._path, self._tell, self._optimum = path, tell, optimum
+        self._jobs: dict[int, _Job] = {}
+        self._folder: Path | None = None
+        self._turn = asyncio.Lock()
+        self._work: set[asyncio.Task[None]] = set()
+        self.reports: dict[str, Path] = {}
+        """Reports by the name that they are asked for."""
+
+    def start(self, request: say.Run, text: str) -> int:
+        """A new job on a text; refused where its command or options do not allow it. Its number is given."""
+        running = [each for each in self._jobs.values() if each.state.state in ("waits", "runs")]
+        if len(running) >= _MOST:
+            raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
+        if request.command in _STUDIES and request.study is None:
+            raise refuse(request.command, "it needs a study: what varies, and what is wanted", "Write one, see docs/studies.md")
+        if request.command == "identify" and not (request.record and (self._path.parent / request.record).is_file()):
+            raise refuse(request.command, "there is no such record", "Name a file, from the folder of the design")
+        for option in request.options:
+            if option.partition("=")[0] in _WRITING:
+                raise refuse(request.command, f"{option} writes a file, which is the studio's to choose", "Leave it out")
+        number = len(self._jobs) + 1
+        job = _Job(number, request, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None))
+        self._jobs[number] = job
+        task = asyncio.create_task(self._run(job))
+        self._work.add(task)
+        task.add_done_callback(self._work.discard)
+        self._push()
+        return number
+
+    def cancel(self, number: int) -> None:
+        """End a job; refused for a number that is none."""
+        job = self._jobs.get(number)
+        if job is None:
+            raise refuse(f"job {number}", "there is none of this number", "Look at the list")
+        if job.state.state in ("waits", "runs"):
+            job.state = replace(job.state, state="cancelled", text="cancelled")
+            if job.process is not None:
+                self._end(job.process)
+            self._push()
+
+    async def close(self) -> None:
+        """End all, and remove what they left."""
+        for number in self._jobs:
+            self.cancel(number)
+        if self._work:
+            await asyncio.wait(self._work, timeout=_PATIENCE)
+        for each in self._jobs.values():
+            if each.process is not None and each.process.returncode is None:
+                each.process.kill()
+            self._remove(each)
+        if self._folder is not None:
+            import shutil
+
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    async def _run(self, job: _Job) -> None:
+        async with self._turn:
+            if job.state.state != "waits":
+                return
+            try:
+                await self._follow(job)
+            except DesignError as error:
+                self._set(job, replace(job.state, state="failed", text=str(error)))
+            except OSError as error:
+                self._set(job, replace(job.state, state="failed", text=f"the system starts no process for it: {error}"))
+            finally:
+                self._remove(job)
+
+    async def _follow(self, job: _Job) -> None:
+        """A job from beginning to end."""
+        if self._folder is None:
+            self._folder = make_temporary_folder()
+        report = self._folder / f"{job.number}.html"
+        arguments = [*self._arguments(job), *job.request.options, "--report", str(report)]
+        self._set(job, replace(job.state, state="runs", text="starts"))
+        job.process = process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-P", "-m", "flexstage", job.request.command, *arguments),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.STDOUT,
+            env={**environment(), LINES: "1", "NO_COLOR": "1", "COLUMNS": "120"},
+            start_new_session=True,
+        )
+        if process.stdout is not None:
+            async for line in _lines(process.stdout):
+                self._hear(job, line)
+        code = await process.wait()
+        if job.state.state == "cancelled":
+            return
+        if report.is_file():
+            name = f"{secrets.token_urlsafe(18)}.html"
+            self.reports[name] = report
+            job.state = replace(job.state, report=f"/report/{name}")
+        better = self._folder / f"{job.number}.toml"
+        if code == 0 and better.is_file():
+            self._optimum(better.read_text(encoding="utf-8"))
+        state, text = ("done", "done") if code in (0, 1) else ("failed", f"ended with exit code {code}")
+        self._set(job, replace(job.state, state=state, text=text, fraction=1.0 if state == "done" else None, left=None))
+
+    def _arguments(self, job: _Job) -> list[str]:
+        """The files that its command takes; a text that is not saved stands beside its file meanwhile."""
+        request, folder = job.request, self._folder or Path()
+        design = self._path
+        if not design.is_file() or Stored.read(design).text != job.text:
+            design = self._beside(job, f".{self._path.stem}.studio-{os.getpid()}-{job.number}.toml", job.text)
+        if request.command == "identify":
+            return [str(self._path.parent / (request.record or "")), "--stage", str(design)]
+        if request.command not in _STUDIES:
+            return [str(design)]
+        study = self._beside(job, f".{self._path.stem}.studio-{os.getpid()}-{job.number}.study.toml", _study(request.study or "", design))
+        ending = "h5" if request.command == "sweep" else "toml"
+        return [str(study), "--output", str(folder / f"{job.number}.{ending}")]
+
+    def _beside(self, job: _Job, name: str, text: str) -> Path:
+        path = self._path.parent / name
+        job.files.append(path)
+        return write(path, text)
+
+    def _hear(self, job: _Job, line: str) -> None:
+        if not line.startswith(f"{LINE} "):
+            if line.strip():
+                job.state = replace(job.state, said=(*job.state.said, line)[-_LINES:])
+            return
+        _, fraction, left, text = [*line.split(" ", 3), ""][:4]
+        with contextlib.suppress(ValueError):
+            self._set(job, replace(job.state, text=text, fraction=float(fraction), left=None if left == "-" else float(left)))
+
+    def _set(self, job: _Job, state: say.JobState) -> None:
+        if job.state.state != "cancelled":
+            job.state = state
+            self._push()
+
+    def _push(self) -> None:
+        self._tell(say.Jobs(tuple(each.state for each in self._jobs.values())))
+
+    def _end(self, process: asyncio.subprocess.Process) -> None:
+        """Ask a process and its own ones to end, and do not ask twice."""
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            if sys.platform == "win32":
+                process.terminate()
+            else:
+                os.killpg(process.pid, signal.SIGTERM)
+        loop = asyncio.get_running_loop()
+        loop.call_later(_PATIENCE, _kill, process)
+
+    def _remove(self, job: _Job) -> None:
+        for path in job.files:
+            path.unlink(missing_ok=True)
+
+
+def _kill(process: asyncio.subprocess.Process) -> None:
+    if process.returncode is None:
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+
+
+def _study(text: str, design: Path) -> str:
+    """A study's text about that design."""
+    try:
+        document = tomlkit.parse(text)
+    except TOMLKitError as error:
+        raise refuse("study", f"this is not TOML: {error}", "Mend that line") from None
+    document["design"] = design.name
+    return tomlkit.dumps(document)
+
+
+async def _lines(stream: asyncio.StreamReader) -> AsyncIterator[str]:
+    """Lines of a stream, however long they are."""
+    rest = b""
+    while chunk := await stream.read(65536):
+        *whole, rest = (rest + chunk).split(b"\n")
+        for line in whole:
+            yield line.decode(errors="replace").rstrip("\r")
+        rest = rest[-65536:]
+    if rest:
+        yield rest.decode(errors="replace")

@@ -1,0 +1,401 @@
+"""Questions about a design that somebody asks in the studio: a link's card, motions and their limits, what numbers buy, freedoms, gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+
+import numpy as np
+
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.cautions import part_cautions
+from flexstage.analysis.judge import bench_of, value_or_reason
+from flexstage.analysis.measures import frequency, platform_frequency
+from flexstage.analysis.requirements import Sense, Verdict
+from flexstage.analysis.sensitivities import Sensitivities, sensitivities, slope, step_parameters, steppable
+from flexstage.analysis.workspace.strength import sized_links
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.analysis.workspace.wrench import dead_wrenches
+from flexstage.apps.studio.protocol import (
+    Card,
+    Clash,
+    Clearances,
+    Fact,
+    Freedoms,
+    Matrix,
+    Motion,
+    Place,
+    Posed,
+    Screw,
+    Slope,
+    Slopes,
+)
+from flexstage.apps.studio.reading import address_of, design, link_lines, problems_of
+from flexstage.apps.studio.results import bench, judged, matrix
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
+from flexstage.base.labelled import NOISE, ratio_units
+from flexstage.base.labelled import Matrix as Labelled
+from flexstage.base.number import Array, first_design
+from flexstage.beams.compliance import compliance, stiffness
+from flexstage.beams.stress import stress
+from flexstage.mechanism.address import addresses, get
+from flexstage.mechanism.contact import gaps
+from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.locate import unit_of_copy
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.store.lines import line_numbers, line_of
+from flexstage.models.ideal import free_freedoms
+from flexstage.models.linear.static import static_gain
+from flexstage.parts.part import Elastic, inner
+from flexstage.show.display import format_value, to_typography
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_WITHIN = 2e-3
+"""Gaps wider than this [m] are not told."""
+_MOST_GAPS = 60
+_PLATFORM = tuple(f"platform.{name}" for name in COMPONENTS)
+
+
+def card(text: str, file: str, to: int, name: str) -> Card:
+    """What is known of a link."""
+    known = bench(text, file)
+    links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
+    if name not in links:
+        raise refuse(name, "there is no link of this name", suggest_nearest(name, links))
+    link, lines = links[name], line_numbers(text)
+    attempt = Attempts()
+    own = link if isinstance(link, PlacedLink) else None
+    soft = attempt.of("compliance", lambda: _six(own, "compliance"))
+    stiff = attempt.of("stiffness", lambda: _six(own, "stiffness"))
+    borne = attempt.of("stress", lambda: _stress(known, name)) or (None, None, None)
+    shares = attempt.of("shares", lambda: _shares(known, name)) or {}
+    drawn, part = address_of(known.mechanism, link), f"parts.{link.link.part}"
+    where = [line for line in (line_of(drawn, lines), line_of(part, lines)) if line]
+    told = (each for each in part_cautions(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
+    return Card(
+        to,
+        name,
+        link.link.part,
+        inner(link.part).kind,
+        link.joins,
+        tuple(dict.fromkeys(where)),
+        tuple(each for each in addresses(known.mechanism) if each.startswith((f"{part}.", f"{drawn}.", f"{name}.", f"{link.drawn}."))),
+        () if own is None else tuple(each.value for each in free_freedoms(own)),
+        soft,
+        stiff,
+        *borne,
+        shares,
+        tuple(_facts(link)),
+        (),
+        problems_of(told, text, file),
+        {**attempt.missing, "verified": "no finite elements are stored of it: verify the design"},
+    )
+
+
+def place(text: str, file: str, to: int, line: int) -> Place:
+    """The links, bodies and numbers that a line draws."""
+    found, lines = design(text, file), line_numbers(text)
+    near = max((row for row in lines.values() if row <= line), default=0)
+    heads = [address for address, row in lines.items() if row == near]
+    links = [name for name, row in link_lines(found, lines).items() if row == near]
+    parts = {head.split(".")[1] for head in heads if head.startswith("parts.") and len(head.split(".")) > 1}
+    links += [name for name, link in expand(found).links.items() if link.link.part in parts and name not in links]
+    bodies = [name for name in expand(found).bodies if any(f"{head}.".startswith(f"{_drawn_body(found, name)}.") for head in heads)]
+    inside = (each for each in addresses(found) if line_of(each, lines) == near)
+    return Place(to, line, tuple(links), tuple(bodies), tuple(inside))
+
+
+def _drawn_body(mechanism: Mechanism, name: str) -> str:
+    """Where a body is drawn in the description (`units.vertical.bodies.lever`)."""
+    copy, _, own = name.rpartition("/")
+    copies = unit_of_copy(mechanism)
+    return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
+
+
+def motion(text: str, file: str, to: int, revision: int) -> Motion:
+    """The linear maps between inputs, platform and gauges, with what bounds the stress of every link."""
+    known, attempt = bench(text, file), Attempts()
+    model = known.model
+    inputs = model.actuators
+    gauges = tuple(known.assembly.gauges)
+    bearing = attempt.of("stress", lambda: _bearing(text, file))
+    return Motion(
+        to,
+        revision,
+        matrix(static_gain(model, _PLATFORM, inputs)),
+        attempt.of("inputs", lambda: _inputs(known)),
+        attempt.of("ideal", lambda: _ideal(known)),
+        attempt.of("gauges", lambda: matrix(static_gain(model, gauges, inputs))) if gauges else None,
+        None if bearing is None else matrix(bearing.per_input),
+        {} if bearing is None else dict(zip(bearing.links, bearing.at(np.zeros(len(inputs))).tolist(), strict=True)),
+        {} if bearing is None else {name: _finite(limit) for name, limit in zip(bearing.links, bearing.limits, strict=True)},
+        attempt.missing,
+    )
+
+
+def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
+    """The stage at some strokes and forces, counted from the bias; what is beyond its limit is said."""
+    known = bench(text, file)
+    names, gauges = known.model.actuators, tuple(known.assembly.gauges)
+    strange = [name for name in inputs if name not in names]
+    if strange:
+        raise refuse(strange[0], "there is no actuator of this name", suggest_nearest(strange[0], names))
+    values = np.array([inputs.get(name, 0.0) for name in names])
+    twist = static_gain(known.model, _PLATFORM, names).values @ values
+    readings = static_gain(known.model, gauges, names).values @ values if gauges else np.zeros(0)
+    bearing = _bearing_or_none(text, file)
+    found = {} if bearing is None else dict(zip(bearing.links, bearing.at(values).tolist(), strict=True))
+    beyond = dict(_beyond_strokes(known, dict(zip(names, values.tolist(), strict=True))))
+    beyond |= dict(_beyond_gauges(known, dict(zip(gauges, readings.tolist(), strict=True))))
+    limits = {} if bearing is None else dict(zip(bearing.links, bearing.limits, strict=True))
+    for name, value in found.items():
+        if value > limits[name]:
+            beyond[name] = f"stress is {format_value(value, 'Pa')}, allowed are {format_value(limits[name], 'Pa')}"
+    return Posed(to, tuple(twist.tolist()), dict(zip(gauges, readings.tolist(), strict=True)), found, beyond)
+
+
+def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
+    """What each number buys: exact derivatives of frequencies and losses, and what one per cent does to the worst requirement."""
+    known = bench(text, file)
+    found = sensitivities(known.mechanism, modes=12)
+    platform = known.modes.platform
+    columns = [(f"frequency.platform.{number}", index) for number, index in enumerate(platform, start=1) if index < len(found.frequencies)]
+    worst = min((each for each in judged(text, file) if each.value is not None), key=lambda each: float(each.margin), default=None)
+    margins = _margin_slopes(known, worst, found)
+    rows: list[Slope] = []
+    for place_, address in enumerate(found.parameters):
+        gained = {name: float(found.frequency[place_, index]) for name, index in columns}
+        gained |= {f"loss.{name}": float(found.loss[place_, column]) for column, name in enumerate(found.actuators)}
+        rows.append(Slope(address, found.units[place_], float(found.values[place_]), dict(gained), margins.get(address)))
+    rows.sort(key=lambda each: -abs(each.worst or 0.0))
+    missing = dict(found.missing) | ({} if worst is not None else {"worst": "no requirement has a value"})
+    return Slopes(to, revision, "" if worst is None else worst.requirement.key, tuple(rows), missing)
+
+
+def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
+    """The platform's free motions as screws, redundant constraints, what nothing feels, what holds strokes."""
+    known = bench(text, file)
+    found = known.kinematics
+    reference = known.assembly.bodies["platform"].reference
+    free = tuple(
+        _screw(name, first_design(found.motion, 2)[:, column], first_design(reference, 1), found.length, _bent(found.strains, column))
+        for column, name in enumerate(found.coordinates)
+    )
+    redundant = tuple(Fact(f"redundant {number}", ", ".join(each.constraints)) for number, each in enumerate(found.redundant, start=1))
+    idle = tuple(Fact(", ".join(each.bodies), f"moves by itself in {', '.join(each.links)}") for each in found.idle)
+    blocked = tuple(
+        Fact(name, f"held by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
+        for name, each in found.blocked.items()
+    )
+    locked = tuple(_locked(found.motion, known))
+    return Freedoms(to, revision, found.mobility, free, redundant, idle, locked, blocked)
+
+
+def clearances(text: str, file: str, to: int, revision: int) -> Clearances:
+    """Clashes and gaps between what is not joined, and what does not fit into opening and envelope."""
+    found = design(text, file)
+    rows = sorted(gaps(found, _WITHIN), key=lambda each: each.distance)[:_MOST_GAPS]
+    told = tuple(Clash(each.first, each.second, each.distance, _gap_text(each.distance)) for each in rows)
+    return Clearances(to, revision, told, problems_of(bench(text, file).clearance.findings, text, file))
+
+
+def _gap_text(distance: float) -> str:
+    return to_typography(f"overlap {format_value(-distance, 'm')}" if distance < 0.0 else f"gap {format_value(distance, 'm')}")
+
+
+def _six(link: PlacedLink | None, what: str) -> Matrix:
+    if link is None or not isinstance(link.part, Elastic):
+        raise refuse("link", "it has no 6x6 of its own", "Ask for its stage")
+    twist, wrench = tuple(COMPONENTS), tuple(FORCES)
+    if what == "compliance":
+        return matrix(
+            Labelled(first_design(compliance(link.part, link.material), 2), twist, wrench, ratio_units(TWIST_UNITS, WRENCH_UNITS))
+        )
+    return matrix(Labelled(first_design(stiffness(link.part, link.material), 2), wrench, twist, ratio_units(WRENCH_UNITS, TWIST_UNITS)))
+
+
+def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float | None]:
+    """Peak stress over all strokes, what is allowed, and the safety between."""
+    found = known.stress
+    if name not in found.links:
+        raise refuse(name, "its stress is not known: it has no section to check", "Stacks have limits of load instead")
+    index = found.links.index(name)
+    return tuple(_finite(float(np.ravel(each)[index])) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
+
+
+def _shares(known: Bench, name: str) -> dict[str, float]:
+    """Its share of each actuator's lost motion."""
+    found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.lost.actuators.items()}
+    return {actuator: share if abs(share) > NOISE else 0.0 for actuator, share in found.items()}
+
+
+def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
+    from flexstage.show.viewer.parts import part_facts
+
+    yield Fact("joins", " – ".join(link.joins))
+    for name, said in part_facts(inner(link.part)):
+        yield Fact(name, said)
+    if isinstance(link, PlacedLink) and link.material is not None:
+        yield Fact("material", getattr(inner(link.part), "material", ""))
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+class Bearing:
+    """Stress of links by the strokes and forces of all inputs, from the bias: wrenches are linear in them, stress is a norm of wrenches."""
+
+    def __init__(self, known: Bench) -> None:
+        model = known.model
+        self._known = sized_links(known.assembly)
+        if not self._known:
+            raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
+        self.links = tuple(self._known)
+        self.inputs = model.actuators
+        outputs = tuple(f"{link}.{force}" for link in self.links for force in FORCES)
+        self._gain = static_gain(model, outputs, self.inputs).values
+        self._rest = dead_wrenches(known.mechanism, model, outputs) + self._gain @ self._bias(known)
+        self.limits = tuple(self._limit(name) for name in self.links)
+
+    def at(self, values: Array) -> Array:
+        """Peak stress (L,) [Pa] at inputs (m,)."""
+        return self._peaks(self._rest + self._gain @ values)
+
+    @property
+    def per_input(self) -> Labelled:
+        """Peak stress by unit input alone."""
+        values = np.array([self._peaks(column) for column in self._gain.T]).T.reshape(len(self.links), len(self.inputs))
+        units = tuple("Pa/m" for _ in self.inputs)
+        return Labelled(values, self.links, self.inputs, (units,) * len(self.links))
+
+    def _bias(self, known: Bench) -> Array:
+        """Strokes (m,) at the bias, from none without voltage, at which hinges are relaxed."""
+        limits = stroke_limits(known.mechanism) if known.assembly.strokes else None
+        zero = {} if limits is None else dict(zip(limits.actuators, limits.low if limits.zero is None else limits.zero, strict=True))
+        return np.array([-float(zero.get(name, 0.0)) for name in self.inputs])
+
+    def _peaks(self, wrenches: Array) -> Array:
+        """Peak stress (L,) under wrenches (6 L,); links of one part together."""
+        rows = wrenches.reshape(-1, 6)
+        groups: dict[tuple[int, int], list[int]] = {}
+        for index, link in enumerate(self._known.values()):
+            groups.setdefault((id(link.part), id(link.material)), []).append(index)
+        peaks = np.zeros(len(rows))
+        for members in groups.values():
+            first = self._known[self.links[members[0]]]
+            found = stress(first.part, first.material, rows[members])
+            peaks[members] = np.nan if found is None else found.peak
+        return peaks
+
+    def _limit(self, name: str) -> float:
+        material = self._known[name].material
+        limit = None if material is None else material.limit
+        return np.nan if limit is None else float(np.ravel(np.real(limit))[0])
+
+
+@lru_cache(maxsize=2)
+def _bearing(text: str, file: str) -> Bearing:
+    return Bearing(bench(text, file))
+
+
+def _bearing_or_none(text: str, file: str) -> Bearing | None:
+    try:
+        return _bearing(text, file)
+    except DesignError:
+        return None
+
+
+def _inputs(known: Bench) -> Matrix:
+    """Inputs per motion of the platform, elasticity made up for."""
+    return matrix(known.reach("platform").per_motion if known.forced else known.lost.correction)
+
+
+def _ideal(known: Bench) -> Matrix:
+    """The platform's twist per stroke without elasticity: V R_a^+."""
+    found = known.kinematics
+    mapping = found.mapping
+    values = first_design(found.motion, 2) @ np.linalg.pinv(first_design(mapping.values, 2))
+    return matrix(Labelled(values, _PLATFORM, mapping.rows, ratio_units(TWIST_UNITS, ("m",) * len(mapping.rows))))
+
+
+def _beyond_strokes(known: Bench, values: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    if not known.assembly.strokes:
+        return
+    limits = stroke_limits(known.mechanism)
+    for name, low, high in zip(limits.actuators, limits.low, limits.high, strict=True):
+        if not low <= values[name] <= high:
+            yield name, f"its stroke ends at {format_value(float(low if values[name] < low else high), 'm')}"
+
+
+def _beyond_gauges(known: Bench, readings: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    for name, reading in readings.items():
+        gauge = known.assembly.gauges[name]
+        half = 0.5 * float(np.ravel(np.real(gauge.gauge.range))[0])
+        if abs(reading) > half:
+            yield name, f"it reads {format_value(reading, gauge.unit)}, its range ends at {format_value(half, gauge.unit)}"
+
+
+def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) -> dict[str, float | None]:
+    """Change of the worst requirement's margin by one per cent of each number, by complex step where the measure has a derivative."""
+    if worst is None:
+        return {}
+    asked, names = worst.requirement, found.parameters
+    sign = (1.0 if asked.sense is Sense.AT_LEAST else -1.0) / abs(asked.limit or 1.0)
+    if asked.kind in (frequency, platform_frequency):
+        index = int(asked.name) - 1
+        place_ = known.modes.platform[index] if asked.kind is platform_frequency else index
+        if place_ >= len(found.frequencies):
+            return {}
+        relative = found.frequency[:, place_] * found.values
+        return {name: 0.01 * sign * float(each) for name, each in zip(names, relative, strict=True)}
+    result: dict[str, float | None] = {}
+    for chunk in steppable(known.mechanism, names):
+        own = tuple(names[position] for position in chunk)
+        batch = bench_of(step_parameters(known.mechanism, own))
+        batch.command = known.command
+        try:
+            value = value_or_reason(batch, asked)
+        except (TypeError, ValueError):  # it takes no batch of such numbers (gravity)
+            value = ""
+        if isinstance(value, str) or not np.iscomplexobj(value):
+            result |= dict.fromkeys(own)
+            continue
+        gradient = np.broadcast_to(slope(value), (len(own),))
+        result |= {name: 0.01 * sign * float(each) * float(get(known.mechanism, name)) for name, each in zip(own, gradient, strict=True)}
+    return result
+
+
+def _screw(name: str, twist: Array, reference: Array, length: float, links: tuple[str, ...]) -> Screw:
+    """A motion of a point [m] as a screw: the axis is where it moves along its direction alone."""
+    moving, turning = twist[:3], twist[3:]
+    rate = float(turning @ turning)
+    if rate * length**2 < 1e-12 * float(moving @ moving):
+        direction = moving / (float(np.linalg.norm(moving)) or 1.0)
+        return Screw(name, _floats(twist), _floats(reference), _floats(direction), None, links)
+    point = reference + np.cross(turning, moving) / rate
+    return Screw(name, _floats(twist), _floats(point), _floats(turning / np.sqrt(rate)), float(turning @ moving) / rate, links)
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(float(each) + 0.0 for each in values)
+
+
+def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
+    """The links that deform in a motion."""
+    size = {name: float(np.linalg.norm(first_design(each, 2)[:, column])) for name, each in strains.items()}
+    most = max(size.values(), default=0.0)
+    return tuple(name for name, each in size.items() if each > 1e-6 * most)
+
+
+def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
+    """What the links hold of the platform's motion: a basis of what is no ideal motion, at its reference."""
+    free = first_design(motion_, 2)
+    scale = np.array([1.0] * 3 + [known.kinematics.length] * 3)
+    basis, sizes, _ = np.linalg.svd(free * scale[:, None], full_matrices=True)
+    rank = int(np.sum(sizes > 1e-9 * sizes.max(initial=0.0))) if sizes.size else 0
+    reference = first_design(known.assembly.bodies["platform"].reference, 1)
+    for number, twist in enumerate(basis[:, rank:].T, start=1):
+        held = np.where(np.abs(twist) > 1e-12, twist, 0.0) / scale
+        yield _screw(f"held {number}", held, reference, known.kinematics.length, ())

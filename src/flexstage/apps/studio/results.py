@@ -1,0 +1,281 @@
+"""Results of a design for the studio's panes, a stage at a time: figures, verdicts, what it reaches, what it looks like."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.difference import (
+    KeyFigure,
+    frequency_figures,
+    loss_figures,
+    reach_figures,
+    requirement_figures,
+    stiffness_figures,
+)
+from flexstage.analysis.judge import bench_of, judge
+from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.requirements import Verdict
+from flexstage.analysis.response import response
+from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.workspace.stroke import SingleAxis
+from flexstage.apps.studio.protocol import Cautions, Curve, Figure, Figures, Judgement, Loss, Matrix, ModeShape, Reach, Stroke, Verdicts
+from flexstage.apps.studio.reading import design, problems_of
+from flexstage.apps.studio.wire import floats
+from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix as Labelled
+from flexstage.base.number import Array
+from flexstage.mechanism.store.lines import line_numbers, line_of
+from flexstage.models.linear.frequency import Response
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import part_deformation
+from flexstage.show.display import field_unit, preferred_unit
+
+_SHOWN = 0.01
+"""Least share that is listed."""
+_LISTED = 12
+"""Modes that are listed, and above them those of the platform."""
+_POINTS = 400
+"""Frequencies of a response whose band is stated."""
+
+Choice = tuple[tuple[str, ...], tuple[str, ...], float | None, float | None]
+"""Inputs, outputs and band [Hz] of the frequency responses that are shown; without names, those of the first actuator."""
+
+
+class Timer:
+    """Processor time since it was made [ms]."""
+
+    def __init__(self) -> None:
+        self._start = time.process_time()
+
+    @property
+    def spent(self) -> float:
+        """So far."""
+        return 1e3 * (time.process_time() - self._start)
+
+
+@lru_cache(maxsize=4)
+def bench(text: str, file: str) -> Bench:
+    """What is known of a design."""
+    return bench_of(design(text, file))
+
+
+def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
+    """Stiffness, lost motion, modes, frequency responses; `old` values are those of the stored text."""
+    timer, known, attempt = Timer(), bench(text, file), Attempts()
+    stiff = attempt.of("stiffness", lambda: statics(known.model))
+    lost = attempt.of("loss", lambda: known.lost)
+    found = attempt.of("modes", lambda: known.modes)
+    heard = attempt.of("response", lambda: _response(known, choice))
+    missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
+    return Figures(
+        revision,
+        tuple(_with_old(_key_figures(found, stiff, lost), "figures", stored, text, file)),
+        None if stiff is None else matrix(stiff.stiffness),
+        None if stiff is None else matrix(stiff.compliance),
+        () if lost is None else tuple(_losses(lost)),
+        () if found is None else tuple(_modes(known.model, found)),
+        None if heard is None else floats(heard.frequencies),
+        () if heard is None else tuple(_curves(heard)),
+        missing,
+        timer.spent,
+    )
+
+
+def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
+    """The requirements."""
+    timer, lines = Timer(), line_numbers(text)
+    old = {each.requirement.text: each for each in judged(stored, file)} if stored != text else {}
+    found = tuple(_judgement(each, old.get(each.requirement.text, each), lines) for each in judged(text, file))
+    return Verdicts(revision, found, timer.spent)
+
+
+def reach(text: str, file: str, stored: str, revision: int) -> Reach:
+    """Strokes of the platform, and how far hinges and columns are from their limits."""
+    timer, (found, missing) = Timer(), _workspace(text, file)
+    strokes = () if found is None else tuple(_strokes(found.single if found.corrected is None else found.corrected))
+    reasons = {} if found is None else {name: str(reason) for name, reason in found.reasons.items()}
+    return Reach(revision, tuple(_with_old(reach_figures(found), "reach", stored, text, file)), strokes, missing | reasons, timer.spent)
+
+
+def cautions(text: str, file: str, revision: int) -> Cautions:
+    """What is doubtful or taken by default."""
+    from flexstage.analysis.cautions import caveats
+
+    told = caveats(design(text, file))
+    return Cautions(revision, problems_of((*told.cautions, *told.defaults), text, file))
+
+
+def scene(text: str, file: str) -> Mapping[str, Any]:
+    """What a viewer shows of a design."""
+    from flexstage.show.viewer.data import stage_data
+
+    known = bench(text, file)
+    model, kinematics, found = (_known(known, each) for each in ("model", "kinematics", "modes"))
+    return stage_data(known.mechanism, model=model, kinematics=kinematics, found=found, text=text).document()
+
+
+def matrix(found: Labelled) -> Matrix:
+    """A labelled matrix as a message has it."""
+    said = found.to_json()
+    unit = said["unit"] if isinstance(said["unit"], str) else tuple(map(tuple, said["unit"]))
+    return Matrix(tuple(said["rows"]), tuple(said["columns"]), unit, tuple(map(tuple, said["values"])))
+
+
+def _known(known: Bench, name: str) -> Any:
+    try:
+        return getattr(known, name)
+    except DesignError:
+        return None
+
+
+@lru_cache(maxsize=4)
+def judged(text: str, file: str) -> tuple[Verdict, ...]:
+    """The verdicts on a design; none of a text that is none."""
+    known = bench(text, file)
+    try:
+        return judge(known.mechanism, known)
+    except DesignError:
+        return ()
+
+
+@lru_cache(maxsize=4)
+def _workspace(text: str, file: str) -> tuple[Any, dict[str, str]]:
+    from flexstage.analysis.complete import required_command
+    from flexstage.analysis.workspace.workspace import workspace
+
+    known, attempt = bench(text, file), Attempts()
+    lost = attempt.of("corrected", lambda: known.lost)
+    model = attempt.of("model", lambda: known.model)
+    command = required_command(known.mechanism)
+    found = attempt.of("workspace", lambda: workspace(known.mechanism, known.kinematics, model, lost=lost, command=command))
+    return found, attempt.missing
+
+
+def _strokes(found: SingleAxis) -> Iterator[Stroke]:
+    return map(Stroke, found.coordinates, np.real(found.low).tolist(), np.real(found.high).tolist(), found.limiting)
+
+
+def _response(known: Bench, choice: Choice) -> Response:
+    inputs, outputs, low, high = choice
+    model = known.model
+    grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
+    return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
+
+
+def _curves(heard: Response) -> Iterator[Curve]:
+    size, phase = np.abs(heard.values), np.degrees(np.angle(heard.values))
+    for row, output in enumerate(heard.outputs):
+        for column, source in enumerate(heard.inputs):
+            values = floats(size[:, row, column]), floats(phase[:, row, column])
+            yield Curve(_name(source), _name(output), heard.units[row][column], *values)
+
+
+def _name(port: Any) -> str:
+    return port if isinstance(port, str) else str(port.name)
+
+
+def _losses(lost: LostMotion) -> Iterator[Loss]:
+    for name, each in lost.actuators.items():
+        yield Loss(name, float(each.gain), float(each.loss), {link: float(share) for link, share in each.budget_by_link.items()})
+
+
+def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
+    count = min(len(found.names), max(_LISTED, *(index + 1 for index in found.platform), 0))
+    strained = _strain_shares(model, found.shapes[:, :count])
+    for index in range(count):
+        yield ModeShape(
+            index + 1,
+            float(found.frequencies[index]),
+            found.names[index],
+            index in found.platform,
+            index in found.local,
+            float(found.share[index]),
+            tuple(found.platform_shapes[:, index].tolist()),
+            _largest(zip(found.bodies, found.energies[:, index].tolist(), strict=True)),
+            _largest((name, float(shares[index])) for name, shares in strained.items()),
+        )
+
+
+def _strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
+    """Share of the strain energy (k,) of shapes (n, k) in every link."""
+    parts = {
+        name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
+    }
+    total = sum(parts.values(), np.zeros(shapes.shape[1]))
+    return {name: each / np.where(total > 0.0, total, np.inf) for name, each in parts.items()}
+
+
+def _largest(shares: Iterable[tuple[str, float]]) -> dict[str, float]:
+    return dict(sorted(((name, share) for name, share in shares if share >= _SHOWN), key=lambda each: -each[1]))
+
+
+def _key_figures(found: Modes | None, stiff: Statics | None, lost: LostMotion | None) -> tuple[KeyFigure, ...]:
+    return (*frequency_figures(found), *stiffness_figures(stiff), *loss_figures(lost))
+
+
+def _with_old(found: Iterable[KeyFigure], kind: str, stored: str, text: str, file: str) -> Iterator[Figure]:
+    rows = tuple(found)
+    old = {each.name: each.value for each in (rows if stored == text else _stored_figures(kind, stored, file))}
+    for each in rows:
+        form = preferred_unit(each.unit)
+        shown = "" if form.unit == "1" else form.unit
+        yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, old.get(each.name))
+
+
+@lru_cache(maxsize=4)
+def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
+    try:
+        known = bench(stored, file)
+    except DesignError:
+        return ()
+    if kind == "reach":
+        return tuple(reach_figures(_workspace(stored, file)[0]))
+    attempt = Attempts()
+    return _key_figures(*(attempt.of(name, each) for name, each in _key_results(known)))  # type: ignore[arg-type]
+
+
+def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
+    return ("modes", lambda: known.modes), ("stiffness", lambda: statics(known.model)), ("loss", lambda: known.lost)
+
+
+def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
+    """Everything that designs are compared by, requirements first; nothing of a text that is no design."""
+    try:
+        design(text, file)
+    except DesignError:
+        return ()
+    rows = (*requirement_figures(judged(text, file)), *_stored_figures("figures", text, file), *_stored_figures("reach", text, file))
+    return tuple({each.name: each for each in reversed(rows)}.values())[::-1]
+
+
+def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judgement:
+    asked = verdict.requirement
+    form = field_unit(asked.quantity)
+    value = _single(verdict.value)
+    return Judgement(
+        asked.key,
+        asked.text,
+        asked.point,
+        asked.quantity.si,
+        "" if form.unit == "1" else form.unit,
+        1.0 / form.factor,
+        asked.limit,
+        value,
+        _single(old.value),
+        None if value is None else float(verdict.margin),
+        bool(verdict.passed),
+        verdict.reason,
+        line_of(f"require.{asked.text}", lines) or line_of(f"require.{asked.key}", lines),
+    )
+
+
+def _single(value: Array | None) -> float | None:
+    return None if value is None else float(np.real(value))

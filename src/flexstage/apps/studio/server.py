@@ -1,0 +1,247 @@
+"""The studio's server: pages and their socket on the loopback, for whoever has the token."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import http
+import secrets
+import urllib.parse
+from collections import deque
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+import flexstage
+from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.history import Stored
+from flexstage.apps.studio.session import Session
+from flexstage.apps.studio.wire import decode, encode
+from flexstage.base.finding import DesignError
+
+HOST = "127.0.0.1"
+LARGEST = 8_000_000
+"""Bytes of the largest message of a page: a text of the largest design, with what JSON adds."""
+_PATIENCE = 10.0
+"""How long a page may take to say its token [s]."""
+_PAGES = 16
+_KEPT = (say.Welcome, say.State, say.Engine, say.Figures, say.Verdicts, say.Reach, say.Cautions, say.Jobs)
+"""Of what is pushed the newest alone is worth sending."""
+_STATIC = Path(__file__).with_name("static")
+_FILES: Mapping[str, tuple[str, str]] = {
+    "/": ("studio.html", "text/html; charset=utf-8"),
+    "/studio.js": ("studio.js", "text/javascript; charset=utf-8"),
+    "/studio.css": ("studio.css", "text/css; charset=utf-8"),
+    "/studio-licences.txt": ("studio-licences.txt", "text/plain; charset=utf-8"),
+}
+_POLICY = (
+    "default-src 'self'; connect-src 'self' ws://{host}; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+_REPORT_POLICY = (
+    "sandbox allow-scripts allow-downloads allow-modals; default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; img-src data: blob:; font-src data:"
+)
+"""Reports bring their own scripts, and reach neither the studio nor anything outside."""
+
+
+class Studio:
+    """A server of one design. `url` is what a person opens; the token stands behind #, which browsers send to nobody."""
+
+    def __init__(self, path: Path, port: int = 0) -> None:
+        self.session = Session(Stored.read(path.resolve()), self._tell_all)
+        self.token = secrets.token_urlsafe(24)
+        self._port = port
+        self._server: Server | None = None
+        self._pages: dict[int, Outbox] = {}
+        self._count = 0
+        self._work: set[asyncio.Task[Any]] = set()
+
+    @property
+    def port(self) -> int:
+        """The port that it listens at."""
+        return self._port
+
+    @property
+    def url(self) -> str:
+        """Its address with the token."""
+        return f"http://{HOST}:{self._port}/#{self.token}"
+
+    async def start(self) -> None:
+        """Listen, and begin to compute. Raises `OSError` where the port is taken."""
+        self._server = await serve(
+            self._page,
+            HOST,
+            self._port,
+            process_request=self._request,
+            max_size=LARGEST,
+            compression=None,
+            server_header=None,
+            ping_interval=None,
+            open_timeout=_PATIENCE,
+        )
+        self._port = next(iter(self._server.sockets)).getsockname()[1]
+        self._start(self.session.open())
+
+    async def stop(self) -> None:
+        """End everything."""
+        for each in tuple(self._work):
+            each.cancel()
+        if self._server is not None:
+            self._server.close()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._server.wait_closed(), _PATIENCE)
+        await self.session.close()
+
+    # --- what is asked by GET ---
+
+    def _request(self, connection: ServerConnection, request: Request) -> Response | None:
+        """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
+        hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
+        if request.headers.get_all("Host") not in [[host] for host in hosts]:
+            return _answer(http.HTTPStatus.FORBIDDEN, "This server answers its own computer only.\n")
+        path = urllib.parse.urlsplit(request.path).path
+        if path == "/socket":
+            origin = request.headers.get("Origin", "")
+            if origin not in {f"http://{host}" for host in hosts}:
+                return _answer(http.HTTPStatus.FORBIDDEN, "This socket answers the studio's own page only.\n")
+            if len(self._pages) >= _PAGES:
+                return _answer(http.HTTPStatus.SERVICE_UNAVAILABLE, f"{_PAGES} windows are open; close one.\n")
+            return None
+        if path.startswith("/report/"):
+            return self._report(path.removeprefix("/report/"))
+        name, kind = _FILES.get(path, ("", ""))
+        if not name:
+            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
+        del connection
+        policy = _POLICY.format(host=request.headers["Host"])
+        return _answer(http.HTTPStatus.OK, (_STATIC / name).read_bytes(), kind, policy)
+
+    def _report(self, name: str) -> Response:
+        found = self.session.jobs.reports.get(name)
+        if found is None or not found.is_file():
+            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such report.\n")
+        return _answer(http.HTTPStatus.OK, found.read_bytes(), "text/html; charset=utf-8", _REPORT_POLICY)
+
+    # --- the socket ---
+
+    async def _page(self, connection: ServerConnection) -> None:
+        """One window, from its token to its end."""
+        if not await self._is_let_in(connection):
+            return
+        self._count += 1
+        page, outbox = self._count, Outbox()
+        self._pages[page] = outbox
+        writer = asyncio.create_task(outbox.send(connection))
+        outbox.put(say.Welcome(say.VERSION, flexstage.__version__, page, len(self._pages)))
+        for message in tuple(self.session.shown.values()):
+            outbox.put(message)
+        try:
+            async for text in connection:
+                self._hear(text, page, outbox)
+        except ConnectionClosed:
+            pass
+        finally:
+            del self._pages[page]
+            writer.cancel()
+            with contextlib.suppress(asyncio.CancelledError, ConnectionClosed):
+                await writer
+
+    async def _is_let_in(self, connection: ServerConnection) -> bool:
+        """Whether the first message has the token; else the socket is closed."""
+        try:
+            first = decode(await asyncio.wait_for(connection.recv(), _PATIENCE))
+            if isinstance(first, say.Hello) and secrets.compare_digest(first.token.encode(), self.token.encode()):
+                return True
+            await connection.close(1008, "the token is not the one of this studio")
+        except DesignError:
+            await connection.close(1008, "the first message is to be hello with the token")
+        except (ConnectionClosed, TimeoutError):
+            await connection.close(1008, "no token came")
+        return False
+
+    def _hear(self, text: str | bytes, page: int, outbox: Outbox) -> None:
+        """Begin to do what a page asks."""
+        try:
+            request = decode(text)
+        except DesignError as error:
+            found = error.findings[0]
+            outbox.put(say.Refusal(0, (say.Problem(found.where, found.what, found.advice),)))
+            return
+        if not isinstance(request, say.Hello):
+            self._start(self.session.answer(request, page, outbox.put))
+
+    def _tell_all(self, message: say.Said) -> None:
+        for outbox in self._pages.values():
+            outbox.put(message)
+
+    def _start(self, work: Any) -> None:
+        task = asyncio.create_task(work)
+        self._work.add(task)
+        task.add_done_callback(self._work.discard)
+
+
+class Outbox:
+    """What a page is still to be told: answers in order, of what is pushed the newest of each kind. A slow page holds up nobody."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[say.Said] = deque()
+        self._filled = asyncio.Event()
+        self.sent = 0
+        """Bytes that went out."""
+
+    def put(self, message: say.Said) -> None:
+        """Tell it when its turn comes."""
+        if isinstance(message, _KEPT):
+            kept = [each for each in self._waiting if type(each) is not type(message)]
+            if len(kept) < len(self._waiting):
+                self._waiting = deque(kept)
+        self._waiting.append(message)
+        self._filled.set()
+
+    async def send(self, connection: ServerConnection) -> None:
+        """Send what waits, until the page goes."""
+        with contextlib.suppress(ConnectionClosed):
+            while True:
+                await self._filled.wait()
+                self._filled.clear()
+                while self._waiting:
+                    text = encode(self._waiting.popleft())
+                    self.sent += len(text)
+                    await connection.send(text)
+
+
+def _answer(
+    status: http.HTTPStatus, body: str | bytes, kind: str = "text/plain; charset=utf-8", policy: str = "default-src 'none'"
+) -> Response:
+    content = body.encode() if isinstance(body, str) else body
+    headers = Headers(
+        {
+            "Content-Type": kind,
+            "Content-Length": str(len(content)),
+            "Content-Security-Policy": policy,
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
+            "Cache-Control": "no-store",
+            "Cross-Origin-Opener-Policy": "same-origin",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Connection": "close",
+        }
+    )
+    return Response(status.value, status.phrase, headers, content)
+
+
+async def run(path: Path, port: int, started: Any) -> None:
+    """Serve a design until it is interrupted; `started` is told the address."""
+    studio = Studio(path, port)
+    await studio.start()
+    try:
+        started(studio.url)
+        await asyncio.get_running_loop().create_future()
+    finally:
+        await studio.stop()

@@ -1,0 +1,488 @@
+"""A design that is open in the studio: what pages ask of it, what is computed of it, what they are told."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Generic, TypeVar
+
+from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.engine import Outcome
+from flexstage.apps.studio.helper import Helper, Urgency
+from flexstage.apps.studio.history import History, Stored
+from flexstage.apps.studio.jobs import Jobs
+from flexstage.apps.studio.palette import snippets
+from flexstage.apps.studio.reading import Reading
+from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.mechanism.store.lines import spot_of
+
+_QUIET = 0.3
+"""A computation of less time is not announced [s]."""
+_STALE = 3.0
+"""After so long what is computed of a text that is no more is ended with its process [s]."""
+_MOSTLY = 0.6
+"""How much of a slider's range a plan that is there must cover."""
+_STAGES: tuple[tuple[str, str], ...] = (
+    ("figures", "stiffness, lost motion, modes and responses"),
+    ("verdicts", "requirements"),
+    ("reach", "strokes and stress"),
+    ("scene", "the geometry"),
+    ("cautions", "cautions"),
+)
+"""What is computed of a design, in this order, and what it is called."""
+
+Tell = Callable[[say.Said], None]
+
+
+class Session:
+    """One design for all pages. `tell` says something to all of them."""
+
+    def __init__(self, stored: Stored, tell: Tell) -> None:
+        self.stored = stored
+        self.history = History(stored.text)
+        self.reading: Reading | None = None
+        self.problems: tuple[say.Problem, ...] = ()
+        self.sound = ""
+        """The last text that was a design."""
+        self.shown: dict[type[say.Said], say.Said] = {}
+        """What a page that comes is told, by kind."""
+        self._tell = tell
+        self._model = Helper(self._died)
+        self._reader: Helper | None = None
+        self._slow: Helper | None = None
+        self._choice: tuple[Any, ...] = ((), (), None, None)
+        self._plan: Fitted | None = None
+        self._wanted: Fitted | None = None
+        self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
+        self._computed = 0
+        self._cautions: tuple[say.Problem, ...] = ()
+        self._scene: Mapping[str, Any] = {}
+        self._took: dict[str, float] = {}
+        self._work: set[asyncio.Task[Any]] = set()
+        self._changing = asyncio.Lock()
+        self.jobs = Jobs(stored.path, self._push, self._keep_optimum)
+
+    # --- beginning and end ---
+
+    async def open(self) -> None:
+        """Read the text and compute what it says."""
+        self._push(say.Engine("starts", "The process that computes starts", None))
+        await self._read()
+
+    async def close(self) -> None:
+        """End all processes."""
+        for each in tuple(self._work):
+            each.cancel()
+        await self.jobs.close()
+        for helper in self._helpers:
+            await helper.close()
+
+    @property
+    def spent(self) -> float:
+        """Processor time of what was computed [s]."""
+        return sum(each.spent for each in self._helpers)
+
+    @property
+    def processes(self) -> tuple[int, ...]:
+        """Numbers of the processes that compute."""
+        return tuple(each.process for each in self._helpers if each.process is not None)
+
+    @property
+    def _helpers(self) -> tuple[Helper, ...]:
+        return tuple(each for each in (self._model, self._reader, self._slow) if each is not None)
+
+    # --- requests ---
+
+    async def answer(self, request: Any, page: int, tell: Tell) -> None:
+        """Do what a page asks, and tell it; refusals too."""
+        try:
+            await self._answers[type(request)](self, request, page, tell)
+        except DesignError as error:
+            tell(self._refusal(request.id, error.findings))
+
+    async def _edit(self, request: say.Edit, page: int, tell: Tell) -> None:
+        try:
+            self.history.require_known(request.revision, page)
+        except DesignError as error:
+            tell(self._refusal(request.id, error.findings, stale=True))
+            return
+        self._take(self.history.change(request.text.replace("\r\n", "\n"), page))
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _set(self, request: say.Set | say.Rest, page: int, tell: Tell) -> None:
+        """A number of the text: what is asked meanwhile waits, so that no change is lost."""
+        value = request.text if isinstance(request, say.Set) else request.value
+        async with self._changing:
+            text, revision = self.history.text, self.history.revision
+            written = await self._asked(self._quick, "write", text, self._file, request.address, value)
+            if self.history.revision != revision:
+                raise refuse(request.address, "the text was changed meanwhile", "Set it again")
+            plan = self._plan
+            if plan is not None and (plan.fits, plan.address) == (text, request.address):
+                self._plan = replace(plan, fits=written)
+            self._take(self.history.change(written, page))
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _insert(self, request: say.Insert, page: int, tell: Tell) -> None:
+        async with self._changing:
+            written = await self._asked(self._quick, "insert", self.history.text, request.snippet, request.fields)
+            self._take(self.history.change(written, page))
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _undo(self, request: say.Undo | say.Redo, page: int, tell: Tell) -> None:
+        self._take(self.history.undo(page) if isinstance(request, say.Undo) else self.history.redo(page))
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _save(self, request: say.Save, _: int, tell: Tell) -> None:
+        try:
+            self.stored = self.stored.write(self.history.text, over=request.over)
+        except DesignError as error:
+            tell(self._refusal(request.id, error.findings, stale=True))
+            return
+        tell(say.Done(request.id, self.history.revision))
+        await self._read()
+
+    async def _reload(self, request: say.Reload, page: int, tell: Tell) -> None:
+        self.stored = Stored.read(self.stored.path)
+        same = self.stored.text == self.history.text
+        self._take(self.history.change(self.stored.text, page))
+        tell(say.Done(request.id, self.history.revision))
+        if same:
+            await self._read()
+
+    async def _pin(self, request: say.Pin, _: int, tell: Tell) -> None:
+        if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
+            raise refuse(request.name, "twelve designs are pinned already", "Let one go first")
+        self.history = self.history.pin(request.name, keep=request.keep)
+        tell(say.Done(request.id, self.history.revision))
+        self._push_state()
+
+    async def _recall(self, request: say.Recall, page: int, tell: Tell) -> None:
+        texts = {"": self.stored.text, **self.history.pins}
+        if request.name not in texts:
+            raise refuse(request.name, "no design is pinned under this name", f"There are {', '.join(self.history.pins) or 'none'}")
+        self._take(self.history.change(texts[request.name], page))
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _compare(self, request: say.Compare, _: int, tell: Tell) -> None:
+        texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
+        tables = [await self._asked(self._model, "compared", text, self._file) for text in texts.values()]
+        known = {each.name: each for table in tables for each in table}
+        by_name = [{each.name: each.value for each in table} for table in tables]
+        rows = tuple(_row(each, by_name[-1].get(name), by_name[0].get(name)) for name, each in known.items())
+        values = tuple(tuple(table.get(name) for table in by_name) for name in known)
+        tell(say.Comparison(request.id, tuple(texts), rows, values))
+
+    async def _take_grip(self, request: say.Grip, _: int, tell: Tell) -> None:
+        """A plan for this slider, in the background; the one there is, where that covers most of the range."""
+        tell(say.Done(request.id, self.history.revision))
+        if self._plan is not None and self._plan.serves(self._design, request):
+            return
+        wanted = self._wanted = Fitted(self._design, request.address, request.low, request.high, self._design)
+        self._push(say.Engine("fits", f"A plan for {request.address} is fitted", None))
+        call = ("fit", wanted.text, self._file, wanted.address, wanted.low, wanted.high)
+        outcome = await self._quick.ask(*call, wanted=lambda: self._wanted is wanted)
+        if outcome is not None and not outcome.findings and self._wanted is wanted:
+            self._plan = wanted
+        self._push(say.Engine("ready", "", None))
+
+    async def _take_drag(self, request: say.Drag, _: int, tell: Tell) -> None:
+        await self._drags.put(request, tell, self._dragged)
+
+    async def _dragged(self, request: say.Drag) -> say.Said:
+        plan = self._plan
+        if plan is not None and (plan.fits, plan.address) == (self._design, request.address):
+            helper, text, ends = self._quick, plan.text, (plan.low, plan.high)
+        else:
+            helper, text, ends = self._model, self._design, None
+        outcome = await helper.ask("drag", text, self._file, request.address, request.value, ends)
+        found, findings = (outcome.value or (), outcome.findings) if outcome else ((), ())
+        return say.Frequencies(request.id, request.address, request.value, ends is not None, found, self._problems(findings))
+
+    async def _take_pose(self, request: say.Pose, _: int, tell: Tell) -> None:
+        await self._poses.put(request, tell, lambda each: self._question("posed", each.id, each.inputs))
+
+    async def _part(self, request: say.Part, _: int, tell: Tell) -> None:
+        tell(await self._question("card", request.id, request.link))
+
+    async def _line(self, request: say.Line, _: int, tell: Tell) -> None:
+        tell(await self._question("place", request.id, request.line, helper=self._quick))
+
+    async def _respond(self, request: say.Respond, _: int, tell: Tell) -> None:
+        """The choice of responses, from now on; refused where the stage has none of that name."""
+        choice = (request.inputs, request.outputs, request.low, request.high)
+        found = await self._asked(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
+        if "response" in found.missing:
+            raise refuse("response", found.missing["response"].rstrip("."), "Choose among its inputs and outputs")
+        self._choice = choice
+        self._push(found)
+        tell(say.Done(request.id, self.history.revision))
+
+    async def _jog(self, request: say.Jog, _: int, tell: Tell) -> None:
+        tell(await self._question("motion", request.id, self._computed))
+
+    async def _derive(self, request: say.Derive, _: int, tell: Tell) -> None:
+        """In a process of its own, as it takes long; nothing of a text that is no more."""
+        self._slow = self._slow or Helper(self._died)
+        revision = self._computed
+        call = ("slopes", self._design, self._file, request.id, revision)
+        outcome = await self._slow.ask(*call, wanted=lambda: self._computed == revision)
+        if outcome is None:
+            tell(say.Done(request.id, self.history.revision))
+        else:
+            tell(self._refusal(request.id, outcome.findings) if outcome.findings else outcome.value)
+
+    async def _free(self, request: say.Free, _: int, tell: Tell) -> None:
+        tell(await self._question("freedoms", request.id, self._computed))
+
+    async def _gaps(self, request: say.Gaps, _: int, tell: Tell) -> None:
+        tell(await self._question("clearances", request.id, self._computed))
+
+    async def _palette(self, request: say.Palette, _: int, tell: Tell) -> None:
+        tell(say.Snippets(request.id, snippets()))
+
+    async def _run(self, request: say.Run, _: int, tell: Tell) -> None:
+        tell(say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text)))
+
+    async def _cancel(self, request: say.Cancel, _: int, tell: Tell) -> None:
+        self.jobs.cancel(request.job)
+        tell(say.Done(request.id, self.history.revision))
+
+    _answers: ClassVar[Mapping[type[Any], Callable[..., Awaitable[None]]]] = {
+        say.Edit: _edit,
+        say.Set: _set,
+        say.Rest: _set,
+        say.Grip: _take_grip,
+        say.Drag: _take_drag,
+        say.Part: _part,
+        say.Line: _line,
+        say.Respond: _respond,
+        say.Jog: _jog,
+        say.Pose: _take_pose,
+        say.Derive: _derive,
+        say.Free: _free,
+        say.Gaps: _gaps,
+        say.Pin: _pin,
+        say.Compare: _compare,
+        say.Recall: _recall,
+        say.Undo: _undo,
+        say.Redo: _undo,
+        say.Save: _save,
+        say.Reload: _reload,
+        say.Palette: _palette,
+        say.Insert: _insert,
+        say.Run: _run,
+        say.Cancel: _cancel,
+    }
+
+    # --- what follows a change ---
+
+    def _take(self, history: History) -> None:
+        """Another text: it is read, then computed."""
+        changed = history.revision != self.history.revision
+        self.history = history
+        if changed:
+            self._start(self._read())
+
+    async def _read(self) -> None:
+        revision = self.history.revision
+        text = self.history.text
+        call = ("read", text, self._file, self.stored.text)
+        outcome = await self._quick.ask(*call, wanted=lambda: self.history.revision == revision)
+        if outcome is None or self.history.revision != revision:
+            return
+        self.problems = self._problems(outcome.findings) if outcome.value is None else outcome.value.problems
+        if outcome.value is not None and not self.problems:
+            self.reading, self.sound, self._computed = outcome.value, text, revision
+        self._push_state()
+        if not self.problems:
+            self._start(self._compute(revision, text))
+
+    async def _compute(self, revision: int, text: str) -> None:
+        """All stages of a revision, as long as it is the present one."""
+        if self._model.busy(Urgency.SOON) > _STALE:
+            self._model.start_anew()
+        for stage, called in _STAGES:
+            arguments = (text, self._file)
+            arguments += {"figures": (self.stored.text, revision, self._choice), "scene": (), "cautions": (revision,)}.get(
+                stage, (self.stored.text, revision)
+            )
+            outcome = await self._announced(called, stage, arguments, lambda: self.sound == text and self._computed == revision)
+            if outcome is None:
+                return
+            if outcome.findings:
+                self._push(say.Engine("ready", str(outcome.findings[0]), None))
+            elif stage == "scene":
+                self._push_scene(revision, outcome.value)
+            else:
+                self._push(outcome.value)
+            if stage == "cautions" and outcome.value and outcome.value.cautions != self._cautions:
+                self._cautions = outcome.value.cautions
+                self._push_state()
+            if stage == "figures" and self._reader is None:
+                self._push(say.Engine("ready", "", None))
+                self._reader = Helper(self._died)  # not before: it takes processor time to start
+
+    async def _announced(self, called: str, stage: str, arguments: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
+        """A stage computed; told as it begins where it takes long."""
+        size = len((self.reading.links if self.reading else None) or ())
+        known = self._took.get(stage)
+        left = known if known is not None else _FIRST.get(stage, 0.1) * (size / 50.0) ** 2
+        if left > _QUIET:
+            self._push(say.Engine("computes", called, left))
+        outcome = await self._model.ask(stage, *arguments, urgency=Urgency.SOON, wanted=wanted)
+        if outcome is not None:
+            self._took[stage] = outcome.seconds
+        if left > _QUIET:
+            self._push(say.Engine("ready", "", None))
+        return outcome
+
+    def _revision(self) -> int:
+        return self.history.revision
+
+    def _push_state(self) -> None:
+        reading, history = self.reading or Reading(()), self.history
+        self._push(
+            say.State(
+                revision=history.revision,
+                page=history.page,
+                file=self.stored.path.name,
+                name=reading.name,
+                text=history.text,
+                digest=self.stored.digest,
+                saved=history.text == self.stored.text,
+                sound=not self.problems,
+                changed=sum(each.old is None or each.old != each.value for each in reading.amounts),
+                undo=bool(history.past),
+                redo=bool(history.future),
+                problems=self.problems,
+                cautions=self._cautions,
+                amounts=reading.amounts,
+                actuators=reading.actuators,
+                axes=reading.axes,
+                gauges=reading.gauges,
+                inputs=reading.inputs,
+                outputs=reading.outputs,
+                links=dict(reading.links or {}),
+                pins=tuple(history.pins),
+            )
+        )
+
+    def _push_scene(self, revision: int, found: Mapping[str, Any]) -> None:
+        """The whole geometry to a page that comes, to all others what changed in it."""
+        changed = {key: value for key, value in found.items() if self._scene.get(key) != value}
+        whole = not self._scene
+        self._scene = found
+        self.shown[say.Scene] = say.Scene(revision, True, found)  # noqa: FBT003 (whole)
+        self._tell(say.Scene(revision, whole, changed))
+
+    def _push(self, message: say.Said) -> None:
+        self.shown[type(message)] = message
+        self._tell(message)
+
+    def _keep_optimum(self, text: str) -> None:
+        """A better design that a job found is pinned."""
+        self.history = replace(self.history, pins={**self.history.pins, "optimum": text})
+        self._push_state()
+
+    def _died(self, words: str) -> None:
+        self._push(say.Engine("ended", f"The process that computes ended and is started anew: {words}", None))
+
+    # --- asking the processes ---
+
+    @property
+    def _file(self) -> str:
+        return str(self.stored.path)
+
+    @property
+    def _design(self) -> str:
+        """The text that is computed: the last one that was a design."""
+        return self.sound or self.history.text
+
+    @property
+    def _quick(self) -> Helper:
+        """Who reads texts and computes designs of a fitted plan."""
+        return self._reader or self._model
+
+    async def _asked(self, helper: Helper, *call: Any) -> Any:
+        """The value of a task; raises `DesignError` where it is refused."""
+        outcome = await helper.ask(*call)
+        if outcome is None or outcome.findings:
+            raise DesignError(outcome.findings if outcome else ())
+        return outcome.value
+
+    async def _question(self, task: str, to: int, *arguments: Any, helper: Helper | None = None) -> Any:
+        return await self._asked(helper or self._model, task, self._design, self._file, to, *arguments)
+
+    def _problems(self, findings: Iterable[Finding]) -> tuple[say.Problem, ...]:
+        """Findings as they are, where they are about no place in the text."""
+        where = self.stored.path.name
+        found = ((spot_of(each, where), each) for each in findings)
+        return tuple(say.Problem(spot.address or where, each.what, each.advice, spot.line, spot.column) for spot, each in found)
+
+    def _refusal(self, to: int, findings: Iterable[Finding], *, stale: bool = False) -> say.Refusal:
+        return say.Refusal(to, self._problems(findings), stale)
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Work in the background, ended with the session."""
+        task = asyncio.create_task(work)
+        self._work.add(task)
+        task.add_done_callback(self._work.discard)
+
+
+_FIRST: Mapping[str, float] = {"figures": 0.15, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.1}
+"""Seconds that the stages of a design of fifty links take, before one was timed (benchmarks/studio.py)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A plan fitted over a slider's range for a text; it `fits` that text, or the one in which only this number is another one."""
+
+    text: str
+    address: str
+    low: float
+    high: float
+    fits: str
+
+    def serves(self, text: str, request: say.Grip) -> bool:
+        """Whether it covers most of what a slider asks."""
+        common = min(self.high, request.high) - max(self.low, request.low)
+        return (self.fits, self.address) == (text, request.address) and common >= _MOSTLY * (request.high - request.low)
+
+
+_Asked = TypeVar("_Asked", say.Drag, say.Pose)
+
+
+class Newest(Generic[_Asked]):
+    """Answers the newest of requests that come faster than they can be answered; older ones are done."""
+
+    def __init__(self, revision: Callable[[], int]) -> None:
+        self._revision = revision
+        self._waiting: tuple[_Asked, Tell] | None = None
+        self._busy = False
+
+    async def put(self, request: _Asked, tell: Tell, answer: Callable[[_Asked], Awaitable[say.Said]]) -> None:
+        """Answer a request as soon as no other one is being answered, unless a newer one comes before."""
+        if self._waiting is not None:
+            older, tell_older = self._waiting
+            tell_older(say.Done(older.id, self._revision()))
+        self._waiting = request, tell
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            while self._waiting is not None:
+                (newest, tell_newest), self._waiting = self._waiting, None
+                try:
+                    tell_newest(await answer(newest))
+                except DesignError as error:
+                    found = tuple(say.Problem(each.where, each.what, each.advice) for each in error.findings)
+                    tell_newest(say.Refusal(newest.id, found))
+        finally:
+            self._busy = False
+
+
+def _row(figure: Any, value: float | None, old: float | None) -> say.Figure:
+    """A figure of several designs."""
+    return say.Figure(figure.name, figure.name.partition(".")[0], figure.unit, figure.unit, 1.0, value, old)

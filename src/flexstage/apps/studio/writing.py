@@ -1,0 +1,42 @@
+"""Changes of a design's text: single numbers written into it, everything else left as it is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.apps.studio.reading import design
+from flexstage.base.finding import refuse
+from flexstage.base.unit import show
+from flexstage.mechanism.address import get, quantity_of, set_text
+from flexstage.mechanism.checks import require_valid
+from flexstage.mechanism.store import patch
+
+_DIGITS, _EXACT = 6, 12
+
+
+def write(text: str, file: str, address: str, value: str | float) -> str:
+    """The text with a number set: a text in any unit of its quantity, a formula or a change; or an SI number, to six digits.
+
+    Raises `DesignError` in the checks' words where that is no such number, or where the design would not be one any more.
+    """
+    stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
+    written = patch(text, {address: stated}, where=file)
+    require_valid(design(written, file))
+    return written
+
+
+def _tidy(text: str, file: str, address: str, value: str) -> str:
+    """What a person wrote; of a change in percent the number that it comes to."""
+    if not value.strip().endswith("%"):
+        return value
+    found = set_text(design(text, file), address, value)
+    return _shown(text, file, address, float(get(found, address)), _EXACT)
+
+
+def _shown(text: str, file: str, address: str, value: float, digits: int) -> str:
+    if not np.isfinite(value):
+        raise refuse(address, "it is not finite", "Give it a value")
+    found = design(text, file)
+    if get(found, address) is None:
+        raise refuse(address, "the description does not state it", "Write it into the text first")
+    return show(value, quantity_of(found, address), digits=digits)

@@ -1,0 +1,100 @@
+"""A page of the studio without a browser: it asks, and keeps what it is told."""
+
+import asyncio
+import threading
+from contextlib import contextmanager
+
+from websockets.asyncio.client import connect
+
+from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.server import Studio
+from flexstage.apps.studio.wire import decode_said, encode
+
+PATIENCE = 120.0
+
+
+class Page:
+    """One window: `told` are the newest pushes by kind, `counts` how many of each there were."""
+
+    def __init__(self, connection):
+        self.connection = connection
+        self.told, self.counts, self.bytes = {}, {}, 0
+        self._number = self.revision = 0
+        self._answers = {}
+        self._news = asyncio.Event()
+        self._listener = asyncio.create_task(self._listen())
+
+    async def _listen(self):
+        async for text in self.connection:
+            self.bytes += len(text)
+            message = decode_said(text)
+            kind = type(message)
+            self.counts[kind] = self.counts.get(kind, 0) + 1
+            if hasattr(message, "to"):
+                self._answers[message.to].set_result(message)
+            else:
+                self.told[kind] = message
+            self._news.set()
+
+    def begin(self, kind, **fields):
+        """Ask, and wait for the answer later."""
+        self._number += 1
+        answer = self._answers[self._number] = asyncio.get_running_loop().create_future()
+        return asyncio.gather(self.connection.send(encode(kind(id=self._number, **fields))), answer)
+
+    async def ask(self, kind, **fields):
+        answer = (await asyncio.wait_for(self.begin(kind, **fields), PATIENCE))[1]
+        self.revision = max(self.revision, getattr(answer, "revision", 0))
+        return answer
+
+    async def until(self, true):
+        """Wait until something holds of the page."""
+        async with asyncio.timeout(PATIENCE):
+            while not true(self):
+                self._news.clear()
+                await self._news.wait()
+
+    async def settle(self, last=say.Cautions):
+        """Wait until the present text is computed."""
+        await self.until(lambda page: say.State in page.told and page.state.revision >= page.revision)
+        await self.until(lambda page: last in page.told and page.told[last].revision == page.state.revision)
+
+    @property
+    def state(self):
+        return self.told[say.State]
+
+    async def close(self):
+        await self.connection.close()
+        self._listener.cancel()
+
+
+async def opened(studio, token=None):
+    host = f"127.0.0.1:{studio.port}"
+    connection = await connect(f"ws://{host}/socket", origin=f"http://{host}", max_size=None, compression=None)
+    await connection.send(encode(say.Hello(studio.token if token is None else token, say.VERSION)))
+    return Page(connection)
+
+
+@contextmanager
+def served(path):
+    """A studio in a thread of its own, and what runs coroutines there."""
+    loop = asyncio.new_event_loop()
+    thread = threading.Thread(target=loop.run_forever)
+    thread.start()
+
+    def do(work):
+        return asyncio.run_coroutine_threadsafe(work, loop).result(2 * PATIENCE)
+
+    async def made():
+        studio = Studio(path)
+        await studio.start()
+        return studio
+
+    studio = do(made())
+    try:
+        yield studio, do
+    finally:
+        do(studio.stop())
+        loop.call_soon_threadsafe(loop.stop)
+        thread.join()
+        loop.close()

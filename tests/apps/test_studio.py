@@ -1,0 +1,415 @@
+"""The studio without a browser: what pages ask and are told, on a stage small enough to be computed at once."""
+
+import asyncio
+import contextlib
+import os
+import signal
+
+import numpy as np
+import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from flexstage.analysis.judge import judge
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.modes import modes
+from flexstage.analysis.response import response
+from flexstage.analysis.statics import statics
+from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.server import LARGEST
+from flexstage.apps.studio.wire import array, encode
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.store import dumps, loads, patch
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from tests.apps.studio_page import PATIENCE, opened, served
+
+THICKNESS = "parts.leaf.thickness"
+TEXT = dumps(parallelogram(), {"": "A guide.", "parts.leaf": "thin"})
+
+
+@pytest.fixture(scope="module")
+def studio(tmp_path_factory):
+    path = tmp_path_factory.mktemp("studio") / "guide.toml"
+    path.write_bytes(TEXT.encode())
+    with served(path) as (studio, do):
+        yield studio, do
+
+
+def on_page(work):
+    """A test with a page of its own, which ends with the text of the file."""
+
+    def test(studio):
+        async def whole():
+            path = studio[0].session.stored.path
+            path.write_bytes(TEXT.encode())
+            page = await opened(studio[0])
+            try:
+                await page.ask(say.Reload)
+                await page.settle()
+                await work(page, studio[0])
+            finally:
+                await page.close()
+
+        studio[1](whole())
+
+    test.__doc__ = work.__doc__
+    return test
+
+
+def amount(page, address=THICKNESS):
+    return next(each for each in page.state.amounts if each.address == address)
+
+
+@on_page
+async def test_figures_at_rest_are_those_of_the_library(page, studio):
+    await page.ask(say.Set, address=THICKNESS, text="900 um")
+    await page.settle()
+    stage = loads(patch(TEXT, {THICKNESS: "0.9 mm"}))
+    model = lumped(stage)
+    told = page.told[say.Figures]
+    stiff, found, lost = statics(model), modes(model), lost_motion(ideal(stage), model)
+    assert np.allclose(told.stiffness.values, stiff.stiffness.values, rtol=1e-9, atol=0.0)
+    assert np.allclose([each.frequency for each in told.modes], found.frequencies[: len(told.modes)], rtol=1e-9)
+    assert [each.loss for each in told.losses] == pytest.approx([float(each.loss) for each in lost.actuators.values()], rel=1e-9)
+    heard = response(model, ("platform",), ("B",))
+    assert np.allclose(array(told.frequency), heard.frequencies, rtol=1e-9)
+    assert np.allclose(array(told.curves[1].magnitude), np.abs(heard.values[:, 1, 0]), rtol=1e-7, atol=1e-12)
+    values = [float(each.value) for each in judge(stage)]
+    assert [each.value for each in page.told[say.Verdicts].verdicts] == pytest.approx(values, rel=1e-9)
+    assert [each.line for each in page.told[say.Verdicts].verdicts] != [None] * len(values) or not values
+    old = next(each for each in told.figures if each.name == "frequency.platform.1")
+    assert old.old == pytest.approx(modes(lumped(loads(TEXT))).platform_frequencies[0], rel=1e-9)
+    assert (page.state.changed, page.state.saved, amount(page).text, amount(page).old) == (1, False, "0.9 mm", 1e-3)
+
+
+@on_page
+async def test_strain_energy_shares_add_up(page, studio):
+    for each in page.told[say.Figures].modes:
+        assert sum(each.strain.values()) == pytest.approx(1.0, abs=0.05)
+        assert list(each.strain.values()) == sorted(each.strain.values(), reverse=True)
+
+
+@on_page
+async def test_a_mistake_is_told_at_its_line_and_the_last_design_stays(page, studio):
+    before, found = page.told[say.Figures], page.state
+    wrong = TEXT.replace('thickness = "', 'thickness = "-', 1)
+    line = next(number for number, row in enumerate(wrong.splitlines(), start=1) if row.startswith('thickness = "-'))
+    await page.ask(say.Edit, text=wrong, revision=found.revision)
+    await page.until(lambda page: not page.state.sound)
+    (problem,) = page.state.problems
+    assert (problem.where, problem.line, problem.column) == (THICKNESS, line, 1)
+    assert "not greater than 0 mm" in problem.what
+    assert page.state.amounts == found.amounts
+    assert page.told[say.Figures].modes == before.modes
+    await page.ask(say.Edit, text=TEXT.replace("[parts.leaf]", "[parts.leaf"), revision=page.state.revision)
+    await page.until(lambda page: page.state.problems and page.state.problems[0].column > 1)
+    assert "not TOML" in page.state.problems[0].what
+
+
+@on_page
+async def test_a_wrong_unit_is_refused_in_the_words_of_the_checks(page, studio):
+    for text, words in (("3 kg", "a mass, where a length is expected"), ("0.4", "without a unit"), ("-1 mm", "not greater than 0 mm")):
+        said = await page.ask(say.Set, address=THICKNESS, text=text)
+        assert isinstance(said, say.Refusal)
+        assert words in said.problems[0].what
+    said = await page.ask(say.Set, address="parts.leef.thickness", text="1 mm")
+    assert isinstance(said, say.Refusal)
+    assert page.state.text == TEXT
+
+
+@on_page
+async def test_a_slider_is_answered_by_the_engine_and_the_newest_value_alone(page, studio):
+    plain = await page.ask(say.Drag, address=THICKNESS, value=0.98e-3)
+    row = amount(page)
+    await page.ask(say.Grip, address=THICKNESS, low=row.low, high=row.high)
+    for _ in range(500):
+        fitted = await page.ask(say.Drag, address=THICKNESS, value=0.98e-3)
+        if fitted.fitted:
+            break
+    assert (plain.fitted, fitted.fitted) == (False, True)
+    found = list(modes(lumped(loads(patch(TEXT, {THICKNESS: 0.98e-3}))), limit=_limit()).platform_frequencies)
+    for told in (plain, fitted):
+        known = [each for each in told.frequencies if each is not None]
+        assert known == pytest.approx(found[: len(known)], rel=1e-6)
+    values = np.linspace(row.low, row.high, 60).tolist()
+    said = [each[1] for each in await asyncio.gather(*(page.begin(say.Drag, address=THICKNESS, value=value) for value in values))]
+    answered = [each for each in said if isinstance(each, say.Frequencies)]
+    assert isinstance(said[-1], say.Frequencies)
+    assert len(answered) < len(values)
+    assert page.state.text == TEXT
+    await page.ask(say.Rest, address=THICKNESS, value=0.9812345678e-3)
+    await page.settle()
+    assert amount(page).text == "0.981235 mm"
+    assert (await page.ask(say.Drag, address=THICKNESS, value=0.99e-3)).fitted
+
+
+def _limit():
+    return float(loads(TEXT).mode_limit or np.inf)
+
+
+@on_page
+async def test_undo_gives_every_byte_back_and_saving_too(page, studio):
+    path = studio.session.stored.path
+    await page.ask(say.Set, address=THICKNESS, text="0.8 mm")
+    await page.ask(say.Set, address=THICKNESS, text="+10 %")
+    await page.settle()
+    assert amount(page).text == "0.88 mm"
+    changed = page.state.text
+    await page.ask(say.Undo)
+    await page.ask(say.Undo)
+    await page.settle()
+    assert (page.state.text, page.state.saved, page.state.undo, page.state.redo) == (TEXT, True, page.state.undo, True)
+    await page.ask(say.Redo)
+    await page.ask(say.Redo)
+    await page.settle()
+    assert page.state.text == changed
+    await page.ask(say.Save, over=False)
+    assert path.read_bytes() == changed.encode()
+    assert "# A guide." in changed
+    assert "# thin" in changed
+
+
+@on_page
+async def test_saving_is_refused_where_the_file_changed_on_disk(page, studio):
+    path = studio.session.stored.path
+    await page.ask(say.Set, address=THICKNESS, text="0.4 mm")
+    other = TEXT.replace("A guide.", "Another hand's.")
+    path.write_text(other, encoding="utf-8")
+    said = await page.ask(say.Save, over=False)
+    assert isinstance(said, say.Refusal)
+    assert said.stale
+    assert path.read_text(encoding="utf-8") == other
+    await page.ask(say.Reload)
+    await page.settle()
+    assert page.state.text == other
+    await page.ask(say.Undo)
+    await page.ask(say.Save, over=False)
+    assert '"0.4 mm"' in path.read_text(encoding="utf-8")
+
+
+@on_page
+async def test_line_ends_and_marks_of_a_file_stay(page, studio):
+    path = studio.session.stored.path
+    raw = b"\xef\xbb\xbf" + TEXT.replace("\n", "\r\n").encode()
+    path.write_bytes(raw)
+    await page.ask(say.Reload)
+    await page.settle()
+    assert page.state.text == TEXT
+    await page.ask(say.Edit, text=TEXT.replace("A guide.", "The guide."), revision=page.state.revision)
+    await page.ask(say.Save, over=False)
+    assert path.read_bytes() == raw.replace(b"A guide.", b"The guide.")
+
+
+@on_page
+async def test_two_windows_see_the_same_and_the_second_one_writes_over_nothing(page, studio):
+    other = await opened(studio)
+    try:
+        await other.settle()
+        assert (other.state.text, other.told[say.Figures]) == (page.state.text, page.told[say.Figures])
+        assert other.told[say.Scene].whole
+        seen = other.state.revision
+        await page.ask(say.Edit, text=TEXT.replace("A guide.", "One."), revision=page.state.revision)
+        said = await other.ask(say.Edit, text=TEXT.replace("A guide.", "Two."), revision=seen)
+        assert isinstance(said, say.Refusal)
+        assert said.stale
+        await other.until(lambda other: "# One." in other.state.text)
+        assert other.state.page == page.told[say.Welcome].page
+        said = await page.ask(say.Edit, text=TEXT.replace("A guide.", "Three."), revision=seen)
+        assert isinstance(said, say.Done), "a window that types on knows what it typed"
+    finally:
+        await other.close()
+
+
+@on_page
+async def test_a_window_that_goes_while_it_is_told_takes_nothing_with_it(page, studio):
+    for _ in range(3):
+        other = await opened(studio)
+        await other.until(lambda other: say.Welcome in other.told)
+        other.connection.transport.abort()
+        await page.ask(say.Set, address=THICKNESS, text="0.4 mm")
+        await page.ask(say.Undo)
+    await page.settle()
+    assert page.state.text == TEXT
+
+
+@on_page
+async def test_a_process_that_dies_is_started_anew(page, studio):
+    for process in studio.session.processes:
+        os.kill(process, signal.SIGKILL if hasattr(signal, "SIGKILL") else signal.SIGTERM)
+    await page.until(lambda page: page.told[say.Engine].state == "ended")
+    await page.ask(say.Edit, text=TEXT.replace("A guide.", "After."), revision=page.state.revision)
+    await page.settle()
+    assert page.state.sound
+    assert len(page.told[say.Figures].modes) > 3
+
+
+@on_page
+async def test_geometry_is_sent_once(page, studio):
+    before = page.bytes
+    await page.ask(say.Edit, text=TEXT.replace("A guide.", "No other stage."), revision=page.state.revision)
+    await page.settle()
+    assert not page.told[say.Scene].whole
+    assert "mesh" not in page.told[say.Scene].data
+    assert page.bytes - before < 200_000
+
+
+@on_page
+async def test_what_is_asked_about_the_stage(page, studio):
+    stage = loads(TEXT)
+    card = await page.ask(say.Part, link="left")
+    assert (card.part_kind, card.shares.keys()) == ("leaf", {"B"})
+    assert np.allclose(np.array(card.compliance.values) @ np.array(card.stiffness.values), np.eye(6), atol=1e-9)
+    place = await page.ask(say.Line, line=card.lines[0])
+    assert "left" in place.links
+    assert isinstance(await page.ask(say.Part, link="lift"), say.Refusal)
+    motion = await page.ask(say.Jog)
+    lost = lost_motion(ideal(stage), lumped(stage))
+    assert np.allclose(np.array(motion.platform.values)[:, [motion.platform.columns.index("B")]], lost.gain.values, rtol=1e-9, atol=1e-15)
+    assert np.allclose(motion.inputs.values, lost.correction.values, rtol=1e-9)
+    small, large = [await page.ask(say.Pose, inputs={"B": value}) for value in (1e-6, 1.0)]
+    assert not small.beyond
+    assert {"B", "S"} <= large.beyond.keys()
+    bound = [motion.rest[name] + 1e-6 * row[0] for name, row in zip(motion.stress.rows, motion.stress.values, strict=True)]
+    assert all(small.stress[name] <= value * (1 + 1e-9) for name, value in zip(motion.stress.rows, bound, strict=True))
+    free = await page.ask(say.Free)
+    assert (free.mobility, [each.name for each in free.free]) == (1, ["x"])
+    assert len(free.locked) == 5
+    assert free.redundant
+    assert isinstance(await page.ask(say.Gaps), say.Clearances)
+
+
+@on_page
+async def test_what_numbers_buy_are_derivatives_of_what_is_shown(page, studio):
+    told = await page.ask(say.Derive)
+    row = next(each for each in told.slopes if each.address == THICKNESS)
+    step = 1e-8
+    low, high = (modes(lumped(loads(patch(TEXT, {THICKNESS: 1e-3 + way})))).frequencies for way in (-step, step))
+    index = page.told[say.Figures].modes.index(next(each for each in page.told[say.Figures].modes if each.platform))
+    assert row.slopes["frequency.platform.1"] == pytest.approx((high[index] - low[index]) / (2 * step), rel=1e-4)
+    sizes = [abs(each.worst or 0.0) for each in told.slopes]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+@on_page
+async def test_responses_are_chosen(page, studio):
+    said = await page.ask(say.Respond, inputs=("ground.x",), outputs=("S",), low=10.0, high=100.0)
+    assert isinstance(said, say.Done)
+    (curve,) = page.told[say.Figures].curves
+    assert (curve.input, curve.output, array(page.told[say.Figures].frequency)[-1]) == ("ground.x", "S", pytest.approx(100.0))
+    assert isinstance(await page.ask(say.Respond, inputs=("nothing",), outputs=("S",), low=None, high=None), say.Refusal)
+    await page.ask(say.Respond, inputs=(), outputs=(), low=None, high=None)
+
+
+@on_page
+async def test_designs_are_pinned_and_compared(page, studio):
+    await page.ask(say.Set, address=THICKNESS, text="0.4 mm")
+    await page.settle()
+    await page.ask(say.Pin, name="A", keep=True)
+    await page.ask(say.Set, address=THICKNESS, text="1.2 mm")
+    await page.settle()
+    told = await page.ask(say.Compare)
+    assert told.designs == ("file", "A", "now")
+    row = [each.name for each in told.figures].index("frequency.platform.1")
+    thin, middle, thick = told.values[row][1], told.values[row][0], told.values[row][2]
+    assert thin < middle < thick
+    await page.ask(say.Recall, name="A")
+    await page.settle()
+    assert amount(page).text == "0.4 mm"
+    await page.ask(say.Pin, name="A", keep=False)
+    assert isinstance(await page.ask(say.Recall, name="A"), say.Refusal)
+
+
+@on_page
+async def test_what_the_palette_inserts_is_a_design_again(page, studio):
+    told = await page.ask(say.Palette)
+    assert {"hinge", "actuator", "gauge", "unit", "copies"} <= {each.group for each in told.snippets}
+    await page.ask(say.Insert, snippet="wire", fields={"name": "thread"})
+    await page.ask(say.Insert, snippet="link", fields={"name": "stay", "part": "thread", "x": "200 mm"})
+    await page.settle()
+    assert page.state.sound, page.state.problems
+    assert "stay" in page.state.links
+    assert isinstance(await page.ask(say.Insert, snippet="wire", fields={"name": "thread"}), say.Refusal)
+    assert isinstance(await page.ask(say.Insert, snippet="wire", fields={"name": 'a"\n[x'}), say.Refusal)
+
+
+def test_strangers_are_refused(studio):
+    server, do = studio
+    host = f"127.0.0.1:{server.port}"
+
+    async def status(path, **headers):
+        try:
+            async with connect(f"ws://{host}{path}", additional_headers=headers, origin=headers.pop("Origin", None), proxy=None):
+                return 101
+        except InvalidStatus as error:
+            return error.response.status_code
+
+    async def closed(first):
+        connection = await connect(f"ws://{host}/socket", origin=f"http://{host}", proxy=None)
+        with contextlib.suppress(ConnectionClosed):
+            await connection.send(first)
+            while True:
+                assert "guide" not in await asyncio.wait_for(connection.recv(), PATIENCE)
+        return connection.close_code
+
+    async def got(path, host_=host):
+        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+        writer.write(f"GET {path} HTTP/1.1\r\nHost: {host_}\r\n\r\n".encode())
+        answer = await asyncio.wait_for(reader.read(), PATIENCE)
+        writer.close()
+        return answer
+
+    async def all_of_it():
+        assert await status("/socket", Origin="http://evil.example") == 403
+        assert await status("/socket") == 403
+        assert await closed(encode(say.Hello("wrong", say.VERSION))) == 1008
+        assert await closed(encode(say.Undo(1))) == 1008
+        assert await closed("x" * 10) == 1008
+        assert await closed("x" * (LARGEST + 1)) == 1009
+        page = await got("/")
+        assert b" 200 " in page.split(b"\r\n")[0]
+        assert b"Content-Security-Policy: default-src 'self'" in page
+        assert server.token.encode() not in page
+        assert b" 403 " in (await got("/", "evil.example")).split(b"\r\n")[0]
+        assert b" 403 " in (await got("/", f"evil.example:{server.port}")).split(b"\r\n")[0]
+        for path in ("/../pyproject.toml", "/protocol.py", "/static/studio.js", "/report/../guide.toml", "/%2e%2e/a", "//studio.js"):
+            assert b" 404 " in (await got(path)).split(b"\r\n")[0], path
+
+    do(all_of_it())
+
+
+@on_page
+async def test_nonsense_of_a_page_is_answered(page, studio):
+    page._answers[0] = asyncio.get_running_loop().create_future()
+    await page.connection.send('{"kind": "nothing"}')
+    said = await asyncio.wait_for(page._answers[0], PATIENCE)
+    assert "not known" in said.problems[0].what
+    assert isinstance(await page.ask(say.Grip, address="nothing", low=0.0, high=1.0), say.Done)
+    said = await page.ask(say.Drag, address="nothing", value=1.0)
+    assert said.problems
+    said = await page.ask(say.Rest, address=THICKNESS, value=-1.0)
+    assert isinstance(said, say.Refusal)
+
+
+@on_page
+async def test_a_job_tells_its_progress_and_opens_its_report(page, studio):
+    await page.ask(say.Set, address=THICKNESS, text="0.4 mm")
+    said = await page.ask(say.Run, command="identify", study=None, record="nowhere.uff", options=())
+    assert isinstance(said, say.Refusal)
+    assert isinstance(await page.ask(say.Run, command="sweep", study=None, record=None, options=()), say.Refusal)
+    assert isinstance(await page.ask(say.Run, command="loop", study=None, record=None, options=("--json=/tmp/x",)), say.Refusal)
+    study = 'format = "flexstage study 1"\n[variables]\nt = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }\n'
+    study += '[responses]\nf = "frequency.platform.1"\n[sweep]\nsampling = "sobol"\ndesigns = 8\n'
+    first = await page.ask(say.Run, command="sweep", study=study, record=None, options=())
+    second = await page.ask(say.Run, command="analyse", study=None, record=None, options=())
+    await page.ask(say.Cancel, job=second.job)
+    await page.until(lambda page: page.told[say.Jobs].jobs[first.job - 1].state in ("done", "failed"))
+    done, cancelled = page.told[say.Jobs].jobs[first.job - 1], page.told[say.Jobs].jobs[second.job - 1]
+    assert (done.state, cancelled.state) == ("done", "cancelled"), done
+    reader, writer = await asyncio.open_connection("127.0.0.1", studio.port)
+    writer.write(f"GET {done.report} HTTP/1.1\r\nHost: 127.0.0.1:{studio.port}\r\n\r\n".encode())
+    answer = await asyncio.wait_for(reader.read(), PATIENCE)
+    writer.close()
+    assert b"Content-Security-Policy: sandbox" in answer
+    assert b"<html" in answer
+    assert not list(studio.session.stored.path.parent.glob(".*")), "files beside the design are gone"
