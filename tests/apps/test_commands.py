@@ -40,7 +40,11 @@ NAMES = [each.name for each in COMMANDS]
 LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop")
 """Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
 
-EXAMPLES = [pytest.param(each.example, marks=pytest.mark.full if each.name in LONG else ()) for each in COMMANDS if each.name != "doctor"]
+EXAMPLES = [
+    pytest.param(each.example, marks=pytest.mark.full if each.name in LONG else ())
+    for each in COMMANDS
+    if each.name not in ("doctor", "studio")
+]
 
 STUDY = """
 format = "flexstage study 1"

@@ -18,6 +18,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 import flexstage
+from flexstage import show
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
 from flexstage.apps.studio.session import Session
@@ -32,12 +33,15 @@ _PATIENCE = 10.0
 _PAGES = 16
 _KEPT = (say.Welcome, say.State, say.Engine, say.Figures, say.Verdicts, say.Reach, say.Cautions, say.Jobs)
 """Of what is pushed the newest alone is worth sending."""
-_STATIC = Path(__file__).with_name("static")
-_FILES: Mapping[str, tuple[str, str]] = {
-    "/": ("studio.html", "text/html; charset=utf-8"),
-    "/studio.js": ("studio.js", "text/javascript; charset=utf-8"),
-    "/studio.css": ("studio.css", "text/css; charset=utf-8"),
-    "/studio-licences.txt": ("studio-licences.txt", "text/plain; charset=utf-8"),
+_STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
+_SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
+_FILES: Mapping[str, tuple[Path, str]] = {
+    "/": (_STUDIO / "studio.html", "text/html; charset=utf-8"),
+    "/studio.js": (_STUDIO / "studio.js", _SCRIPT),
+    "/studio.css": (_STUDIO / "studio.css", "text/css; charset=utf-8"),
+    "/studio-licences.txt": (_STUDIO / "studio-licences.txt", _PLAIN),
+    "/viewer.js": (_SHOW / "viewer.js", _SCRIPT),
+    "/viewer-licences.txt": (_SHOW / "viewer-licences.txt", _PLAIN),
 }
 _POLICY = (
     "default-src 'self'; connect-src 'self' ws://{host}; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
@@ -100,7 +104,7 @@ class Studio:
 
     # --- what is asked by GET ---
 
-    def _request(self, connection: ServerConnection, request: Request) -> Response | None:
+    def _request(self, _: ServerConnection, request: Request) -> Response | None:
         """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
         hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
         if request.headers.get_all("Host") not in [[host] for host in hosts]:
@@ -115,12 +119,13 @@ class Studio:
             return None
         if path.startswith("/report/"):
             return self._report(path.removeprefix("/report/"))
-        name, kind = _FILES.get(path, ("", ""))
-        if not name:
+        if path == "/favicon.ico":
+            return _answer(http.HTTPStatus.NO_CONTENT, b"")
+        if path not in _FILES:
             return _answer(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
-        del connection
+        file, kind = _FILES[path]
         policy = _POLICY.format(host=request.headers["Host"])
-        return _answer(http.HTTPStatus.OK, (_STATIC / name).read_bytes(), kind, policy)
+        return _answer(http.HTTPStatus.OK, file.read_bytes(), kind, policy)
 
     def _report(self, name: str) -> Response:
         found = self.session.jobs.reports.get(name)
