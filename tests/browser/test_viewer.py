@@ -73,6 +73,26 @@ def test_a_mode_moves_the_picture_and_what_is_picked_is_what_is_seen(opened: Ope
     assert factor < 0.0
 
 
+def test_a_leaf_bends_on_the_graphics_card_as_in_python(opened: Open, tmp_path: Path) -> None:
+    """Seen on edge, a quarter and three quarters along it; a leaf that merely leaned would be elsewhere by more than its thickness."""
+    data = parallelogram()
+    page = opened_view(opened, tmp_path, data, "axis x")
+    motion, mesh = next(each for each in data.motions if each.name == "x"), data.mesh
+    factor = float(asked(page, "viewer.setAmplitude(0.2); viewer.setPhase(0.25); viewer.look('top'); return probe.factor;"))
+    share = mesh.stations[mesh.station, 0]
+    moved = mesh.points + factor * mesh.displacement(motion.twists)
+    look = "return given[0].map((point) => probe.partsAt(...probe.project(point)));"
+    for name in ("left", "right"):
+        own = mesh.part == [thing.name for thing in data.things].index(name)
+        first, last = (moved[own & (share == end)].mean(axis=0) for end in (0.0, 1.0))
+        for place in (0.25, 0.75):
+            bent = moved[own & (np.abs(share - place) < 1e-6)].mean(axis=0)
+            leaning = (1.0 - place) * first + place * last
+            found = asked(page, look, [bent.tolist(), leaning.tolist()])
+            assert name in found[0]
+            assert name not in found[1]
+
+
 def test_pixels_move_with_the_phase_and_stand_still_at_rest(opened: Open, tmp_path: Path) -> None:
     page = opened_view(opened, tmp_path, parallelogram(), "axis x")
     grid = "const all = []; for (let x = 30; x < 540; x += 60) for (let y = 30; y < 390; y += 60) all.push(probe.pixel(x, y)); return all;"
@@ -151,6 +171,30 @@ def test_another_design_keeps_the_camera_the_part_and_the_motion(opened: Open, t
     assert asked(page, "return [probe.picked, probe.motion?.name ?? null];") == [None, None]
     assert asked(page, "return viewer.picture().length;") > 1000
     asked(page, "viewer.dispose();")
+
+
+def test_the_wheel_is_the_pages_until_the_picture_has_the_focus(opened: Open, tmp_path: Path) -> None:
+    page = opened_view(opened, tmp_path, parallelogram())
+    page.evaluate("() => document.body.style.height = '3000px'")
+    stage = page.locator(".stage")
+    zoom = asked(page, "return probe.camera.zoom;")
+    stage.hover()
+    page.mouse.wheel(0, 100)
+    for _ in range(100):
+        if page.evaluate("() => scrollY") > 0:
+            break
+        page.wait_for_timeout(20)
+    assert page.evaluate("() => scrollY") > 0
+    assert asked(page, "return probe.camera.zoom;") == zoom
+    page.evaluate("() => scrollTo(0, 0)")
+    stage.click(position={"x": 5, "y": 5})
+    page.mouse.wheel(0, -100)
+    for _ in range(100):
+        if asked(page, "return probe.camera.zoom;") > zoom:
+            break
+        page.wait_for_timeout(20)
+    assert asked(page, "return probe.camera.zoom;") > zoom
+    assert page.evaluate("() => scrollY") == 0
 
 
 def test_without_webgl_the_page_lives_and_its_picture_stays(opened: Open, tmp_path: Path) -> None:

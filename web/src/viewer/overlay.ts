@@ -14,11 +14,24 @@ function make<Name extends keyof HTMLElementTagNameMap>(name: Name, kind: string
   return made;
 }
 
+function fact(name: string, value: string): HTMLElement {
+  const row = make("div", "fact");
+  row.append(make("dt", "", name), make("dd", "", value));
+  return row;
+}
+
+const KEYS: readonly [string, string][] = [
+  ["drag, shift drag, wheel", "turn, move, come nearer"], ["1 to 9, 0", "a mode, rest"], ["space", "hold or play"], ["[  ]", "amplitude"], ["F", "all of it"],
+  ["V", "next side"], ["click, again", "pick, what lies behind"], ["I", "its unit alone"], ["G", "platform translucent"], ["E", "strain energy"],
+  ["S", "section"], ["L", "names"],
+];
+
 export class Overlay {
   readonly element = make("div", "overlay");
   private readonly names = make("div", "names");
   private readonly card = make("div", "card");
   private readonly scale = make("div", "scale");
+  private readonly keys = make("div", "card keys");
   private readonly triad = document.createElementNS(SVG, "svg");
   private readonly axes: [SVGLineElement, SVGTextElement][] = [];
   private labels: [Label, HTMLElement][] = [];
@@ -34,12 +47,19 @@ export class Overlay {
       this.triad.append(line, text);
     }
     this.card.hidden = true;
-    this.element.append(this.names, this.triad, this.scale, this.card);
+    this.keys.hidden = true;
+    this.keys.append(...KEYS.map(([name, value]) => fact(name, value)));
+    this.element.append(this.names, this.triad, this.scale, this.card, this.keys);
   }
 
   replace(data: StageData): void {
     this.labels = data.labels.map((label) => [label, make("span", `name ${label.kind}`, label.text)]);
     this.names.replaceChildren(...this.labels.map(([, element]) => element));
+  }
+
+  toggleKeys(): boolean {
+    this.keys.hidden = !this.keys.hidden;
+    return !this.keys.hidden;
   }
 
   showNames(shown: boolean): void {
@@ -81,11 +101,7 @@ export class Overlay {
   showCard(part: Part | null, more: [string, string][] = []): void {
     this.card.hidden = part === null;
     if (part === null) return;
-    const lines = [...part.facts, ...more].map(([name, value]) => {
-      const row = make("div", "fact");
-      row.append(make("dt", "", name), make("dd", "", value));
-      return row;
-    });
+    const lines = [...part.facts, ...more].map(([name, value]) => fact(name, value));
     const where = part.address + (part.line === undefined ? "" : `, line ${part.line}`);
     this.card.replaceChildren(make("strong", "", part.name), make("span", "what", part.what.replaceAll("_", " ")), ...lines, make("small", "", where));
   }

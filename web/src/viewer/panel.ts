@@ -16,15 +16,17 @@ export interface Acts {
   fit(): void;
   toggle(what: Toggle): boolean;
   turn(): void;
+  cut(place: number): void;
 }
 
-export type Toggle = "platform" | "names" | "energy" | "section" | "unit" | "ghost";
+export type Toggle = "platform" | "names" | "energy" | "section" | "unit" | "keys";
 const TOGGLES: readonly [Toggle, string, string][] = [
   ["platform", "Platform", "Draw the platform translucent, or not (G)"],
   ["names", "Names", "Names of actuators and gauges (L)"],
   ["energy", "Energy", "Paint links by their share of the strain energy (E)"],
   ["section", "Section", "Cut the stage open (S); again: another plane"],
   ["unit", "Unit", "Show the unit of the picked part alone (I)"],
+  ["keys", "?", "What the keys do (?)"],
 ];
 
 function button(text: string, title: string, act: () => void): HTMLButtonElement {
@@ -56,6 +58,7 @@ export class Panel {
   private readonly play: HTMLButtonElement;
   private readonly phase: HTMLInputElement;
   private readonly amplitude: HTMLInputElement;
+  private readonly cutRow: [HTMLLabelElement, HTMLInputElement];
   private readonly toggles = new Map<Toggle, HTMLButtonElement>();
   private readonly buttons = new Map<Motion | null, HTMLButtonElement>();
 
@@ -69,12 +72,14 @@ export class Panel {
     const [phaseName, phase] = slider("Phase", 1, "0.005", (value) => acts.scrub(value));
     const [amplitudeName, amplitude] = slider("Amplitude", AMPLITUDES.length - 1, "1", (value) => acts.amplify(value));
     [this.phase, this.amplitude] = [phase, amplitude];
-    player.append(phaseName, phase, amplitudeName, amplitude, this.words);
+    this.cutRow = slider("Section", 1, "0.01", (value) => acts.cut(value));
+    player.append(phaseName, phase, amplitudeName, amplitude, this.words, ...this.cutRow);
+    this.showCut(null, 0.5);
     this.play = button("Pause", "Play or hold (space)", () => acts.play());
     tools.append(this.play, button("Fit", "Show all (F)", () => acts.fit()), button("View", "Next standard view (V)", () => acts.turn()));
     for (const [what, text, title] of TOGGLES) {
       const made = button(text, title, () => this.press(what));
-      made.setAttribute("aria-pressed", "false");
+      made.setAttribute("aria-pressed", String(what === "platform" || what === "names"));
       this.toggles.set(what, made);
       tools.append(made);
     }
@@ -83,6 +88,13 @@ export class Panel {
 
   press(what: Toggle): void {
     this.toggles.get(what)?.setAttribute("aria-pressed", String(this.acts.toggle(what)));
+  }
+
+  /** The slider of the plane, which stands there while there is one. */
+  showCut(axis: "x" | "y" | "z" | null, place: number): void {
+    for (const each of this.cutRow) each.hidden = axis === null;
+    if (axis !== null) this.cutRow[0].textContent = `Section ${axis}`;
+    this.cutRow[1].value = String(place);
   }
 
   replace(data: StageData): void {

@@ -28,7 +28,8 @@ canvas:active { cursor: grabbing; }
   border: 1px solid var(--line); border-left: 3px solid var(--chosen); font-size: 12px; max-height: 60%; overflow: auto; pointer-events: auto; }
 .card strong { margin-right: 6px; } .what, .card small { color: var(--muted); } .card small { display: block; margin-top: 4px; overflow-wrap: anywhere; }
 .fact { display: flex; justify-content: space-between; gap: 12px; } .fact dt { color: var(--muted); } .fact dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; }
-.card[hidden], .names[hidden], .name[hidden] { display: none; }
+.keys { left: auto; right: 10px; border-left-color: var(--accent); }
+.play [hidden], .card[hidden], .names[hidden], .name[hidden] { display: none; }
 .panel { display: flex; flex-direction: column; min-width: 0; min-height: 0; border-top: 1px solid var(--line); }
 .motions { list-style: none; margin: 0; padding: 4px 0; overflow: auto; max-height: 172px; }
 .motions li.head { padding: 6px 12px 2px; color: var(--muted); font-size: 11px; }

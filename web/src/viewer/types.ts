@@ -108,7 +108,7 @@ export interface Options {
   motion?: MotionKey;
   /** Whether it plays at once; else it stands still at full amplitude. */
   playing?: boolean;
-  /** Whether the list of motions and the buttons are shown; the studio has its own. */
+  /** Whether the list of motions and the buttons are shown; the studio has its own. With them the wheel is the page's until the picture has the focus. */
   controls?: boolean;
   /** Whether keys act on the page (the studio: yes) or only while the viewer has the focus (default). */
   globalKeys?: boolean;

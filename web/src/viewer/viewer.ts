@@ -47,6 +47,7 @@ export class Viewer implements Controller {
   private view = 0;
   private frames = 0;
   private due = 0;
+  private seen = true;
   private energies: Float32Array | null = null;
   private readonly pickers = new Set<(picked: Picked | null) => void>();
   private readonly watchers = new Set<(motion: Motion | null) => void>();
@@ -108,6 +109,7 @@ export class Viewer implements Controller {
       fit: () => this.fit(),
       toggle: (what) => this.toggle(what),
       turn: () => this.turn(),
+      cut: (place) => this.section(this.cutAxis < 0 ? null : (["x", "y", "z"] as const)[this.cutAxis]!, place),
     };
   }
 
@@ -232,6 +234,7 @@ export class Viewer implements Controller {
       this.plane.w = axis === "y" ? -at : at; // what is nearer to the usual eye goes
     }
     this.model.plane = this.plane;
+    this.panel?.showCut(axis, place);
     this.draw();
   }
 
@@ -281,7 +284,7 @@ export class Viewer implements Controller {
       case "energy": this.showEnergy(!this.energy); return this.energy;
       case "section": return this.cut();
       case "unit": this.isolate(this.unit === null ? (this.part(this.picked)?.unit ?? null) : null); return this.unit !== null;
-      case "ghost": return false;
+      case "keys": return this.overlay.toggleKeys();
     }
   }
 
@@ -317,7 +320,7 @@ export class Viewer implements Controller {
     const choices = Object.fromEntries(modes.slice(0, 9).map((motion, at) => [String(at + 1), () => this.choose(motion)]));
     return {
       ...choices, "0": () => this.choose(null), " ": () => this.setPlaying(!this.player.playing), "[": amplify(-1), "]": amplify(1),
-      f: () => this.fit(), v: () => this.turn(), g: press("platform"), l: press("names"), e: press("energy"), s: press("section"), i: press("unit"),
+      "?": press("keys"), f: () => this.fit(), v: () => this.turn(), g: press("platform"), l: press("names"), e: press("energy"), s: press("section"), i: press("unit"),
       escape: () => this.pick([]),
     };
   }
@@ -344,13 +347,28 @@ export class Viewer implements Controller {
       down = null;
     });
     this.on(this.options.globalKeys ? window : this.stage, "keydown", (event) => this.key(event));
+    this.on(canvas, "webglcontextrestored", () => this.paint());
+    if (this.options.controls !== false) this.leaveScrolling(canvas);
+    const near = new IntersectionObserver(([entry]) => { this.seen = entry?.isIntersecting ?? true; if (this.seen) this.draw(); });
+    near.observe(this.stage);
+    this.ends.push(() => near.disconnect());
     this.on(this.dark, "change", () => { this.paintTheme(); this.paint(); });
     const watched = new ResizeObserver(() => this.resize());
     watched.observe(this.stage);
     this.ends.push(() => watched.disconnect());
   }
 
+  /** In a page that scrolls, wheel and vertical strokes of a finger are the page's until the picture has the focus. */
+  private leaveScrolling(canvas: HTMLCanvasElement): void {
+    const { controls } = this.camera;
+    canvas.style.touchAction = "pan-y";
+    controls.enableZoom = false;
+    this.on(this.stage, "focusin", () => { controls.enableZoom = true; });
+    this.on(this.stage, "focusout", () => { controls.enableZoom = false; });
+  }
+
   private on<Name extends keyof WindowEventMap>(target: EventTarget, name: Name, act: (event: WindowEventMap[Name]) => void): void;
+  private on(target: EventTarget, name: "webglcontextrestored", act: () => void): void;
   private on(target: EventTarget, name: string, act: (event: never) => void): void {
     const listener = act as EventListener;
     target.addEventListener(name, listener);
@@ -437,7 +455,7 @@ export class Viewer implements Controller {
     const moves = this.player.step(now);
     this.render();
     if (moves) this.panel?.update(this.player);
-    if (moves && this.element.isConnected) this.draw();
+    if (moves && this.seen && this.element.isConnected) this.draw();
   }
 
   private render(): void {
