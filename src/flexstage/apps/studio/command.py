@@ -11,7 +11,6 @@ import typer
 from flexstage.apps.studio.server import run
 from flexstage.base.finding import refuse
 from flexstage.show.command.options import Design
-from flexstage.show.command.output import announce
 from flexstage.show.command.terminal import print_note
 
 
@@ -29,7 +28,7 @@ def studio(
     """
 
     def started(url: str) -> None:
-        announce(f"Studio of {design}: {url}")
+        print_note(f"Studio of {design}: {url}")
         print_note("Ctrl+C ends it.")
         if browser and not webbrowser.open(url):
             print_note("No browser was found: open the address yourself.")
