@@ -57,6 +57,7 @@ HOMES = {
     "models.nonlinear.equilibrium": "equilibrium",
     "models.nonlinear.critical": "critical",
     "models.nonlinear.linearise": "linearise",
+    "models.nonlinear.path": "path trace",
     "models.finite": "forward_kinematics inverse_kinematics",
     "analysis.statics": "freedom_stiffness statics",
     "analysis.mass_matrix": "mass_matrix",

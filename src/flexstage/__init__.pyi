@@ -140,6 +140,10 @@ from flexstage.models.nonlinear.equilibrium import (
 from flexstage.models.nonlinear.linearise import (
     linearise as linearise,
 )
+from flexstage.models.nonlinear.path import (
+    path as path,
+    trace as trace,
+)
 from flexstage.models.nonlinear.stage import (
     nonlinear as nonlinear,
 )

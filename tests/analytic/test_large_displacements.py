@@ -14,6 +14,7 @@ from flexstage.beams.section import rectangle
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.path import path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
@@ -143,3 +144,39 @@ def test_a_guide_bears_so_much_misalignment():
     fixed = {f"foot.{name}": 0.0 for name in ("x", "y", "z", "rx", "rz")}
     turned = {**fixed, "foot.ry": expected * np.array([1.0 - 1e-4, 1.0 + 1e-4])}
     assert (unstable_motions(equilibrium(nonlinear(stage(leaf, bodies, links)), hold=turned)) > 0).tolist() == [False, True]
+
+
+def vee() -> Nonlinear:
+    """A platform between two pairs of leaves that rise towards it by 2 degrees."""
+    length, slope = 0.05, np.deg2rad(2.0)
+    leaf = Leaf("soft", length, 0.5e-3, 0.02)
+    links = {}
+    for name, side, height in (("a", -1.0, 0.01), ("b", 1.0, 0.01), ("c", -1.0, -0.01), ("d", 1.0, -0.01)):
+        along = np.array([-side * np.cos(slope), np.sin(slope), 0.0])
+        middle = np.array([side * (0.005 + length * np.cos(slope)), height, 0.0]) + 0.5 * length * along
+        links[name] = Link(("ground", "platform"), "leaf", tuple(middle), tuple(along), bends=Z)
+    place = body(0.0, float(length * np.sin(slope)), 0.0)
+    return nonlinear(stage(leaf, {"platform": place}, links, Material(young=200e9, poisson=0.3, density=0.0)))
+
+
+def test_a_shallow_vee_snaps_through():
+    """By arc length the load rises to a limit, where the count of unstable motions has it too, and turns negative: it is bistable."""
+    model, push = vee(), {"platform.fy": -1.0}
+    found = trace(model, push, step=0.002, points=24)
+    top = next(event for event in found.events if event.kind is Kind.LIMIT)
+    curve = np.polyfit([-1.0, 0.0, 1.0], found.values[top.before - 1 : top.before + 2], 2)
+    limit = curve[2] - curve[1] ** 2 / (4.0 * curve[0])
+    known = critical(model, push)
+    assert known.kind is Kind.LIMIT
+    assert known.factor == pytest.approx(limit, rel=1e-3)
+    assert found.values.min() < 0.0 < found.values[-1]
+    assert found.motions[-1] == 0
+    assert found.state.displacement()[-1, 1] < -1.1 * 0.05 * np.sin(np.deg2rad(2.0))
+
+
+def test_a_drive_is_followed_where_no_load_could_go():
+    """The same states by holding the platform instead: beyond the limit its force falls."""
+    found = path(vee(), "platform.y", -np.linspace(0.0, 1e-3, 6))
+    traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
+    assert found.state.converged.all()
+    assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)

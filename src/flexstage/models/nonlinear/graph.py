@@ -202,6 +202,20 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stif
         stiffness[:, start + 3 : start + 6, start + 3 : start + 6] += turning[:, place]
 
 
+def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
+    """What loads exert (b, n) on bodies and locked freedoms at a pose, to which they are proportional."""
+    cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
+    found = []
+    for inputs in (0.0 * rate.inputs, rate.inputs):
+        residual, stiffness = np.zeros((cases, size)), np.zeros((cases, size, size))
+        loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
+        _add_hinges(model, pose, loads, residual, stiffness)
+        _add_loads(model, pose, loads, residual, stiffness)
+        found.append(residual)
+    kept = np.r_[: model.freedoms, model.freedoms + 6 : size]
+    return (found[0] - found[1])[:, kept]
+
+
 def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Array, start: int) -> None:
     for place in range(len(hold.body)):
         first = 6 * hold.body[place]
@@ -225,19 +239,21 @@ def _scatter(residual: Array, stiffness: Array, joins: tuple[Array, Array], forc
                 stiffness[:, rows, columns] += own[link, :, 6 * row : 6 * row + 6, 6 * column : 6 * column + 6]
 
 
-def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> Pose:
-    """The pose after a share (b,) of the step (b, n), the unknowns inside flexures following at once."""
+def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> tuple[Pose, Array]:
+    """The pose after a share (b,) of the step (b, n), the unknowns inside flexures following at once; and their largest step (b,)."""
     cases = len(pose.position)
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)
-    strain, wrench = [], []
+    strain, wrench, largest = [], [], np.zeros(cases)
     for number, group in enumerate(model.flexures):
         inner = follow(group, bent[number], moved) * share[:, None]
         count = group.law.form.shape[-1]
         strain.append(pose.strain[number] + inner[..., :count])
         wrench.append(pose.wrench[number] + inner[..., count:])
+        largest = np.maximum(largest, np.max(np.abs(inner[..., :count]), axis=(0, 2)))
     moved = moved * share[:, None, None]
     turn = exponential(moved[..., 3:]) @ pose.turn
-    return Pose(pose.position + moved[..., :3], turn, tuple(strain), tuple(wrench), pose.held + share[:, None] * step[:, model.freedoms :])
+    held = pose.held + share[:, None] * step[:, model.freedoms :]
+    return Pose(pose.position + moved[..., :3], turn, tuple(strain), tuple(wrench), held), largest
 
 
 def follow(group: Flexures, bent: Bent, moved: Array) -> Array:

@@ -19,7 +19,7 @@ _CHUNK = 512
 
 @dataclass(frozen=True)
 class Effort:
-    """When a search ends: steps below `step` (lengths over the flexures', radians), gaps below `gap`; after so many iterations.
+    """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
 
     `limit` is the largest step. What fails is loaded in 2, 4, ... 2^`halvings` steps.
     """
@@ -48,7 +48,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort:
     """The equilibrium of every case, the whole load at once; what fails so is loaded in halved steps, up to 64."""
     cases = np.arange(len(loads.inputs))
     chunks = [_search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
-    found = _join(chunks)
+    found = join(chunks)
     return _by_halves(model, start, loads, hold, (effort, found))
 
 
@@ -56,7 +56,8 @@ def _split(cases: Array) -> list[Array]:
     return np.array_split(cases, max(1, -(-len(cases) // _CHUNK)))
 
 
-def _join(parts: list[Found]) -> Found:
+def join(parts: list[Found]) -> Found:
+    """What was found in several batches as one."""
     if len(parts) == 1:
         return parts[0]
     poses = [part.pose for part in parts]
@@ -127,7 +128,8 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effo
     step = solve(system.stiffness, -system.residual[..., None])[..., 0]
     size = motion(model, step)
     share = np.minimum(1.0, effort.limit / np.maximum(size, effort.limit))
-    return advance(model, pose, system.bent, step, share), size, lack(model, system)
+    after, inside = advance(model, pose, system.bent, step, share)
+    return after, np.maximum(size, inside), lack(model, system)
 
 
 def motion(model: Nonlinear, step: Array) -> Array:
