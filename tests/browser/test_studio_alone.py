@@ -16,11 +16,8 @@ from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
 
 HOST = "http://127.0.0.1:9"
-FILES = {
-    name: SRC / folder / name
-    for folder, names in {"apps/studio/static": ("studio.html", "studio.js", "studio.css"), "show/static": ("viewer.js",)}.items()
-    for name in names
-}
+OWN = SRC / "apps" / "studio" / "static"
+FILES = {path.name: path for path in (OWN / "studio.html", OWN / "studio.js", OWN / "studio.css", SRC / "show" / "static" / "viewer.js")}
 KINDS = {".html": "text/html", ".js": "text/javascript", ".css": "text/css"}
 TEXT = 'format = "flexstage 1"\nname = "one leaf"\n\n[parts.leaf]\nthickness = "0.5 mm"\n'
 THICKNESS = "parts.leaf.thickness"
@@ -55,7 +52,7 @@ class Server:
 
     def answer(self, said: dict[str, Any]) -> None:
         refusal = self.refuses.get(said["kind"])
-        self.say(Done(said["id"]) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
+        self.say(Done(said["id"], 1) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
 
     def say(self, *messages: Any) -> None:
         assert self.socket is not None
@@ -70,28 +67,10 @@ def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Pro
     amount = Amount(THICKNESS, "parts.leaf", value, f"{1e3 * value:g} mm", "m", "mm", 1e-3, "length", 2e-4, 1e-3, 5e-4, None, 5, "")
     saved = text == TEXT
     return State(
-        revision,
-        page,
-        "leaf.toml",
-        "one leaf",
-        text,
-        "",
-        saved,
-        not problems,
-        0,
-        True,
-        False,
-        problems,
-        (),
-        (amount,),
-        (),
-        (),
-        (),
-        (),
-        (),
-        {"leaf": 4},
-        (),
-    )
+        revision, page, "leaf.toml", "one leaf", text, digest="", saved=saved, sound=not problems, changed=0, undo=True, redo=False,
+        problems=problems, cautions=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
+        links={"leaf": 4}, pins=(),
+    )  # fmt: skip
 
 
 def verdicts(revision: int) -> Verdicts:
@@ -127,7 +106,11 @@ def until(page: Page, holds: Any) -> None:
 
 
 def drag(page: Page, *places: int) -> None:
-    move = "([address, at]) => { const s = document.querySelector(`[data-address='${address}'] input[type=range]`); s.value = String(at); s.dispatchEvent(new Event('input')); }"
+    move = """([address, at]) => {
+        const slider = document.querySelector(`[data-address='${address}'] input[type=range]`);
+        slider.value = String(at);
+        slider.dispatchEvent(new Event('input'));
+    }"""
     for each in places:
         page.evaluate(move, [THICKNESS, each])
 

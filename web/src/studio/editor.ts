@@ -79,6 +79,7 @@ export class Editor {
     const root = host.attachShadow({ mode: "open" });
     this.view = new EditorView({ parent: root as unknown as HTMLElement, root, state: this.fresh() });
     studio.state.watch((state) => state && this.take(state));
+    studio.connection.on("cautions", (said) => this.warn(said.revision, said.cautions));
     studio.line.watch(({ line, focus }) => this.goto(line, focus));
   }
 
@@ -147,6 +148,11 @@ export class Editor {
     badge.className = state.sound ? "pill good" : "pill poor";
     fill(badge, state.sound ? "sound" : `${state.problems.length} to mend; figures are the last sound design's`);
     document.body.classList.toggle("unsound", !state.sound);
+  }
+
+  private warn(revision: number, cautions: Problem[]): void {
+    const { value: state } = this.studio.state;
+    if (state?.revision === revision && state.sound) this.mark({ ...state, cautions });
   }
 
   private diagnostic(each: Problem, severity: Diagnostic["severity"]): Diagnostic {
