@@ -352,13 +352,6 @@ def test_strangers_are_refused(studio):
                 assert "guide" not in await asyncio.wait_for(connection.recv(), PATIENCE)
         return connection.close_code
 
-    async def got(path, host_=host):
-        reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
-        writer.write(f"GET {path} HTTP/1.1\r\nHost: {host_}\r\n\r\n".encode())
-        answer = await asyncio.wait_for(reader.read(), PATIENCE)
-        writer.close()
-        return answer
-
     async def all_of_it():
         assert await status("/socket", Origin="http://evil.example") == 403
         assert await status("/socket") == 403
@@ -366,14 +359,14 @@ def test_strangers_are_refused(studio):
         assert await closed(encode(say.Undo(1))) == 1008
         assert await closed("x" * 10) == 1008
         assert await closed("x" * (LARGEST + 1)) == 1009
-        page = await got("/")
+        page = await _got(server.port, "/")
         assert b" 200 " in page.split(b"\r\n")[0]
         assert b"Content-Security-Policy: default-src 'self'" in page
         assert server.token.encode() not in page
-        assert b" 403 " in (await got("/", "evil.example")).split(b"\r\n")[0]
-        assert b" 403 " in (await got("/", f"evil.example:{server.port}")).split(b"\r\n")[0]
+        assert b" 403 " in (await _got(server.port, "/", "evil.example")).split(b"\r\n")[0]
+        assert b" 403 " in (await _got(server.port, "/", f"evil.example:{server.port}")).split(b"\r\n")[0]
         for path in ("/../pyproject.toml", "/protocol.py", "/static/studio.js", "/report/../guide.toml", "/%2e%2e/a", "//studio.js"):
-            assert b" 404 " in (await got(path)).split(b"\r\n")[0], path
+            assert b" 404 " in (await _got(server.port, path)).split(b"\r\n")[0], path
 
     do(all_of_it())
 
@@ -391,25 +384,103 @@ async def test_nonsense_of_a_page_is_answered(page, studio):
     assert isinstance(said, say.Refusal)
 
 
+STUDY = """format = "flexstage study 1"
+[variables]
+t = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
+[responses]
+f = "frequency.platform.1"
+[sweep]
+sampling = "sobol"
+designs = 8
+"""
+PROGRAM = """
+import pathlib, sys, time
+words = sys.argv[1:]
+study = pathlib.Path(words[1]).read_text()
+design = next(line for line in study.splitlines() if line.startswith("design")).split('"')[1]
+assert '"0.8 mm"' in pathlib.Path(words[1]).with_name(design).read_text()
+print("progress 0.2500 3.0 a quarter", file=sys.stderr, flush=True)
+print("said", flush=True)
+while "--wait" in words:
+    time.sleep(0.1)
+pathlib.Path(words[words.index("--report") + 1]).write_text("<html>swept</html>")
+"""
+
+
 @on_page
 async def test_a_job_tells_its_progress_and_opens_its_report(page, studio):
-    await page.ask(say.Set, address=THICKNESS, text="0.4 mm")
-    said = await page.ask(say.Run, command="identify", study=None, record="nowhere.uff", options=())
-    assert isinstance(said, say.Refusal)
-    assert isinstance(await page.ask(say.Run, command="sweep", study=None, record=None, options=()), say.Refusal)
-    assert isinstance(await page.ask(say.Run, command="loop", study=None, record=None, options=("--json=/tmp/x",)), say.Refusal)
-    study = 'format = "flexstage study 1"\n[variables]\nt = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }\n'
-    study += '[responses]\nf = "frequency.platform.1"\n[sweep]\nsampling = "sobol"\ndesigns = 8\n'
-    first = await page.ask(say.Run, command="sweep", study=study, record=None, options=())
-    second = await page.ask(say.Run, command="analyse", study=None, record=None, options=())
-    await page.ask(say.Cancel, job=second.job)
-    await page.until(lambda page: page.told[say.Jobs].jobs[first.job - 1].state in ("done", "failed"))
-    done, cancelled = page.told[say.Jobs].jobs[first.job - 1], page.told[say.Jobs].jobs[second.job - 1]
-    assert (done.state, cancelled.state) == ("done", "cancelled"), done
-    reader, writer = await asyncio.open_connection("127.0.0.1", studio.port)
-    writer.write(f"GET {done.report} HTTP/1.1\r\nHost: 127.0.0.1:{studio.port}\r\n\r\n".encode())
+    """A program in the place of the command line, which takes what that takes."""
+    jobs = studio.session.jobs
+    jobs.program, real = ("-c", PROGRAM), jobs.program
+    try:
+        await page.ask(say.Set, address=THICKNESS, text="0.8 mm")
+        first = await page.ask(say.Run, command="sweep", study=STUDY, record=None, options=())
+        second = await page.ask(say.Run, command="sweep", study=STUDY, record=None, options=("--wait",))
+        third = await page.ask(say.Run, command="sweep", study=STUDY, record=None, options=())
+        await page.ask(say.Cancel, job=third.job)
+        await page.until(lambda page: _job(page, second).state == "runs" and _job(page, second).fraction)
+        assert (_job(page, second).text, _job(page, second).left) == ("a quarter", 3.0)
+        await page.ask(say.Cancel, job=second.job)
+        await page.until(lambda page: _job(page, first).report)
+        assert [_job(page, each).state for each in (first, second, third)] == ["done", "cancelled", "cancelled"]
+        assert _job(page, first).said == ("said",)
+        answer = await _got(studio.port, _job(page, first).report)
+        assert b"Content-Security-Policy: sandbox" in answer
+        assert answer.endswith(b"<html>swept</html>")
+        for _ in range(100):  # a job that is ended cleans up by itself
+            if not list(jobs_folder(studio).glob(".*studio*")):
+                break
+            await asyncio.sleep(0.05)
+        assert not list(jobs_folder(studio).glob(".*studio*"))
+    finally:
+        jobs.program = real
+
+
+def _job(page, said):
+    return page.told[say.Jobs].jobs[said.job - 1]
+
+
+def jobs_folder(studio):
+    return studio.session.stored.path.parent
+
+
+@on_page
+async def test_jobs_that_cannot_be_are_refused(page, studio):
+    for fields in (
+        {"command": "identify", "study": None, "record": "nowhere.uff", "options": ()},
+        {"command": "sweep", "study": None, "record": None, "options": ()},
+        {"command": "loop", "study": None, "record": None, "options": ("--json=/tmp/x",)},
+    ):
+        assert isinstance(await page.ask(say.Run, **fields), say.Refusal)
+    assert isinstance(await page.ask(say.Cancel, job=99), say.Refusal)
+
+
+@pytest.mark.full
+@on_page
+async def test_a_sweep_of_the_text_that_is_not_saved(page, studio):
+    await page.ask(say.Set, address=THICKNESS, text="0.8 mm")
+    said = await page.ask(say.Run, command="sweep", study=STUDY, record=None, options=())
+    await page.until(lambda page: say.Jobs in page.told and _job(page, said).state in ("done", "failed"))
+    assert _job(page, said).state == "done", _job(page, said)
+    assert b"<html" in await _got(studio.port, _job(page, said).report)
+
+
+@on_page
+async def test_what_takes_long_is_told_before(page, studio):
+    studio.session._took["figures"] = (4.0, len(page.state.links))
+    heard = []
+    tell, studio.session._tell = studio.session._tell, lambda message: (heard.append(message), tell(message))
+    await page.ask(say.Set, address=THICKNESS, text="0.8 mm")
+    await page.settle()
+    studio.session._tell = tell
+    (told,) = (each for each in heard if isinstance(each, say.Engine) and each.state == "computes")
+    assert told.seconds == 4.0
+    assert heard.index(told) < next(place for place, each in enumerate(heard) if isinstance(each, say.Figures))
+
+
+async def _got(port, path, host=None):
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    writer.write(f"GET {path} HTTP/1.1\r\nHost: {host or f'127.0.0.1:{port}'}\r\n\r\n".encode())
     answer = await asyncio.wait_for(reader.read(), PATIENCE)
     writer.close()
-    assert b"Content-Security-Policy: sandbox" in answer
-    assert b"<html" in answer
-    assert not list(studio.session.stored.path.parent.glob(".*")), "files beside the design are gone"
+    return answer

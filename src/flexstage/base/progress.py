@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
+"""Variable of the environment by which a program asks a command for lines, and the word that each of them begins with."""
+
 
 @dataclass(frozen=True)
 class Step:

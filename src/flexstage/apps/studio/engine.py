@@ -10,6 +10,7 @@ from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
+from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.jobs import Line
 from flexstage.base.threads import one_thread
@@ -17,7 +18,6 @@ from flexstage.base.threads import one_thread
 _HERE = "flexstage.apps.studio"
 TASKS: Mapping[str, str] = {
     "read": "reading:read",
-    "problems": "reading:problems_of",
     "write": "writing:write",
     "insert": "palette:insert",
     "place": "questions:place",
@@ -40,12 +40,32 @@ TASKS: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
+class Reading:
+    """What a text says: problems alone, or a design with its numbers, channels and links; `values` are its numbers by address."""
+
+    problems: tuple[Problem, ...]
+    name: str = ""
+    amounts: tuple[Amount, ...] = ()
+    actuators: tuple[Channel, ...] = ()
+    axes: tuple[Channel, ...] = ()
+    gauges: tuple[Channel, ...] = ()
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    links: Mapping[str, int | None] | None = None
+
+
+@dataclass(frozen=True)
 class Outcome:
-    """What came of a task: its value, or the findings that refused it; processor time spent [s]."""
+    """What came of a task: its value, or the problems that refused it; processor time spent [s]."""
 
     value: Any
-    findings: tuple[Finding, ...]
+    problems: tuple[Problem, ...]
     seconds: float
+
+
+def problem(finding: Finding) -> Problem:
+    """A finding that is about no place in the text."""
+    return Problem(finding.where, finding.what, finding.advice)
 
 
 @one_thread
@@ -53,16 +73,23 @@ def work(_: Line, task: str, *arguments: Any) -> Outcome:
     """Do a task; what goes wrong is told, whatever it is."""
     start = time.process_time()
     try:
-        value, findings = _function(task)(*arguments), ()
+        value, problems = _function(task)(*arguments), ()
     except DesignError as error:
-        value, findings = None, error.findings
+        value, problems = None, _located(error, arguments)
     except MemoryError:
-        value, findings = None, (Finding(task, "there is not enough memory for it", "Close other programs, or make the design smaller"),)
+        value, problems = None, (Problem(task, "there is not enough memory for it", "Close other programs, or make the design smaller"),)
     except Exception as error:  # noqa: BLE001 (one question that fails is no reason to lose the others)
         traceback.print_exc()
         what = f"flexstage failed at it, and that is its fault, not your design's: {type(error).__name__}: {error}"
-        value, findings = None, (Finding(task, what, "Save the design, and report it with this message"),)
-    return Outcome(value, findings, time.process_time() - start)
+        value, problems = None, (Problem(task, what, "Save the design, and report it with this message"),)
+    return Outcome(value, problems, time.process_time() - start)
+
+
+def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, ...]:
+    """What is wrong, with its place in the file that most tasks take second."""
+    from flexstage.apps.studio.reading import spots
+
+    return spots(error.findings, str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))
 
 
 @lru_cache

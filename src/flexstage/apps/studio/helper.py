@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
-from flexstage.apps.studio.engine import Outcome, work
-from flexstage.base.finding import Finding
+from flexstage.apps.studio.engine import Outcome, problem, work
+from flexstage.apps.studio.protocol import Problem
 from flexstage.base.jobs import Heard, Word, Worker
 
 _AGAIN = "The process that computes is started anew; ask again, and report it if this happens twice"
@@ -113,9 +113,9 @@ class Helper:
             await asyncio.to_thread(self._worker.ask, *task.call)
             return await done
         except EOFError as error:
-            return Outcome(None, (Finding(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
+            return Outcome(None, (Problem(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
         except OSError as error:
-            return Outcome(None, (Finding(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
+            return Outcome(None, (Problem(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
         finally:
             self._now = None
 
@@ -136,7 +136,7 @@ class Helper:
             if waits is not None and not waits.done():
                 waits.set_exception(EOFError(words))
         elif waits is not None and not waits.done():
-            waits.set_result(value if word is Word.DONE else Outcome(None, getattr(value, "findings", ()), 0.0))
+            waits.set_result(value if word is Word.DONE else Outcome(None, tuple(map(problem, getattr(value, "findings", ()))), 0.0))
 
 
 def _pass_on(heard: Heard, loop: asyncio.AbstractEventLoop, hear: Callable[[Worker, Word, Any], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -9,10 +10,11 @@ from pathlib import Path
 
 from flexstage.base.finding import refuse
 from flexstage.base.store import write
-from flexstage.mechanism.store.file import LARGEST, read_text
 
 _MOST = 200
 """Snapshots that are kept."""
+_USUAL = 5_000_000
+"""Bytes up to which a file is read here; what is larger, and all that cannot be read, is told by the reader of designs."""
 _MARK = b"\xef\xbb\xbf"
 
 
@@ -29,8 +31,7 @@ class Stored:
     @classmethod
     def read(cls, path: Path) -> Stored:
         """What is on disk now; raises `DesignError` where it cannot be read."""
-        text = read_text(path)
-        raw = path.read_bytes()
+        raw, text = _read(path)
         mark = _MARK if raw.startswith(_MARK) else b""
         ending = "\r\n" if "\r\n" in text and text.count("\n") == text.count("\r\n") else "\n"
         return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
@@ -61,8 +62,6 @@ class History:
         """With another text; itself where that is the same."""
         if text == self.text:
             return self
-        if len(text.encode()) > LARGEST:
-            raise refuse("text", f"it is larger than {LARGEST / 1e6:g} MB, which no design is", "Take out what is no design")
         past = (*self.past, self.text)[-_MOST:]
         return replace(self, text=text, past=past, future=(), revision=self.revision + 1, page=page)
 
@@ -91,6 +90,17 @@ class History:
         """Refuse an edit of a page that has not seen what another page wrote."""
         if revision < self.revision and page != self.page:
             raise refuse("text", "another window changed it first", "Its text is shown now; make the change again")
+
+
+def _read(path: Path) -> tuple[bytes, str]:
+    """A file's bytes and text; raises `DesignError` where there is none."""
+    with contextlib.suppress(OSError, ValueError):
+        if path.is_file() and path.stat().st_size <= _USUAL:
+            raw = path.read_bytes()
+            return raw, raw.decode("utf-8-sig")
+    from flexstage.mechanism.store.file import read_text  # takes long to import
+
+    return path.read_bytes(), read_text(path)
 
 
 def _digest(raw: bytes) -> str:

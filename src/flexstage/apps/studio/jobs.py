@@ -12,15 +12,12 @@ from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import tomlkit
-from tomlkit.exceptions import TOMLKitError
-
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.jobs import environment
+from flexstage.base.progress import LINE, LINES
 from flexstage.base.store import make_temporary_folder, write
-from flexstage.show.command.progress import LINE, LINES
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx")
 _STUDIES = ("sweep", "optimise")
@@ -48,6 +45,8 @@ class Jobs:
 
     def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
         self._path, self._tell, self._optimum = path, tell, optimum
+        self.program: tuple[str, ...] = ("-P", "-m", "flexstage")
+        """What Python runs; then the command and its arguments."""
         self._jobs: dict[int, _Job] = {}
         self._folder: Path | None = None
         self._turn = asyncio.Lock()
@@ -123,7 +122,7 @@ class Jobs:
         arguments = [*self._arguments(job), *job.request.options, "--report", str(report)]
         self._set(job, replace(job.state, state="runs", text="starts"))
         job.process = process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-P", "-m", "flexstage", job.request.command, *arguments),
+            *(sys.executable, *self.program, job.request.command, *arguments),
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
@@ -205,6 +204,9 @@ def _kill(process: asyncio.subprocess.Process) -> None:
 
 def _study(text: str, design: Path) -> str:
     """A study's text about that design."""
+    import tomlkit  # takes long to import
+    from tomlkit.exceptions import TOMLKitError
+
     try:
         document = tomlkit.parse(text)
     except TOMLKitError as error:

@@ -9,9 +9,6 @@ from importlib import resources
 
 from flexstage.apps.studio.protocol import Snippet
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
-from flexstage.mechanism.store.lines import line_numbers
-
-_HEAD = "[", "]"
 
 
 @lru_cache(maxsize=1)
@@ -52,6 +49,8 @@ def _fill(text: str, fields: Mapping[str, str]) -> str:
 
 
 def _require_free(text: str, filled: str, snippet: str) -> None:
+    from flexstage.mechanism.store.lines import line_numbers  # takes long to import
+
     taken = line_numbers(text)
     heads = [head for head, _ in _tables(filled)]
     entries = [key for key in line_numbers(filled) if key not in heads]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.apps.studio.engine import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import first_design
@@ -31,21 +31,6 @@ _REACH = 0.5
 """How far a slider goes either way, over the value."""
 _FROM_NOUGHT = 10.0
 """How far it goes from nought, in the unit that is shown."""
-
-
-@dataclass(frozen=True)
-class Reading:
-    """What a text says: problems alone, or a design with its numbers, channels and links; `values` are its numbers by address."""
-
-    problems: tuple[Problem, ...]
-    name: str = ""
-    amounts: tuple[Amount, ...] = ()
-    actuators: tuple[Channel, ...] = ()
-    axes: tuple[Channel, ...] = ()
-    gauges: tuple[Channel, ...] = ()
-    inputs: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
-    links: Mapping[str, int | None] | None = None
 
 
 @lru_cache(maxsize=8)
@@ -78,6 +63,13 @@ def problems_of(findings: Iterable[Finding], text: str, file: str) -> tuple[Prob
     """Findings with line and column in the text."""
     rows, lines = text.splitlines(), line_numbers(text)
     return tuple(_problem(each, rows, lines, Path(file).name) for each in findings)
+
+
+def spots(findings: Iterable[Finding], file: str) -> tuple[Problem, ...]:
+    """Findings with line and column as far as they say them."""
+    where = Path(file).name
+    found = ((spot_of(each, where), each) for each in findings)
+    return tuple(Problem(spot.address or where, each.what, each.advice, spot.line, spot.column) for spot, each in found)
 
 
 def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int | None]:

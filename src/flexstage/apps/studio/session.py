@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.engine import Outcome
+from flexstage.apps.studio.engine import Outcome, Reading, problem
 from flexstage.apps.studio.helper import Helper, Urgency
 from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs
 from flexstage.apps.studio.palette import snippets
-from flexstage.apps.studio.reading import Reading
-from flexstage.base.finding import DesignError, Finding, refuse
-from flexstage.mechanism.store.lines import spot_of
+from flexstage.base.finding import DesignError, refuse
 
 _QUIET = 0.3
 """A computation of less time is not announced [s]."""
@@ -33,6 +31,14 @@ _STAGES: tuple[tuple[str, str], ...] = (
 """What is computed of a design, in this order, and what it is called."""
 
 Tell = Callable[[say.Said], None]
+
+
+class RefusedError(Exception):
+    """What a process refused, with its problems."""
+
+    def __init__(self, problems: tuple[say.Problem, ...]) -> None:
+        super().__init__(problems)
+        self.problems = problems
 
 
 class Session:
@@ -58,7 +64,7 @@ class Session:
         self._computed = 0
         self._cautions: tuple[say.Problem, ...] = ()
         self._scene: Mapping[str, Any] = {}
-        self._took: dict[str, float] = {}
+        self._took: dict[str, tuple[float, int]] = {}
         self._work: set[asyncio.Task[Any]] = set()
         self._changing = asyncio.Lock()
         self.jobs = Jobs(stored.path, self._push, self._keep_optimum)
@@ -98,14 +104,16 @@ class Session:
         """Do what a page asks, and tell it; refusals too."""
         try:
             await self._answers[type(request)](self, request, page, tell)
+        except RefusedError as error:
+            tell(say.Refusal(request.id, error.problems))
         except DesignError as error:
-            tell(self._refusal(request.id, error.findings))
+            tell(say.Refusal(request.id, tuple(map(problem, error.findings))))
 
     async def _edit(self, request: say.Edit, page: int, tell: Tell) -> None:
         try:
             self.history.require_known(request.revision, page)
         except DesignError as error:
-            tell(self._refusal(request.id, error.findings, stale=True))
+            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=True))
             return
         self._take(self.history.change(request.text.replace("\r\n", "\n"), page))
         tell(say.Done(request.id, self.history.revision))
@@ -138,7 +146,7 @@ class Session:
         try:
             self.stored = self.stored.write(self.history.text, over=request.over)
         except DesignError as error:
-            tell(self._refusal(request.id, error.findings, stale=True))
+            tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=True))
             return
         tell(say.Done(request.id, self.history.revision))
         await self._read()
@@ -183,7 +191,7 @@ class Session:
         self._push(say.Engine("fits", f"A plan for {request.address} is fitted", None))
         call = ("fit", wanted.text, self._file, wanted.address, wanted.low, wanted.high)
         outcome = await self._quick.ask(*call, wanted=lambda: self._wanted is wanted)
-        if outcome is not None and not outcome.findings and self._wanted is wanted:
+        if outcome is not None and not outcome.problems and self._wanted is wanted:
             self._plan = wanted
         self._push(say.Engine("ready", "", None))
 
@@ -197,8 +205,8 @@ class Session:
         else:
             helper, text, ends = self._model, self._design, None
         outcome = await helper.ask("drag", text, self._file, request.address, request.value, ends)
-        found, findings = (outcome.value or (), outcome.findings) if outcome else ((), ())
-        return say.Frequencies(request.id, request.address, request.value, ends is not None, found, self._problems(findings))
+        found, problems = (outcome.value or (), outcome.problems) if outcome else ((), ())
+        return say.Frequencies(request.id, request.address, request.value, ends is not None, found, problems)
 
     async def _take_pose(self, request: say.Pose, _: int, tell: Tell) -> None:
         await self._poses.put(request, tell, lambda each: self._question("posed", each.id, each.inputs))
@@ -231,7 +239,7 @@ class Session:
         if outcome is None:
             tell(say.Done(request.id, self.history.revision))
         else:
-            tell(self._refusal(request.id, outcome.findings) if outcome.findings else outcome.value)
+            tell(say.Refusal(request.id, outcome.problems) if outcome.problems else outcome.value)
 
     async def _free(self, request: say.Free, _: int, tell: Tell) -> None:
         tell(await self._question("freedoms", request.id, self._computed))
@@ -292,7 +300,7 @@ class Session:
         outcome = await self._quick.ask(*call, wanted=lambda: self.history.revision == revision)
         if outcome is None or self.history.revision != revision:
             return
-        self.problems = self._problems(outcome.findings) if outcome.value is None else outcome.value.problems
+        self.problems = outcome.problems if outcome.value is None else outcome.value.problems
         if outcome.value is not None and not self.problems:
             self.reading, self.sound, self._computed = outcome.value, text, revision
         self._push_state()
@@ -311,8 +319,8 @@ class Session:
             outcome = await self._announced(called, stage, arguments, lambda: self.sound == text and self._computed == revision)
             if outcome is None:
                 return
-            if outcome.findings:
-                self._push(say.Engine("ready", str(outcome.findings[0]), None))
+            if outcome.problems:
+                self._push(say.Engine("ready", f"{called}: {outcome.problems[0].what}", None))
             elif stage == "scene":
                 self._push_scene(revision, outcome.value)
             else:
@@ -326,14 +334,13 @@ class Session:
 
     async def _announced(self, called: str, stage: str, arguments: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
         """A stage computed; told as it begins where it takes long."""
-        size = len((self.reading.links if self.reading else None) or ())
-        known = self._took.get(stage)
-        left = known if known is not None else _FIRST.get(stage, 0.1) * (size / 50.0) ** 2
+        links = len((self.reading.links if self.reading else None) or ())
+        left = expected(stage, links, self._took)
         if left > _QUIET:
             self._push(say.Engine("computes", called, left))
         outcome = await self._model.ask(stage, *arguments, urgency=Urgency.SOON, wanted=wanted)
         if outcome is not None:
-            self._took[stage] = outcome.seconds
+            self._took[stage] = (outcome.seconds, links)
         if left > _QUIET:
             self._push(say.Engine("ready", "", None))
         return outcome
@@ -406,23 +413,14 @@ class Session:
         return self._reader or self._model
 
     async def _asked(self, helper: Helper, *call: Any) -> Any:
-        """The value of a task; raises `DesignError` where it is refused."""
+        """The value of a task; raises `RefusedError` where it is refused."""
         outcome = await helper.ask(*call)
-        if outcome is None or outcome.findings:
-            raise DesignError(outcome.findings if outcome else ())
+        if outcome is None or outcome.problems:
+            raise RefusedError(outcome.problems if outcome else ())
         return outcome.value
 
     async def _question(self, task: str, to: int, *arguments: Any, helper: Helper | None = None) -> Any:
         return await self._asked(helper or self._model, task, self._design, self._file, to, *arguments)
-
-    def _problems(self, findings: Iterable[Finding]) -> tuple[say.Problem, ...]:
-        """Findings as they are, where they are about no place in the text."""
-        where = self.stored.path.name
-        found = ((spot_of(each, where), each) for each in findings)
-        return tuple(say.Problem(spot.address or where, each.what, each.advice, spot.line, spot.column) for spot, each in found)
-
-    def _refusal(self, to: int, findings: Iterable[Finding], *, stale: bool = False) -> say.Refusal:
-        return say.Refusal(to, self._problems(findings), stale)
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
         """Work in the background, ended with the session."""
@@ -431,8 +429,18 @@ class Session:
         task.add_done_callback(self._work.discard)
 
 
-_FIRST: Mapping[str, float] = {"figures": 0.15, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.1}
-"""Seconds that the stages of a design of fifty links take, before one was timed (benchmarks/studio.py)."""
+_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.2}
+"""Seconds that the stages of a design of thirty links take, before one was timed (benchmarks/studio.py)."""
+
+
+def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
+    """Seconds that a stage will take: as the last time, or as a small design, by the square of the number of links.
+
+    >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
+    (10.0, 0.5)
+    """
+    seconds, size = took.get(stage, (_FIRST[stage], 30))
+    return seconds * (links / max(size, 1)) ** 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -476,9 +484,8 @@ class Newest(Generic[_Asked]):
                 (newest, tell_newest), self._waiting = self._waiting, None
                 try:
                     tell_newest(await answer(newest))
-                except DesignError as error:
-                    found = tuple(say.Problem(each.where, each.what, each.advice) for each in error.findings)
-                    tell_newest(say.Refusal(newest.id, found))
+                except RefusedError as error:
+                    tell_newest(say.Refusal(newest.id, error.problems))
         finally:
             self._busy = False
 

@@ -11,8 +11,6 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, Literal, TypeAlias, Union, get_args, get_origin, get_type_hints
 
-import numpy as np
-
 from flexstage.apps.studio import protocol
 from flexstage.apps.studio.protocol import Floats, Request, Said
 from flexstage.base.finding import refuse
@@ -38,12 +36,16 @@ def decode_said(text: str | bytes) -> Said:
 
 def floats(values: Any) -> Floats:
     """An array as it goes over the wire."""
+    import numpy as np  # the server, which computes nothing, loads none
+
     found = np.ascontiguousarray(values, dtype="<f8")
     return Floats(found.shape, base64.b64encode(found.tobytes()).decode("ascii"))
 
 
 def array(value: Floats) -> Any:
     """The array that came over the wire."""
+    import numpy as np
+
     return np.frombuffer(base64.b64decode(value.data), dtype="<f8").reshape(value.shape)
 
 
@@ -54,7 +56,7 @@ def _plain(value: Any) -> Any:
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (tuple, list)):
         return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
+    if hasattr(value, "item"):
         return _plain(value.item())
     return None if isinstance(value, float) and not math.isfinite(value) else value
 

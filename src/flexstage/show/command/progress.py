@@ -12,11 +12,8 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-from flexstage.base.progress import Step, seconds_left
+from flexstage.base.progress import LINE, LINES, Step, seconds_left
 from flexstage.base.text import printable
-
-LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
-"""Variable of the environment that asks for lines, and the word that each of them begins with."""
 
 
 class ProgressBar:
