@@ -82,7 +82,8 @@ def _stream(given: TextIO | None, number: int) -> TextIO:
     except ValueError:  # closed by the program that called this
         pass
     raw = _Raw(number, told=number != 2 if given is None else given is sys.stdout)
-    return _Printable(io.BufferedWriter(raw), getattr(given, "encoding", None) or "utf-8", "backslashreplace", line_buffering=number == 2 or raw.isatty())
+    by_lines = given is sys.stderr or raw.isatty()
+    return _Printable(io.BufferedWriter(raw), getattr(given, "encoding", None) or "utf-8", "backslashreplace", line_buffering=by_lines)
 
 
 class _Raw(io.FileIO):
