@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -85,6 +86,13 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
     assert ended.code == 0, ended.err
     told = told_everywhere(ended, tmp_path / "v.json", tmp_path / "v.html")
     assert told.count("30 % at order 3; 5 % was asked") == 2, "units and stage"
+    notes = ended.err.splitlines()
+    (plan,) = (number for number, line in enumerate(notes) if line.startswith("to do: "))
+    verdicts = json.loads((tmp_path / "v.json").read_text(encoding="utf-8"))["verdicts"]
+    if not notes[plan].startswith("to do: nothing"):
+        at = {name: next(number for number, line in enumerate(notes) if line.startswith(f"{name}: ")) for name in verdicts}
+        assert plan < max(at[name] for name in at if name.startswith("hinge")) < at["stage"]
+    assert command("verify", "stage.toml", *ROUGH).err.startswith("to do: nothing, all ")
     assert "Which to trust" in ended.out
     assert "Stage: theory and finite elements" in ended.out
     assert "Theory and finite elements" in (tmp_path / "v.html").read_text(encoding="utf-8")

@@ -112,12 +112,21 @@ class SolidHinge(DistinctHinge, InNotebook):
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
     """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`."""
-    asked = Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
+    asked = accuracy_of(accuracy, order)
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
         return hinges_from_cache(forms, asked, ways, notice)
 
     return compute
+
+
+def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
+    """What is asked of hinges where a stage is to reach an accuracy, with elements of at most an order.
+
+    >>> accuracy_of(0.01, 2).orders
+    (2, 3)
+    """
+    return Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
 
 
 STANDARD_HINGES = hinges()
@@ -176,8 +185,17 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     found = distinct_hinges(mechanism)
     if not found:
         raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
-    solved = compute({name: _turn(hinge.form) for name, hinge in found.items()})
+    solved = compute(turned_forms(found))
     return {name: SolidHinge(each.shared, each.form, each.links, _turn_back(solved[name], each.form)) for name, each in found.items()}
+
+
+def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
+    """The forms that are computed of hinges: with the root at their second end where one end has one.
+
+    >>> turned_forms({})
+    {}
+    """
+    return {name: _turn(hinge.form) for name, hinge in found.items()}
 
 
 def _is_turned(form: HingeForm) -> bool:

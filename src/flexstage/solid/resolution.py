@@ -58,8 +58,8 @@ def converge(
     >>> found.order, round(found.error, 4)
     (3, 0.009)
     """
-    orders = range(3, HIGHEST + 1) if asked.order is None else (asked.order,)
-    before = figures(work(coarsen(reduction_of_order(orders[0]))))
+    orders = orders_of(asked)
+    before = figures(work(first_reductions(asked)[0]))
     found: Converged[_Result] | None = None
     for order in orders:
         try:
@@ -75,6 +75,25 @@ def converge(
         before = now
     assert found is not None  # noqa: S101  there is at least one order
     return found
+
+
+def orders_of(asked: Resolution) -> tuple[int, ...]:
+    """Orders that are tried one after the other.
+
+    >>> orders_of(Resolution()), orders_of(Resolution(order=2))
+    ((3, 4), (2,))
+    """
+    return tuple(range(3, HIGHEST + 1)) if asked.order is None else (asked.order,)
+
+
+def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
+    """The two ways that are worked in any case: what an error is estimated against, and the lowest order asked for.
+
+    >>> [way.fineness.order for way in first_reductions(Resolution())]
+    [2, 3]
+    """
+    first = reduction_of_order(orders_of(asked)[0])
+    return coarsen(first), first
 
 
 def reduction_of_order(order: int) -> Reduction:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -111,7 +111,7 @@ class Verification(InNotebook):
     @property
     def groups(self) -> dict[str, tuple[Row, ...]]:
         """The rows by what they are about, in order."""
-        return {name: tuple(row for row in self.rows if row.group == name) for name in dict.fromkeys(row.group for row in self.rows)}
+        return groups(self.rows)
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
@@ -124,29 +124,51 @@ class Verification(InNotebook):
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
+def groups(rows: Iterable[Row]) -> dict[str, tuple[Row, ...]]:
+    """Rows by what they are about, in order.
+
+    >>> groups(())
+    {}
+    """
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(row.group, []).append(row)
+    return {name: tuple(each) for name, each in found.items()}
+
+
 def verify(
-    mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, compute: Hinges = STANDARD_HINGES
+    mechanism: Mechanism,
+    asked: Resolution = DEFAULT,
+    reduce: Solids = STANDARD_SOLIDS,
+    compute: Hinges = STANDARD_HINGES,
+    tell: Callable[[tuple[Row, ...]], None] | None = None,
 ) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
-    Theory is the description as it stands; FEA the shapes it draws. Raises `DesignError` where the stage cannot be read as a solid.
+    Theory is the description as it stands; FEA the shapes it draws. Hinges come first, as they are soon done; `tell` is told of the rows of
+    hinges, stage and units as they are known. Raises `DesignError` where the stage cannot be read as a solid.
     """
     missing = dict[str, str]()
-    stage = stage_solid(mechanism, asked, reduce)
+    told = tell or _nobody
     found = solid_hinges(mechanism, compute)
-    matched = substitute_parts(mechanism, found)
+    of_hinges = tuple(hinge_rows(mechanism, found))
+    told(of_hinges)
+    stage = stage_solid(mechanism, asked, reduce)
+    of_stage = tuple(stage_rows(mechanism, substitute_parts(mechanism, found), stage))
+    told(of_stage)
     try:
         alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
     except DesignError as error:
         alone, missing["units"] = None, str(error)
     if alone is None:
         missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
-    rows = (
-        *hinge_rows(mechanism, found),
-        *(() if alone is None else unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone)),
-        *stage_rows(mechanism, matched, stage),
-    )
-    return Verification(mechanism, rows, found, alone, stage, missing)
+    of_units = () if alone is None else tuple(unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone))
+    told(of_units)
+    return Verification(mechanism, (*of_hinges, *of_units, *of_stage), found, alone, stage, missing)
+
+
+def _nobody(_rows: tuple[Row, ...]) -> None:
+    """Nobody is told."""
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:

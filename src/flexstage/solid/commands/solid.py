@@ -35,6 +35,7 @@ from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.parts import Parts, Ways
 from flexstage.solid.fea.remote import Limits
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
+from flexstage.solid.plan import verification_plan
 from flexstage.solid.read import Solids, solids
 from flexstage.solid.report import solid_report
 from flexstage.solid.resolution import Converged, Resolution
@@ -154,7 +155,7 @@ def verify(  # noqa: PLR0913 (its options)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     require_standing(mechanism)
     with progress_bar() as shown:
-        found = verification.verify(mechanism, asked.resolution, _solids(asked, shown), _hinges(asked, shown))
+        found = _verify(mechanism, asked, shown)
     read = [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
     cautions = (
         *_inexact_hinges(found.hinges),
@@ -177,6 +178,20 @@ def verify(  # noqa: PLR0913 (its options)
         cautions=cautions,
         beside=(report,),
     )
+
+
+def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verification.Verification:
+    """The verification, its cost told before it begins, and each verdict as it is known."""
+    reduce, compute = _solids(asked, shown), _hinges(asked, shown)
+    todo = verification_plan(mechanism, asked.resolution, asked.ways(shown))
+    print_note(str(todo))
+    shown.follow([phase.seconds for phase in todo.phases], todo.lanes)
+    return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
+
+
+def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
+    for name, group in verification.groups(rows).items():
+        print_note(f"{name}: {verification.verdict(group)}")
 
 
 def calibrate(

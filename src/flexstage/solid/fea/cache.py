@@ -106,6 +106,15 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Foun
 _RECOMPUTED = "It is computed anew and replaced"
 
 
+def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
+    """Whether there is a file for a key; whether it is sound shows when it is read.
+
+    >>> holds(Cache(Path("/nowhere")), "key")
+    False
+    """
+    return _path(cache, key, kind).is_file()
+
+
 def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS) -> tuple[Finding, ...]:
     """Keep the bytes of a file, whole or not at all. Tells why it could not.
 

@@ -17,6 +17,8 @@ from flexstage.solid.fea.reducing import StoredJob
 from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.worker import Call
 
+_USUAL_SECONDS = 5.5
+
 
 @dataclass(frozen=True, eq=False)
 class HingeJob(StoredJob):
@@ -35,6 +37,10 @@ class HingeJob(StoredJob):
     def order(self) -> int:
         """The lowest order that an error can be estimated at."""
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
+
+    def seconds(self, _counts: Counts | None = None) -> float:
+        """What hinges usually take [s]: several solves, the more the higher the order may rise."""
+        return _USUAL_SECONDS * (self.asked.orders[1] - 2)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the first solves [bytes]; at higher orders as much is taken as there is."""
@@ -71,11 +77,16 @@ def hinges_from_cache(
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
     """
-    jobs = [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
+    jobs = hinge_jobs(forms, asked)
     found, notices = obtain(jobs, HINGES, ways)
     for each in notices:
         (notice or _ignore)(each)
     return {job.name: found[job.key] for job in jobs}
+
+
+def hinge_jobs(forms: Mapping[str, HingeForm], asked: Accuracy) -> list[HingeJob]:
+    """A job a hinge."""
+    return [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
 
 
 def _ignore(_finding: Finding) -> None:

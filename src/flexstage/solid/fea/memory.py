@@ -22,6 +22,10 @@ _FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 60.0, 1e5, 1.0 / 6.0
 _COPIES = 4.0
 """Copies of the basis that are alive at once."""
 _LANCZOS = 40
+_START, _PER_MESHED = 2.7, 3e-4
+"""Seconds to start a process and draw; seconds an element to mesh."""
+_PER_FREEDOM, _PER_PROJECTED = 8e-5, 5e-6
+"""Seconds an unknown, and an unknown and coordinate."""
 _COARSER, _COARSEST = 1.25, 12.0
 
 
@@ -88,6 +92,17 @@ def needed(counts: Counts, order: int, columns: int) -> float:
     growth = max(1.0, size / _FACTOR_FREEDOMS) ** _FACTOR_GROWTH
     vectors = 8.0 * size * (_COPIES * columns + _LANCZOS)
     return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + _FACTOR * growth) + vectors
+
+
+def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
+    """What a reduction usually takes on one core [s]: process, mesh, and each unknown solved for and projected once a coordinate.
+
+    Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
+
+    >>> round(reduction_seconds(Counts.of(1000.0), 2, 24)), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
+    (4, 134)
+    """
+    return _START + _PER_MESHED * counts.elements + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:

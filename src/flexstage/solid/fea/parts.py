@@ -53,9 +53,18 @@ def reduce_parts(
     >>> reduce_parts((), Reduction()).parts
     ()
     """
-    jobs = [Reduce(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
+    jobs = reduce_jobs(parts, reduction, springs)
     elements, notices = obtain(jobs, SUPERELEMENTS, ways)
     return ReducedParts(tuple((job.component, elements[job.key]) for job in jobs), notices)
+
+
+def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
+    """A job a component.
+
+    >>> reduce_jobs((), Reduction())
+    []
+    """
+    return [Reduce(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
 
 
 def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str, Any], tuple[Finding, ...]]:

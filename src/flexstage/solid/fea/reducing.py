@@ -9,11 +9,13 @@ from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Reduction
-from flexstage.solid.fea.memory import Counts, needed, refusal
+from flexstage.solid.fea.memory import Counts, needed, reduction_seconds, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.store import to_bytes
 from flexstage.solid.fea.worker import Call, Job
 
+_PER_PIECE, _PER_FEWEST = 450.0, 12.0
+"""Elements of usual meshes: so many a piece, and so many times the fewest."""
 _TRIANGLE = 0.433
 """Area of an equilateral triangle of side one."""
 
@@ -47,6 +49,11 @@ class StoredJob(Job):
 
     key: str
 
+    @property
+    def mark(self) -> str:
+        """Its key."""
+        return self.key
+
 
 @dataclass(frozen=True, eq=False)
 class ComponentJob(StoredJob):
@@ -61,10 +68,9 @@ class ComponentJob(StoredJob):
         """The component's name."""
         return self.component.name
 
-    @property
-    def weight(self) -> int:
-        """Number of pieces."""
-        return len(self.component.pieces)
+    def expected(self, fineness: Fineness) -> Counts:
+        """What its mesh usually consists of."""
+        return Counts.of(_PER_PIECE * len(self.component.pieces) + _PER_FEWEST * fewest_elements(self.component, fineness))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +87,11 @@ class Reduce(ComponentJob):
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
         return 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
+
+    def seconds(self, counts: Counts | None = None) -> float:
+        """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
+        found = counts or self.expected(self.reduction.fineness)
+        return reduction_seconds(found, self.reduction.fineness.order, self.columns)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""

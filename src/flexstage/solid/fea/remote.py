@@ -18,7 +18,7 @@ from typing import Any, Generic, TypeVar
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.jobs import Heard, Word, Worker, cores
 from flexstage.base.memory import available
-from flexstage.base.progress import Progress, Step, seconds_left
+from flexstage.base.progress import Progress, Step, time_left
 from flexstage.solid.fea.memory import Counts
 from flexstage.solid.fea.progress import Stage, overall
 from flexstage.solid.fea.store import versions
@@ -27,6 +27,7 @@ from flexstage.solid.fea.worker import Job, Task, work
 _MOST_WORKERS = 2
 _PAUSE = 0.02
 _TELL_EVERY = 0.5
+_MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
 
 
 @dataclass(frozen=True)
@@ -121,9 +122,8 @@ class _Run(Generic[AnyJob]):
         self.children: list[_Child[AnyJob]] = []
         self.heard: Heard = queue.SimpleQueue()
         self.findings: list[Finding] = []
-        total = sum(job.weight for job in jobs)
-        self.shares = {job.name: job.weight / total for job in jobs}
-        self.finished: list[str] = []
+        self.planned = {job.mark: job.seconds() for job in jobs}
+        self.spent: dict[str, float] = {}
         self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
     def finish(self) -> None:
@@ -196,7 +196,7 @@ class _Run(Generic[AnyJob]):
 
     def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
         self.findings += findings
-        self.finished.append(child.job.name)
+        self.spent[child.job.mark] = time.monotonic() - child.begun
         self.children.remove(child)
         child.worker.end()
 
@@ -218,13 +218,21 @@ class _Run(Generic[AnyJob]):
         return available() + child.worker.resident() - sum(max(0.0, (each.granted or 0.0) - each.worker.resident()) for each in others)
 
     def _tell(self) -> None:
-        running = {child.job.name: (child.stage, child.fraction) for child in self.children}
-        text = ", ".join(f"{name}: {stage.value}" for name, (stage, _) in running.items()) or "done"
-        self.fraction = min(1.0, max(self.fraction, overall(running, self.shares, self.finished)))
+        text = ", ".join(f"{child.job.name}: {child.stage.value}" for child in self.children) or "done"
         now = time.monotonic()
         if text != self.text or now - self.told > _TELL_EVERY:
             self.text, self.told = text, now
-            self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
+            self.progress(self._step(text, now))
+
+    def _step(self, text: str, now: float) -> Step:
+        """Where the jobs stand, those that have a mesh planned anew."""
+        self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
+        shares = {mark: seconds / sum(self.planned.values()) for mark, seconds in self.planned.items()}
+        stages = {child.job.mark: (child.stage, child.fraction) for child in self.children}
+        running = {child.job.mark: now - child.begun for child in self.children}
+        self.fraction = min(1.0, max(self.fraction, overall(stages, shares, self.spent)))
+        left = time_left([self.planned], self.spent, running, workers(self.limits))
+        return Step(text, self.fraction, left, dict(self.spent), running, dict(self.planned))
 
 
 def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:

@@ -15,6 +15,8 @@ from flexstage.solid.fea.store import Versions
 
 _SLACK, _SHARE = 5e8, 1.2
 """What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
+USUAL_SECONDS = 2.0
+"""What a small job takes: a process that loads its libraries, draws and meshes."""
 _PATIENCE = 60.0
 """How much longer than allowed it lives if nobody ends it [s]."""
 
@@ -44,9 +46,13 @@ class Job(ABC):
         """What it works on, as the user knows it."""
 
     @property
-    def weight(self) -> int:
-        """How much work it is, against the others."""
-        return 1
+    def mark(self) -> str:
+        """What it is told apart by from all others."""
+        return self.name
+
+    def seconds(self, _counts: Counts | None = None) -> float:
+        """What it usually takes on one core [s], before or after its mesh is known."""
+        return USUAL_SECONDS
 
     @abstractmethod
     def work(self, call: Call) -> bytes:
