@@ -20,7 +20,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url
 
-.PHONY: help demo quick test check-all bench lint style format types contracts docs examples validation pictures lock web setup-runtime setup-dev setup-oracles
+.PHONY: help demo quick test check-all bench lint style format types contracts docs examples validation pictures lock web web-types setup-runtime setup-dev setup-oracles
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
@@ -77,8 +77,11 @@ docs: setup-dev ## build the documentation into docs/_build/html; warnings are e
 examples: setup-dev ## run every example of README.md and docs
 	$(PYTEST) tests/docs
 
-web: ## build the pages' bundles from web/ anew: node, npm and its registry are needed
-	cd web && npm ci --no-fund --no-audit && npm run --silent check && npm run --silent build
+web: web-types ## build the pages' bundles from web/ anew: node, npm and its registry are needed
+	cd web && npm run --silent build
+
+web-types:
+	cd web && npm ci --no-fund --no-audit && npm run --silent check
 
 lock: setup-dev ## pin the requirements anew (newer versions: make lock UPGRADE=--upgrade)
 	$(COMPILE) $(UPGRADE) pyproject.toml requirements/build.in --extra dev -o requirements/dev.txt

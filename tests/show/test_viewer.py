@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given
 
 import flexstage as fs
 from flexstage.base.number import Array
@@ -22,6 +23,8 @@ from flexstage.show.viewer.data import StageData, stage_data, still_data
 from flexstage.show.viewer.fragment import bundle, data_script, element
 from flexstage.show.viewer.motions import Group
 from flexstage.spatial.frame import COMPONENTS
+from tests.conftest import examples
+from tests.laws.strategies import mechanisms
 from tests.show.stages import HOSTILE, hostile
 from tests.show.zoo import PARTS, zoo
 
@@ -89,6 +92,30 @@ def test_every_link_outline_and_gauge_is_a_part_that_is_drawn(name: str) -> None
     assert {shown.things[number].name for number in shown.links} == set(assembly.links) | set(assembly.superelements)
     assert shown.mesh.triangles.max() < len(shown.mesh.points)
     assert np.all(np.bincount(shown.mesh.triangles.ravel(), minlength=len(shown.mesh.points))[np.unique(shown.mesh.triangles)] > 0)
+
+
+@examples(6, 200)
+@given(mechanisms.fresh())
+def test_random_stages_move_as_one_and_follow_their_bodies(mechanism: Mechanism) -> None:
+    shown = stage_data(mechanism, count=3)
+    assert all(note.startswith("no ideal motions: ") for note in shown.notes)  # what the lumped model takes, the ideal one may refuse
+    assert any(motion.group is Group.MODE for motion in shown.motions)
+    assert json.loads(shown.text())["bodies"] == ["ground", *expand(mechanism).bodies]
+    twists = np.tile(RANDOM.uniform(-1.0, 1.0, 6), (len(shown.bodies), 1))
+    assert np.allclose(shown.mesh.displacement(twists), rigid(twists[:1], shown.mesh.points), rtol=0.0, atol=1e-13)
+    assert all(np.isfinite(shown.reach(motion)) for motion in shown.motions)
+
+
+def test_of_a_batch_the_first_design_is_shown() -> None:
+    steel = stage("parallelogram").parts["leaf"]
+    assert isinstance(steel, Leaf)
+    both = replace(
+        stage("parallelogram"),
+        parts={**stage("parallelogram").parts, "leaf": replace(steel, thickness=steel.thickness * np.array([1.0, 2.0]))},
+    )
+    shown, first = stage_data(both), moving("parallelogram")
+    assert np.array_equal(shown.mesh.points, first.mesh.points)
+    assert [motion.label for motion in shown.motions] == [motion.label for motion in first.motions]
 
 
 def shaped() -> list[str]:

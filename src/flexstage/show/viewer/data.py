@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from flexstage.show.viewer.motions import Motion, Skeleton, axis_motions, deflec
 from flexstage.show.viewer.parts import Describer, Thing
 
 FORMAT = 1
+_Found = TypeVar("_Found")
 _STEPS = 12
 _MODES = 12
 
@@ -155,25 +156,25 @@ def _motions(
     notes: list[str],
 ) -> Iterator[Motion]:
     """All motions that the stage has; what it has not goes to the notes."""
-    model, kinematics, found = given
+    model = given[0] or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
+    kinematics = given[1] or _attempt("ideal motions", lambda: ideal(mechanism), notes)
+    if model is not None:
+        found = given[2] or _attempt("modes", lambda: platform_modes(mechanism, model), notes)
+        yield from () if found is None else mode_motions(model, kinematics, found, bones, count)
+        yield from _attempt("strokes", lambda: tuple(stroke_motions(model, kinematics, bones)), notes) or ()
+    if kinematics is not None:
+        yield from axis_motions(kinematics, bones)
+    if model is not None:
+        yield from _attempt("deflections", lambda: tuple(deflections(mechanism, model, kinematics, bones)), notes) or ()
+
+
+def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found | None:
+    """What it gives, or, where the stage is refused, `None` and the reasons among the notes."""
     try:
-        kinematics = kinematics or ideal(mechanism)
-        model = model or lumped(mechanism)
+        return work()
     except DesignError as error:
-        notes += [f"no motions: {finding}" for finding in error.findings]
-        if kinematics is not None:
-            yield from axis_motions(kinematics, bones)
-        return
-    for name, source in (
-        ("modes", lambda: mode_motions(model, kinematics, found or platform_modes(mechanism, model), bones, count)),
-        ("strokes", lambda: stroke_motions(model, kinematics, bones)),
-        ("axes", lambda: axis_motions(kinematics, bones)),
-        ("deflections", lambda: deflections(mechanism, model, kinematics, bones)),
-    ):
-        try:
-            yield from tuple(source())
-        except DesignError as error:
-            notes += [f"no {name}: {finding}" for finding in error.findings]
+        notes += [f"no {what}: {finding}" for finding in error.findings]
+        return None
 
 
 def _part(thing: Thing) -> dict[str, Any]:

@@ -65,7 +65,7 @@ class Skeleton:
 
 
 def body_twists(
-    model: LinearModel, kinematics: Kinematics, shape: Array, bodies: Sequence[str], inputs: Array | None = None
+    model: LinearModel, kinematics: Kinematics | None, shape: Array, bodies: Sequence[str], inputs: Array | None = None
 ) -> dict[str, Array]:
     """Twists (6,) of the bodies in a shape (n,) of the model's coordinates, under `inputs` (m,) if there are any (first design).
 
@@ -86,13 +86,13 @@ def body_twists(
         names = [f"{body}.{component}" for component in COMPONENTS]
         if all(name in known for name in names):
             result[body] = seen[[known[name] for name in names]]
-        elif names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
+        elif kinematics is not None and names[0] in kinematics.body_coordinates and len(shape) == kinematics.mobility:
             rows = [kinematics.body_coordinates.index(name) for name in names]
             result[body] = first_design(kinematics.bodies, 2)[rows] @ shape
     return result
 
 
-def mode_motions(model: LinearModel, kinematics: Kinematics, found: Modes, bones: Skeleton, count: int) -> Iterator[Motion]:
+def mode_motions(model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int) -> Iterator[Motion]:
     """The lowest modes, mass-normalised, and those of the platform that lie higher."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
@@ -116,7 +116,7 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
     return {name: each / total for name, each in parts.items()} if total > 0.0 else None
 
 
-def stroke_motions(model: LinearModel, kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
+def stroke_motions(model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
     """What a micrometre of each actuator's stroke, a newton of its force or an ampere of its current does at rest, all others held."""
     names = model.actuators
     columns = model.input_index(names)
@@ -150,7 +150,7 @@ def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
         yield Motion(Group.AXIS, coordinate, to_typography(text), bones.at_origin(twists), to_typography(remark))
 
 
-def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
+def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
     """What own weight, payloads and stated forces do at rest, strokes held; causes without any are left out.
 
     Raises `DesignError` where what is not held would fall.
