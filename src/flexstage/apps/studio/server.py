@@ -44,8 +44,7 @@ _FILES: Mapping[str, tuple[Path, str]] = {
     "/viewer-licences.txt": (_SHOW / "viewer-licences.txt", _PLAIN),
 }
 _POLICY = (
-    "default-src 'self'; connect-src 'self' ws://{host}; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "default-src 'self'; connect-src 'self' ws://{host}; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _REPORT_POLICY = (
     "sandbox allow-scripts allow-downloads allow-modals; default-src 'none'; script-src 'unsafe-inline'; "
