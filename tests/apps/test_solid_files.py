@@ -11,12 +11,14 @@ import pygltflib
 import pytest
 from netgen import occ
 
-from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import dump, load
-from flexstage.parts.body import Body
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.store import dump, dumps, load
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.condensation import condense
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
+from flexstage.parts.superelement import Superelement
 from flexstage.solid.fea.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
@@ -92,6 +94,25 @@ def test_a_part_without_shape_is_named(flexstage: Command, tmp_path: Path) -> No
     ended = flexstage("cad", "joint.toml", "-o", "a.step")
     assert ended.code == 2
     assert "one: a part of kind joint has no shape" in ended.err
+
+
+def test_a_solid_becomes_a_superelement_and_the_table_that_states_it(flexstage: Command, tmp_path: Path) -> None:
+    """What is printed, put into a design file beside the matrices, is a stage that checks and has the part's mass."""
+    dump(leaf_stage(), tmp_path / "leaf.toml")
+    ended = flexstage("superelement", "leaf.toml", "platform", "-o", "whole.npz", "--order", "1", "--modes", "2")
+    assert ended.code == 0, ended.err
+    assert "Wrote whole.npz" in ended.err
+    whole = load(tmp_path / "leaf.toml")
+    link = Link({"one": "ground", "other": "platform"}, "platform", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    body = Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(1.0, 1.0, 1.0))
+    text = dumps(replace(whole, parts={}, bodies={"platform": body}, links={"one": link}))
+    (tmp_path / "again.toml").write_text(f"{text}\n{ended.out}")
+    part = load(tmp_path / "again.toml").parts["platform"]
+    assert isinstance(part, Superelement)
+    volume = 0.01 * 0.02 * 0.02 + 2 * 0.02 * 0.001 * 0.01
+    assert condense(part).mass == pytest.approx(7750.0 * volume, rel=1e-9)
+    assert flexstage("superelement", "leaf.toml", "spoon", "-o", "a.npz").code == 2
+    assert not (tmp_path / "a.npz").exists()
 
 
 def test_step_to_stdout_is_nothing_but_step(flexstage: Command, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from flexstage.solid.fea.model import model
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 MESH = Fineness(neck=3.0, block=3.0, grading=0.8, order=2)
-KEPT, MANY = (Reduction(MESH, modes=count) for count in (6, 30))
+KEPT, MANY = (Reduction(MESH, modes=count) for count in (12, 40))
 PLATFORM = Body(mass=0.02, centre=(60 * mm, 0.0, 0.0), inertia=Inertia(2e-6, 2e-6, 2e-6))
 
 
@@ -71,7 +71,7 @@ def test_frequencies_are_those_of_the_solid_up_to_half_the_highest_mode_kept(fou
     values = [np.sqrt(eigen(each).values) for each in (lumps, solid)]
     low = values[1] < 0.5 * highest
     assert np.sum(low) >= 6
-    np.testing.assert_allclose(values[0][: np.sum(low)], values[1][low], rtol=1e-3)
+    np.testing.assert_allclose(values[0][: np.sum(low)], values[1][low], rtol=3e-4)  # without the inertia of its ports' motions 2e-3
 
 
 def test_what_cannot_be_exported_is_told(tmp_path):

@@ -66,6 +66,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage import part.step stage.toml --material steel"),
     Command("cad", _DESCRIBE, "Write a stage as solids.", f"{_SOLID}.exchange:cad",
             "flexstage cad stage.toml -o stage.step"),
+    Command("superelement", _DESCRIBE, "Reduce one solid of a stage to a superelement.", f"{_SOLID}.exchange:superelement",
+            "flexstage superelement stage.toml platform -o frame.npz"),
     Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_CLI}.analyse:analyse",
             "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
     Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_CLI}.analyses:mapping",

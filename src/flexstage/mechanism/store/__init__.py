@@ -11,7 +11,7 @@ from flexstage.base.store import write
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store.anchor import anchor_paths, beside, outline_text
+from flexstage.mechanism.store.anchor import anchor_paths, beside, outline_text, part_text
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import tree_of
 from flexstage.mechanism.store.file import parse_toml, read_text
@@ -21,7 +21,19 @@ from flexstage.mechanism.store.schema import schema
 from flexstage.mechanism.store.tidy import round_to_digits
 from flexstage.mechanism.store.toml import text_of
 
-__all__ = ["dump", "dumps", "load", "loads", "outline_text", "patch", "round_to_digits", "schema", "shipped_catalogue", "write"]
+__all__ = [
+    "dump",
+    "dumps",
+    "load",
+    "loads",
+    "outline_text",
+    "part_text",
+    "patch",
+    "round_to_digits",
+    "schema",
+    "shipped_catalogue",
+    "write",
+]
 
 
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:

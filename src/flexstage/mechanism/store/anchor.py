@@ -50,8 +50,23 @@ def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
     file = "cube.step"
     ...
     """
-    stage = beside(round_to_digits(Mechanism("", bodies={body: Body(solids={name: solid})})), folder)
-    lines = text_of({"bodies": tree_of(stage)["bodies"]}, {}).splitlines()
+    return _table(Mechanism("", bodies={body: Body(solids={name: solid})}), "bodies", folder)
+
+
+def part_text(name: str, part: Elastic, folder: Path) -> str:
+    """The text that states a part in a design file in a folder.
+
+    >>> from flexstage.parts.spring import Spring
+    >>> print(part_text("magnet", Spring(stiffness=-2e3), Path()))
+    [parts.magnet]
+    kind = "spring"
+    stiffness = "-0.002 N/um"
+    """
+    return _table(Mechanism("", parts={name: part}), "parts", folder)
+
+
+def _table(mechanism: Mechanism, section: str, folder: Path) -> str:
+    lines = text_of({section: tree_of(beside(round_to_digits(mechanism), folder))[section]}, {}).splitlines()
     return "\n".join(line for line in lines if line and not line.startswith("#"))
 
 

@@ -1,4 +1,4 @@
-"""Commands about solids in files of other programs: `cad` writes a stage (STEP, VTU, GLB), `import` states a STEP file as an outline."""
+"""Commands about solids in files: `cad` writes a stage (STEP, VTU, GLB), `import` states a STEP file, `superelement` writes matrices."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import refuse, require, suggest_nearest
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.store import load, outline_text
+from flexstage.mechanism.store import load, outline_text, part_text
 from flexstage.show.command.design import open_design
 from flexstage.show.command.options import Changes, Design, output_option, text_option
-from flexstage.show.command.output import save
+from flexstage.show.command.output import announce, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_result, print_warning
+from flexstage.solid.exchange.matrices import export_superelement
 from flexstage.solid.fea.apart import step_apart
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Fineness, Reduction
@@ -77,6 +78,30 @@ def state(
     density = float(mechanism.materials[chosen].density)
     stated = with_properties(measure(part, solid), str(part.resolve()), chosen, density, solid)
     print_result(outline_text(body, part.stem if solid is None else solid.lstrip("#"), stated, design.parent))
+
+
+def superelement(
+    design: Design,
+    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that the solid is, or is part of.", show_default=False)],
+    *,
+    output: Annotated[Path, output_option("FRAME.NPZ", "Write stiffness and mass as an NPZ file.")],
+    order: Annotated[int, typer.Option("--order", min=1, max=5, help="Order of elements and curved geometry.")] = 3,
+    modes: Annotated[int, typer.Option("--modes", min=0, max=100, help="How many of the lowest modes with its ports held are kept.")] = 12,
+    changes: Changes = None,
+) -> None:
+    """Reduce one solid of a stage to a superelement.
+
+    Writes stiffness and mass over its ports and modes; prints the table of the part for a design file in the folder of the matrices.
+
+    A body counts with the links that are one solid with it; its ports are the faces where that ends.
+    """
+    mechanism = open_design(design, changes, [("--output", output)])
+    require_solver()
+    reduction = Reduction(Fineness(order=order), modes)
+    with progress_bar() as shown:
+        part = export_superelement(mechanism, solid, output, reduction, progress=shown.step)
+    announce(f"Wrote {output}")
+    print_result(part_text(solid.replace("/", "-"), part, output.parent))
 
 
 def _material(mechanism: Mechanism, name: str | None) -> str:

@@ -42,7 +42,8 @@ def export_superelement(
     faces of links where it meets what is not: the ground, rigid bodies, stacks, other units. Each keeps plane; it is named after the link
     (`left`, or `left-platform` where the link ends on two of them), its frame is at the middle of the face, in the axes the solid is drawn
     in: those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates: the
-    `reduction.modes` lowest modes with all ports held, and the static response to wrenches on its bodies. Raises `DesignError` as `model`
+    `reduction.modes` lowest modes with all ports held, and the static response to wrenches on its bodies and to the inertia of the ports'
+    motions, which stands for the modes that are left out. Raises `DesignError` as `model`
     does, where no solid has that name, where it has less than two ports, and for a stack, whose stroke the matrices would not hold.
     """
     target = Path(path)
@@ -51,7 +52,7 @@ def export_superelement(
     shape = with_drawn_parts(mechanism)
     whole = _free(_component(components(shape), name))
     sound_components(shape, cache)
-    ((_, element),) = reduce_parts((whole,), reduction, Ways(cache, progress, Limits(memory=memory))).parts
+    ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory))).parts
     if element.strokes:
         raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on its both sides")
     with atomic_write(target) as place, place.open("wb") as stream:

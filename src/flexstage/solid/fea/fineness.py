@@ -36,8 +36,13 @@ class Hold(Enum):
 
 @dataclass(frozen=True)
 class Reduction:
-    """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held."""
+    """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held.
+
+    `residual`: it also keeps the static response, faces held, to the inertia of the faces' motions: what is left of the modes that are not
+    kept, to first order in frequency squared.
+    """
 
     fineness: Fineness = Fineness()
     modes: int = 12
     hold: Hold = Hold.RIGID
+    residual: bool = False

@@ -83,6 +83,8 @@ def reduce_mesh(
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
     loads += [rows.T for rows in seats.values()]
+    if reduction.residual:
+        loads.append(times(problem.inertia, problem.faces))
     inner = _independent_columns(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
     basis = np.hstack([problem.faces, problem.warps, inner])
     return replace(_project(problem, basis, strokes, report), seats={number: rows @ basis for number, rows in seats.items()})

@@ -86,7 +86,10 @@ class Reduce(ComponentJob):
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
-        return 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
+        residual = 6 * len(part.interfaces) if self.reduction.residual else 0
+        return (
+            residual + 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
+        )
 
     def seconds(self, counts: Counts | None = None) -> float:
         """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
