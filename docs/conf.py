@@ -36,8 +36,10 @@ FLOORS += ["beams", "mechanism", "parts", "spatial", "base"]
 
 
 def setup(app: Sphinx) -> None:
-    """Write the pages that are made from the code before pages are read: the map of the house, and the reference."""
+    """Write the pages that are made from the code before pages are read: the map of the house, and the reference; stages that turn."""
     app.connect("builder-inited", write_pages)
+    app.connect("source-read", let_turn)
+    app.connect("build-finished", write_stages)
     app.connect("autodoc-process-docstring", plain)
 
 
@@ -49,6 +51,27 @@ def write_pages(app: Sphinx) -> None:
         path.parent.mkdir(exist_ok=True)
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
+
+
+TURNED = re.compile(r"<!-- turn ([\w-]+)( here)? -->")
+_LINK = '<p><a href="stages/{0}.html">Turn this stage, and play its modes</a></p>'
+_FRAME = '<iframe src="stages/{0}.html" title="{0}" loading="lazy" style="width:100%;height:480px;border:0"></iframe>'
+
+
+def let_turn(app: Sphinx, _page: str, source: list[str]) -> None:
+    """Where a page says `<!-- turn NAME -->`, a link to the stage that turns, or the stage itself (`here`)."""
+    if app.builder.format == "html":
+        source[0] = TURNED.sub(lambda found: f"```{{raw}} html\n{(_FRAME if found[2] else _LINK).format(found[1])}\n```", source[0])
+
+
+def write_stages(app: Sphinx, error: Exception | None) -> None:
+    """The stages that turn, a page each, which stands alone."""
+    if error is None and app.builder.format == "html":
+        folder = Path(app.outdir, "stages")
+        folder.mkdir(exist_ok=True)
+        pages = Path(app.srcdir).glob("*.md")
+        for name in sorted({found[1] for page in pages for found in TURNED.finditer(page.read_text(encoding="utf-8"))}):
+            flexstage.view(flexstage.case(name)).save(folder / f"{name}.html")
 
 
 def names(part: str) -> dict[str, str]:

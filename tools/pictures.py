@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -72,6 +72,7 @@ from flexstage.studies.tolerances.run import Toleranced, tolerance
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 from tests.docs.pages import blocks
+from tools.gallery import SHOWN
 
 PICTURES = Path(__file__).resolve().parents[1] / "docs" / "pictures"
 _OF_THE_PAGE = re.compile(r"var\(--\w+,\s*([^)]+)\)")
@@ -433,7 +434,13 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "hinge-errors": (hinge_errors, "error of beam theory against finite elements over thickness over radius"),
 }
 
-RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid}
+
+def _shipped(name: str) -> Any:
+    """A case of the gallery."""
+    return stage_picture(scene(fs.case(name)), width=0.7 * FULL)
+
+
+RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid} | {f"case-{name}": partial(_shipped, name) for name in SHOWN}
 """Pictures of thousands of triangles."""
 
 

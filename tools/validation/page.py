@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from tools.validation import assemblies, codes, costs, hinges, laws, records, sets, single_units, solids, table_1
+from tools.validation import assemblies, codes, costs, hinges, laws, published, records, sets, single_units, solids, table_1
 from tools.validation.row import Row, Section, Verdict, table
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -42,6 +42,7 @@ def chapters() -> list[Chapter]:
         Chapter("sets", "The paper completed: parameter sets A and B", _SETS, tuple(sets.sections())),
         Chapter("costs", "What simpler theories omit", _COSTS, tuple(costs.sections())),
         Chapter("hinges", "Hinges and leaves", _HINGES, (*hinges.sections(), *assemblies.sections())),
+        Chapter(_PUBLISHED, "Stages of others", _PUBLISHED_TEXT, tuple(published.sections())),
         Chapter("records", "Modes from records", _RECORDS, tuple(records.sections())),
         Chapter("codes", "Independent codes", _CODES, tuple(codes.sections())),
         Chapter("laws", "Laws on random stages", _LAWS, tuple(laws.sections())),
@@ -70,8 +71,22 @@ def summary(found: list[Chapter]) -> str:
     lines.append((f"[The paper's stage as solids](validation/{_SOLIDS}.md)", "see page", "", "", ""))
     recorded = [row for chapter in found for row in chapter.rows if row.verdict is Verdict.RECORDED]
     apart = table(("quantity", "source", "reference", "ours", "unit", "difference"), [row.cells()[:6] for row in recorded])
-    parts = ["# Validation", _INTRODUCTION, _made_by(), table(heads, lines), "## What does not agree", _APART, apart]
+    parts = ["# Validation", _INTRODUCTION, _made_by(), table(heads, lines), "## Stages of others", _SCORES, scoreboard(found)]
+    parts += ["## What does not agree", _APART, apart]
     return "\n\n".join([*parts, "## What is not compared", _ABSENT, _TREE, _MADE]) + "\n"
+
+
+def scoreboard(found: Iterable[Chapter]) -> str:
+    """Every number that others printed of a stage of theirs: the printed one, ours, how far apart, the verdict."""
+    sections = [section for chapter in found if chapter.name == _PUBLISHED for section in chapter.sections]
+    heads = ("stage", "quantity", "by", "printed", "ours", "unit", "difference", "verdict")
+    lines = [
+        (section.title if row is section.rows[0] else "", *cells[:5], f"{100.0 * (row.ours / float(row.reference) - 1.0):+.2f} %", cells[7])
+        for section in sections
+        for row in section.rows
+        for cells in (row.cells(),)
+    ]
+    return table(heads, lines)
 
 
 def unexpected(found: Iterable[Chapter]) -> list[Row]:
@@ -109,6 +124,10 @@ with its source. Nothing is fitted to a reference, and no tolerance is wider tha
 the digits that are printed. For hinges the tolerance is narrower still: beam theory is known to be off, by how much is known too, and ours
 must be *off by that much*."""
 
+_SCORES = """\
+What others printed of stages that they built or computed, agreed or not. Sources, tolerances and the commands that repeat a row stand under
+[stages of others](validation/published.md); the cases are shown in the [gallery](gallery.md)."""
+
 _APART = """\
 Why is explained under [disagreements](disagreements.md). `make validation` fails if a row disagrees that is not recorded, and if one
 that is recorded agrees."""
@@ -127,6 +146,7 @@ validation/paper
 validation/sets
 validation/costs
 validation/hinges
+validation/published
 validation/records
 validation/codes
 validation/laws
@@ -138,6 +158,10 @@ _SOLID_TEXT = (
     "Three-dimensional finite elements of order three against the paper's figures, and against the lumped model whose hinges have their "
     "6x6 from finite elements. `make check-all` computes this page; it takes some minutes unless the parts are in the cache."
 )
+_PUBLISHED = "published"
+_PUBLISHED_TEXT = """\
+Each stage is a shipped case, drawn from what its source prints; where a source is silent, the case says so. A disagreement is shown and
+explained, never tuned away. Under each table stand the commands that repeat it."""
 _PAPER = """\
 Shin & Moon, *Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism*: what it prints, and what follows from that by
 arithmetic. Where hinges are needed, they are those of the two parameter sets that complete the paper ([sets](sets.md))."""

@@ -90,18 +90,21 @@ class Row:
 
 @dataclass(frozen=True)
 class Section:
-    """A headed part of a page: `text` above the rows, tables of another form (Markdown) below them."""
+    """A headed part of a page: `text` above the rows, tables of another form (Markdown) below them, the command that repeats them."""
 
     title: str
     text: str
     rows: tuple[Row, ...] = ()
     tables: tuple[str, ...] = ()
+    repeat: str = ""
 
     def markdown(self) -> str:
         """The section as Markdown."""
         heads = ("quantity", "source", "reference", "ours", "unit", "difference", "tolerance", "verdict")
         tables = [table(heads, [row.cells() for row in self.rows])] if self.rows else []
-        return "\n\n".join([f"## {self.title}", paragraph(self.text), *tables, *self.tables])
+        commands = "\n".join(self.repeat.split("; "))
+        again = [f"```text\n{commands}\n```"] if self.repeat else []
+        return "\n\n".join([f"## {self.title}", paragraph(self.text), *tables, *self.tables, *again])
 
 
 def paragraph(text: str) -> str:
