@@ -172,3 +172,25 @@ def test_what_states_no_expansion_leaves_drift_out_with_its_reason():
     assert float(whole.temperature) == 1.0
     with pytest.raises(fs.DesignError, match="states no thermal expansion"):
         budget(cold, {"z": 10e-6}, temperature=0.1)
+
+
+def stepping(stage, resolution):
+    """The stage with its vertical stacks in steps."""
+    stiff = (3.5e7, 1e7, 1e7, 1e3, 1e3, 1e3)
+    drive = fs.SteppingDrive(travel=200e-6, diagonal=stiff, resolution=resolution)
+    return replace(stage, parts={**stage.parts, "stack_vertical": drive})
+
+
+def test_steps_of_actuators_are_the_worst_of_their_signs():
+    stage = stepping(case("double-triangle"), 40e-9)
+    found = budget(stage, {"z": 1e-6})
+    gain = static_gain(lumped(stage), tuple(f"platform.{part}" for part in COMPONENTS), ideal(stage).actuators).values
+    corners = np.array(np.meshgrid(*[(-20e-9, 20e-9)] * 3)).reshape(3, -1)
+    worst = np.max(np.abs(gain[:, 3:] @ corners), axis=1)
+    np.testing.assert_allclose(found.ideal.values[:, found.ideal.columns.index("actuator steps")], worst, rtol=1e-9, atol=1e-18)
+    assert found.sums.values[2, 0] == pytest.approx(np.nansum(found.ideal.values[2]), rel=1e-12)
+
+
+def test_steps_that_are_not_stated_are_missing_and_none_have_no_column():
+    assert "actuator steps" in budget(stepping(case("double-triangle"), None), {"z": 1e-6}).missing
+    assert budget(case("double-triangle"), {"z": 1e-6}).ideal.columns == SOURCES

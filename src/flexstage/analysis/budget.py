@@ -13,8 +13,8 @@ from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
-from flexstage.base.number import Number
-from flexstage.mechanism.expand import expand
+from flexstage.base.number import Array, Number, stack
+from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.finite import design_shape
 from flexstage.models.ideal import ideal
@@ -59,9 +59,17 @@ def budget(
         arm=point - assembly.bodies[PLATFORM].reference,
         ground=None if warmed is None else warmed.ground,
         reasons=reasons,
+        steps=_steps(assembly, kinematics.actuators),
     )
     usual = 0.0 if warmed is None else 1.0
     return error_budget(evidence, command, temperature=usual if temperature is None else temperature, coverage=coverage)
+
+
+def _steps(assembly: Assembly, actuators: tuple[str, ...]) -> Array | None:
+    """Steps of the actuators (..., n) [m], NaN where they are not stated; `None` where all move continuously."""
+    steps = [assembly.actuator(name).step for name in actuators]
+    continuous = all(step is not None and not np.any(step) for step in steps)
+    return None if continuous else stack([np.nan if step is None else step for step in steps])
 
 
 def _drift(mechanism: Mechanism, model: LinearModel, *, asked: bool) -> tuple[Drift | None, dict[str, str]]:

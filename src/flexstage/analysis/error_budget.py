@@ -21,6 +21,7 @@ from flexstage.mechanism.expansion import Ground
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, transport
 
+STEPS = "actuator steps"
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
 
@@ -30,7 +31,7 @@ class Evidence:
 
     `map_error` holds the corners of the command (see `command_strokes`); `drift` (6 x fields) is the motion of the point of interest per
     field, of `Drift.of` (strokes held) or `held_by_gauges` (`None`: not known, as `reasons` say by source); `arm` (..., 3) [m] leads from
-    the platform's reference to that point.
+    the platform's reference to that point; `steps` (..., n) [m] are those of actuators that move in steps (`None`: none does; NaN: unknown).
     """
 
     kinematics: Kinematics
@@ -41,6 +42,7 @@ class Evidence:
     arm: Array
     ground: Ground | None = None
     reasons: Mapping[str, str] = field(default_factory=dict[str, str])
+    steps: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +80,9 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
 
     Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones; with the gains
     a = (R_a V^+ T)^-1 R_a xi only T a - V xi is left, counted as crosstalk. Linear map: finite less linear kinematics at the corners.
-    Noise: `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Largest absolute values.
+    Noise: `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Actuators that move in steps: half
+    a step of each alike, in a column that other stages do not have (evenly spread, it has a standard deviation of step/sqrt(12)). Largest
+    absolute values.
 
     >>> from flexstage.analysis.budget import budget
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -93,13 +97,16 @@ def error_budget(evidence: Evidence, command: Mapping[str, Number], *, temperatu
     bent = np.max(np.abs((carry @ evidence.map_error.errors[..., None])[..., 0]), axis=0)
     noise, step = coverage * _random(evidence.resolution, carry), _resolution_errors(evidence.resolution, carry)
     warmed = np.full(6, np.nan) if evidence.drift is None else np.abs(evidence.drift.values[..., :, 0]) * np.abs(temperature)
-    common = (bent, noise, step, warmed)
+    stepped = (
+        () if evidence.steps is None else ((np.abs(carry @ evidence.lost_motion.gain.values) @ (0.5 * evidence.steps)[..., None])[..., 0],)
+    )
+    common = (bent, noise, step, warmed, *stepped)
     rows = {
         False: (_largest(loss, half), _largest(cross, half), *common),
         True: (np.zeros(6), _largest(left, half), *common),
     }
     found = {key: _table(values) for key, values in rows.items()}
-    missing = tuple(name for index, name in enumerate(SOURCES) if np.any(np.isnan(found[False].values[..., index])))
+    missing = tuple(name for index, name in enumerate(found[False].columns) if np.any(np.isnan(found[False].values[..., index])))
     provenance = f"{evidence.lost_motion.provenance}; {evidence.map_error.provenance}"
     return ErrorBudget(
         found[False], found[True], dict(command), temperature, missing, provenance, evidence.ground, coverage, evidence.reasons
@@ -165,4 +172,5 @@ def _resolution_errors(resolution: PoseResolution, carry: Array) -> Array:
 
 def _table(columns: tuple[Array, ...]) -> Matrix:
     values = np.stack(np.broadcast_arrays(*columns), axis=-1)
-    return Matrix(values, COMPONENTS, SOURCES, tuple((unit,) * len(SOURCES) for unit in TWIST_UNITS))
+    sources = (*SOURCES, STEPS)[: len(columns)]
+    return Matrix(values, COMPONENTS, sources, tuple((unit,) * len(sources) for unit in TWIST_UNITS))

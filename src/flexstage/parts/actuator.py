@@ -31,6 +31,11 @@ class Actuator(Elastic):
         return self.input is DISPLACEMENT
 
     @property
+    def step(self) -> Number | None:
+        """The least step of its input; 0: it follows continuously, None: it is not stated."""
+        return 0.0
+
+    @property
     def free_deformation(self) -> Array:
         """Deformation (..., 6) of the second face against the first per unit of stroke if nothing holds it, in the link's frame.
 

@@ -207,6 +207,11 @@ class SteppingDrive(BetweenFaces):
         return self.travel
 
     @property
+    def step(self) -> Number | None:
+        """Its resolution [m]."""
+        return self.resolution
+
+    @property
     def maximum_load(self) -> Number | None:  # type: ignore[override]
         """What slips it [N]."""
         return self.holding_force

@@ -37,8 +37,7 @@ class ProgressBar:
         """Show a step of a computation."""
         seconds, fraction = (step.left, step.fraction) if not self._phases else self._of_plan(step)
         self.left = seconds
-        left = "" if seconds is None else f"{_clock(seconds)} left"
-        self._show(f"{self.about}{step.text}", fraction, left)
+        self._show(f"{self.about}{step.text}", fraction)
 
     def _of_plan(self, step: Step) -> tuple[float, float]:
         """Seconds left and fraction done of the whole plan; jobs that it does not have come on top."""
@@ -57,8 +56,9 @@ class ProgressBar:
         """Show the share of a work that is done, and how long the rest takes at its pace."""
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
-    def _show(self, text: str, fraction: float, left: str) -> None:
+    def _show(self, text: str, fraction: float) -> None:
         if self._shown is not None:
+            left = "" if self.left is None else f"{_clock(self.left)} left"
             self._shown.update(self._task, description=printable(text), completed=fraction, left=left)
 
 
@@ -68,10 +68,9 @@ class ProgressLines(ProgressBar):
     def __init__(self) -> None:
         super().__init__(None)
 
-    def step(self, step: Step) -> None:
-        """Tell a step of a computation."""
-        left = "-" if step.left is None else f"{step.left:.1f}"
-        print(f"{LINE} {step.fraction:.4f} {left} {printable(f'{self.about}{step.text}')}", file=sys.stderr, flush=True)  # noqa: T201
+    def _show(self, text: str, fraction: float) -> None:
+        left = "-" if self.left is None else f"{self.left:.1f}"
+        print(f"{LINE} {fraction:.4f} {left} {printable(text)}", file=sys.stderr, flush=True)  # noqa: T201
 
 
 def _clock(seconds: float) -> str:

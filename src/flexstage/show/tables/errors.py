@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.drift import Drift
-from flexstage.analysis.error_budget import ErrorBudget
+from flexstage.analysis.error_budget import STEPS, ErrorBudget
 from flexstage.base.labelled import Matrix
 from flexstage.mechanism.expansion import Ground
 from flexstage.show.display import number
@@ -83,6 +83,7 @@ def _budget_table(title: str, matrix: Matrix, sums: np.ndarray, budget: ErrorBud
     notes = [f"Largest errors over {command_text(budget.command)}, all at once{warmed}."]
     if not np.all(np.isnan(first_design(matrix.values, 2)[:, matrix.columns.index("gauge noise")])):
         notes += [f"Gauge noise: {budget.coverage:g} standard deviations. Quantisation: half a step of every gauge, signs at their worst."]
+    notes += ["Actuator steps: half a step of every stepping drive, signs at their worst."] if STEPS in matrix.columns else []
     notes += [] if budget.ground is None else [f"{ground_text(budget.ground)}."]
     missing = [name for name in budget.missing if name not in budget.reasons]
     notes += [f"Not stated, so not counted: {', '.join(missing)}."] if missing else []
