@@ -31,7 +31,7 @@ class Evidence:
 
     `map_error` holds the corners of the command (see `command_strokes`); `drift` (6 x fields) is the motion of the point of interest per
     field, of `Drift.of` (strokes held) or `held_by_gauges` (`None`: not known, as `reasons` say by source); `arm` (..., 3) [m] leads from
-    the platform's reference to that point; `steps` (..., n) [m] are those of actuators that move in steps (`None`: none does; NaN: unknown).
+    the platform's reference to that point; `steps` (..., n) [m] are those of actuators that move in steps (`None`: none; NaN: unknown).
     """
 
     kinematics: Kinematics
