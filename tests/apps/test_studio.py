@@ -16,6 +16,7 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
 from flexstage.analysis.statics import statics
 from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
 from flexstage.cases.parallelogram import parallelogram
@@ -239,7 +240,7 @@ async def test_a_process_that_dies_is_started_anew(page, studio):
         os.kill(process, signal.SIGKILL if hasattr(signal, "SIGKILL") else signal.SIGTERM)
     await page.until(lambda page: page.told[say.Engine].state == "ended")
     await page.ask(say.Edit, text=TEXT.replace("A guide.", "After."), revision=page.state.revision)
-    await page.settle()
+    await page.settle(say.Figures)
     assert page.state.sound
     assert len(page.told[say.Figures].modes) > 3
 
@@ -279,16 +280,25 @@ async def test_what_is_asked_about_the_stage(page, studio):
     assert isinstance(await page.ask(say.Gaps), say.Clearances)
 
 
-@on_page
-async def test_what_numbers_buy_are_derivatives_of_what_is_shown(page, studio):
-    told = await page.ask(say.Derive)
+def test_what_numbers_buy_are_derivatives_of_what_is_shown():
+    told = slopes(TEXT, "guide.toml", 1, 1)
     row = next(each for each in told.slopes if each.address == THICKNESS)
     step = 1e-8
-    low, high = (modes(lumped(loads(patch(TEXT, {THICKNESS: 1e-3 + way})))).frequencies for way in (-step, step))
-    index = page.told[say.Figures].modes.index(next(each for each in page.told[say.Figures].modes if each.platform))
-    assert row.slopes["frequency.platform.1"] == pytest.approx((high[index] - low[index]) / (2 * step), rel=1e-4)
+    low, high = (modes(lumped(loads(patch(TEXT, {THICKNESS: 1e-3 + way})))) for way in (-step, step))
+    moved = (high.platform_frequencies[0] - low.platform_frequencies[0]) / (2 * step)
+    assert row.slopes["frequency.platform.1"] == pytest.approx(moved, rel=1e-4)
     sizes = [abs(each.worst or 0.0) for each in told.slopes]
     assert sizes == sorted(sizes, reverse=True)
+    low, high = (judge(loads(patch(TEXT, {THICKNESS: 1e-3 * (1.0 + way)}))) for way in (-1e-6, 1e-6))
+    margins = [next(float(each.margin) for each in side if each.requirement.key == told.worst) for side in (low, high)]
+    assert row.worst == pytest.approx((margins[1] - margins[0]) / 2e-6 * 0.01, rel=1e-4, abs=1e-9)
+
+
+@pytest.mark.full
+@on_page
+async def test_what_numbers_buy_is_worked_out_beside(page, studio):
+    told = await page.ask(say.Derive)
+    assert [each.address for each in told.slopes] == [each.address for each in slopes(TEXT, "guide.toml", 1, 1).slopes]
 
 
 @on_page

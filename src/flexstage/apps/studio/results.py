@@ -26,7 +26,20 @@ from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.response import response
 from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.workspace.stroke import SingleAxis
-from flexstage.apps.studio.protocol import Cautions, Curve, Figure, Figures, Judgement, Loss, Matrix, ModeShape, Reach, Stroke, Verdicts
+from flexstage.apps.studio.protocol import (
+    Cautions,
+    Curve,
+    Figure,
+    Figures,
+    Judgement,
+    Loss,
+    Matrix,
+    ModeShape,
+    Problem,
+    Reach,
+    Stroke,
+    Verdicts,
+)
 from flexstage.apps.studio.reading import design, problems_of
 from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError
@@ -61,7 +74,7 @@ class Timer:
         return 1e3 * (time.process_time() - self._start)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def bench(text: str, file: str) -> Bench:
     """What is known of a design."""
     return bench_of(design(text, file))
@@ -107,12 +120,18 @@ def reach(text: str, file: str, stored: str, revision: int) -> Reach:
 
 def cautions(text: str, file: str, revision: int) -> Cautions:
     """What is doubtful or taken by default."""
+    return Cautions(revision, _doubts(text, file))
+
+
+@lru_cache(maxsize=8)
+def _doubts(text: str, file: str) -> tuple[Problem, ...]:
     from flexstage.analysis.cautions import caveats
 
     told = caveats(design(text, file))
-    return Cautions(revision, problems_of((*told.cautions, *told.defaults), text, file))
+    return problems_of((*told.cautions, *told.defaults), text, file)
 
 
+@lru_cache(maxsize=4)
 def scene(text: str, file: str) -> Mapping[str, Any]:
     """What a viewer shows of a design."""
     from flexstage.show.viewer.data import stage_data
@@ -136,7 +155,7 @@ def _known(known: Bench, name: str) -> Any:
         return None
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
     """The verdicts on a design; none of a text that is none."""
     known = bench(text, file)
@@ -146,7 +165,7 @@ def judged(text: str, file: str) -> tuple[Verdict, ...]:
         return ()
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _workspace(text: str, file: str) -> tuple[Any, dict[str, str]]:
     from flexstage.analysis.complete import required_command
     from flexstage.analysis.workspace.workspace import workspace
