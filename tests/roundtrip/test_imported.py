@@ -23,7 +23,7 @@ from flexstage.parts.material import Material
 from flexstage.solid.exchange.step import stage_parts, step
 from flexstage.solid.fea.contact import contact_findings
 from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.imported import import_findings, measure, with_properties
+from flexstage.solid.fea.imported import import_findings, imported_shape, measure, with_properties
 from flexstage.solid.fea.model import model as solid
 from flexstage.solid.fea.stage_pieces import stage_pieces
 
@@ -87,6 +87,21 @@ def test_a_solid_of_an_assembly_is_chosen_by_its_name_or_place(tmp_path: Path) -
     ours = replace(stage(BLOCK), bodies={"platform": Body(solids={"post": chosen})})
     assert loads(dumps(ours)) == ours
     assert import_findings(ours) == ()
+
+
+def test_a_reflected_solid_is_the_image_of_the_files(tmp_path: Path) -> None:
+    """A wedge beside the plane: its image has its volume, stands on the other side, and what is stated of it is held to the file as well."""
+    wedge = occ.Box(occ.Pnt(0, 2, 0), occ.Pnt(4, 8, 3)) - occ.Box(occ.Pnt(1, 4, -1), occ.Pnt(5, 9, 4))
+    path = tmp_path / "wedge.step"
+    wedge.WriteStep(str(path))
+    own = imported(path)
+    shown, image = imported_shape(own), imported_shape(own.mirrored)
+    assert image.mass == pytest.approx(shown.mass)
+    np.testing.assert_allclose(
+        [image.center.x, -image.center.y, image.center.z], [shown.center.x, shown.center.y, shown.center.z], atol=1e-6
+    )
+    assert import_findings(stage(own.mirrored)) == ()
+    assert loads(dumps(stage(own.mirrored))) == stage(own.mirrored)
 
 
 def test_rigid_readings_need_no_file(part: Path) -> None:

@@ -287,7 +287,8 @@ class Imported(Solid):
     its `mass`, `centre` of mass and `inertia` about that. The solid model holds them to the file (0.1 %). `sha256`, the digest of the
     file's bytes, says which version of it is meant and stands for it in caches. `wall` is the thinnest wall, for the mesh (absent: the
     shortest side). A relative path is looked for from the design file. Of a file that holds several solids, `solid` names the one meant, by
-    its name there or by its place among them: `#2`.
+    its name there or by its place among them: `#2`. `reflected`: it is the mirror image of the file's solid across its x-z plane, as are
+    the middle, the centre and the inertia that are stated.
     """
 
     material: str
@@ -303,6 +304,15 @@ class Imported(Solid):
     up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
     wall: Annotated[Number, LENGTH, POSITIVE] | None = None
     solid: str | None = None
+    reflected: bool = False
+
+    @property
+    def mirrored(self) -> Imported:
+        """The image of the file's solid across its x-z plane: what is stated of it stands on the other side."""
+        x, y, z = self.middle
+        middle, centre = (x, -y, z), (self.centre[0], -self.centre[1], self.centre[2])
+        inertia = replace(self.inertia, xy=-self.inertia.xy, yz=-self.inertia.yz)
+        return replace(self, middle=middle, centre=centre, inertia=inertia, reflected=not self.reflected)
 
     @property
     def sides(self) -> Array:

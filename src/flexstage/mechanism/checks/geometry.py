@@ -92,10 +92,6 @@ def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
             part = mechanism.parts.get(link.part)
             if part is not None and part.mirrored is None:
                 yield Finding(f"place.{key}", f"{placement.unit}/{name}: {NO_IMAGE[0]}", NO_IMAGE[1])
-        for name, body in unit.bodies.items():
-            for solid in [each for each, form in body.solids.items() if isinstance(form, Imported)]:
-                what = f"{placement.unit}/{name}.{solid} is drawn in a STEP file, which cannot be mirrored"
-                yield Finding(f"place.{key}", what, "Draw the other side in a unit of its own, with a file of its own")
 
 
 def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:

@@ -48,7 +48,12 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
     x, y, z = (-MILLIMETRES * float(np.real(value)) for value in form.middle)
-    return _solid(path, form.solid).Move(occ.Vec(x, y, z))
+    own = _solid(path, form.solid)
+    return (own.Mirror(_ACROSS) if form.reflected else own).Move(occ.Vec(x, y, z))
+
+
+_ACROSS = occ.Axes(occ.Pnt(0, 0, 0), n=occ.Y, h=occ.X)
+"""The x-z plane, that of mirror images."""
 
 
 def measure(path: Path, name: str | None = None) -> ImportedProperties:
@@ -122,6 +127,7 @@ def _imported_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
 
 def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Finding]:
     path = Path(solid.file)
+    solid = solid.mirrored if solid.reflected else solid
     try:
         found = measure(path, solid.solid)
     except DesignError as error:
