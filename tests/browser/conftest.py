@@ -50,10 +50,14 @@ def browser() -> Iterator[Browser]:
         launched.close()
 
 
+HERE = ("file:", "data:", "blob:", "about:", "http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://localhost:")
+"""How addresses begin that are no requests: files, data, servers of this machine."""
+
+
 class Watch:
     """What a page said and asked for; a test that ends with either fails, but for what it takes out itself."""
 
-    def __init__(self, allowed: tuple[str, ...]) -> None:
+    def __init__(self, allowed: tuple[str, ...] = HERE) -> None:
         self.errors: list[str] = []
         self.requests: list[str] = []
         self._allowed = allowed
@@ -64,6 +68,10 @@ class Watch:
         page.on("request", lambda asked: None if asked.url.startswith(self._allowed) else self.requests.append(asked.url))
         return page
 
+    def require_silence(self) -> None:
+        assert not self.errors
+        assert not self.requests
+
 
 Open = Callable[..., Page]
 
@@ -71,10 +79,9 @@ Open = Callable[..., Page]
 @pytest.fixture
 def watch() -> Iterator[Watch]:
     """Errors and requests of the pages that a test opens: none may be left. Files, data and servers of this machine are no requests."""
-    watched = Watch(("file:", "data:", "blob:", "about:", "http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://localhost:"))
+    watched = Watch()
     yield watched
-    assert not watched.errors
-    assert not watched.requests
+    watched.require_silence()
 
 
 @pytest.fixture
