@@ -7,9 +7,9 @@ from flexstage.base.digest import digest
 from flexstage.control.sections import error_section, frequency_section, headline, loop_section, time_section
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.page import Head, page
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import stage_section
+from flexstage.show.sections.stage import turning_section
+from flexstage.show.viewer.data import stage_data
 
 
 def loop_report(found: LoopStudy) -> str:
@@ -21,8 +21,9 @@ def loop_report(found: LoopStudy) -> str:
         ("rate", f"{found.settled.rate:g} Hz"),
         ("flexstage", flexstage.__version__),
     )
+    data = stage_data(mechanism)
     sections = (
-        stage_section(scene(mechanism)),
+        turning_section(mechanism, data),
         loop_section(found),
         caveat_section(mechanism, found.cautions),
         frequency_section(found),
@@ -30,4 +31,4 @@ def loop_report(found: LoopStudy) -> str:
         error_section(found),
     )
     head = Head(mechanism.name or "stage", f"Control loop, {found.setup.model.value} model", origin, headline(found))
-    return page(head, [each for each in sections if each is not None])
+    return page(head, [each for each in sections if each is not None], {"stage": data})

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import flexstage
+from flexstage.analysis.complete import read
 from flexstage.base.digest import digest
 from flexstage.experiment.comparison import Compared
 from flexstage.experiment.pipeline import Identification
@@ -11,7 +14,9 @@ from flexstage.experiment.sections import (
     coherence_section,
     compare_section,
     found_section,
+    measured_motions,
     measured_shape_section,
+    pair_section,
     response_data_section,
     stabilisation_section,
 )
@@ -21,7 +26,8 @@ from flexstage.show.display import NO_VALUE, number, percent
 from flexstage.show.page import Head, Headline, Section, page
 from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import stage_section
+from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.viewer.data import StageData, stage_data
 
 
 def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
@@ -32,15 +38,31 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
     >>> identify_report(identification((one_mode_record(),)))[:15]
     '<!doctype html>'
     """
-    drawn = None if mechanism is None else scene(mechanism)
-    return _page("Modes identified in a test", _found_headline(seen), mechanism, seen, [_stage(drawn), *_sections(seen, drawn, shapes)])
+    said = _found_headline(seen)
+    if mechanism is None:
+        return _page("Modes identified in a test", said, None, seen, [None, *_sections(seen)])
+    drawn = scene(mechanism)
+    data = _with_measured(stage_data(mechanism), seen, shapes, drawn)
+    sections = [stage_section(drawn, motion=first_motion(data)), *_sections(seen, _measured(seen, shapes, drawn))]
+    return _page("Modes identified in a test", said, mechanism, seen, sections, data=data)
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
     """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
     drawn = scene(mechanism)
-    sections = [stage_section(drawn), compare_section(found), *_sections(seen, drawn, shapes)]
-    return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections)
+    data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes, drawn)
+    head = [stage_section(drawn, motion=first_motion(data)), compare_section(found), pair_section(found, data)]
+    sections = [*head, *_sections(seen, _measured(seen, shapes, drawn))]
+    return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections, data=data)
+
+
+def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None, drawn: Scene) -> StageData:
+    """The stage's motions, and those measured."""
+    return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, drawn)))
+
+
+def _measured(seen: Identification, shapes: StageShapes | None, drawn: Scene) -> Section | None:
+    return None if shapes is None else measured_shape_section(seen.found, shapes, drawn)
 
 
 def _found_headline(seen: Identification) -> Headline:
@@ -61,16 +83,19 @@ def _compared_headline(found: Compared) -> Headline:
     return Headline(f"{said}; theory is at most {off} off, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes))
 
 
-def _stage(drawn: Scene | None) -> Section | None:
-    return None if drawn is None else stage_section(drawn)
-
-
-def _sections(seen: Identification, drawn: Scene | None, shapes: StageShapes | None) -> list[Section | None]:
-    measured = None if drawn is None or shapes is None else measured_shape_section(seen.found, shapes, drawn)
+def _sections(seen: Identification, measured: Section | None = None) -> list[Section | None]:
     return [found_section(seen), measured, response_data_section(seen), coherence_section(seen), stabilisation_section(seen.found)]
 
 
-def _page(kind: str, said: Headline, mechanism: Mechanism | None, seen: Identification, sections: list[Section | None]) -> str:
+def _page(
+    kind: str,
+    said: Headline,
+    mechanism: Mechanism | None,
+    seen: Identification,
+    sections: list[Section | None],
+    *,
+    data: StageData | None = None,
+) -> str:
     sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
     named = ", ".join(each for each in sources if each) or "record"
     origin = [("record", named), ("model", "measured"), ("flexstage", flexstage.__version__)]
@@ -78,4 +103,5 @@ def _page(kind: str, said: Headline, mechanism: Mechanism | None, seen: Identifi
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named
     known = None if mechanism is None else caveat_section(mechanism)
-    return page(Head(title, kind, tuple(origin), said), [each for each in (*sections[:2], known, *sections[2:]) if each is not None])
+    shown = [each for each in (*sections[:2], known, *sections[2:]) if each is not None]
+    return page(Head(title, kind, tuple(origin), said), shown, {} if data is None else {"stage": data})

@@ -30,11 +30,13 @@ from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import Abreast, Block, Picture, Prose, Section, fold, section
-from flexstage.show.scene.pictures import moved_picture
-from flexstage.show.scene.stage import Scene, largest_motion
+from flexstage.show.scene.pictures import mode_picture
+from flexstage.show.scene.stage import Scene
+from flexstage.show.sections.dynamics import SHAPES
+from flexstage.show.sections.stage import joined_viewers, platform_modes
 from flexstage.show.table import Table
-
-_REACH = 0.07
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.motions import Group, Motion, Skeleton
 
 
 def found_section(seen: Identification) -> Section | None:
@@ -100,19 +102,47 @@ def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) 
         return section("Shapes on the stage", [Prose(f"Not drawn: {shapes.missing}.")])
     note = (
         f"From {', '.join(shapes.used)}, through the inverse of the ideal stage's mapping; bodies move as ideal hinges let them. "
-        f"{motion_explained_text(shapes.explained)} The amplitude is arbitrary. Dashed: the platform at rest."
+        f"{motion_explained_text(shapes.explained)} {SHAPES}"
     )
     return section("Shapes on the stage", [Abreast(tuple(_pictures(found, shapes, seen)), narrow=True), Prose(note)])
+
+
+def measured_motions(found: Identified, shapes: StageShapes, seen: Scene) -> tuple[Motion, ...]:
+    """The measured shapes as motions of a viewer; none where they cannot be drawn on the stage."""
+    bones = Skeleton(seen.references)
+    return tuple(
+        Motion(
+            Group.MODE,
+            f"measured {index + 1}",
+            f"measured {index + 1}  {number(float(frequency))} Hz",
+            bones.at_origin({name: twist[:, index] for name, twist in shapes.motions.items()}),
+            f"as measured, damping {number(100.0 * float(found.damping[index]), 3)} %",
+            float(frequency),
+        )
+        for index, frequency in enumerate(found.frequencies if not shapes.missing else ())
+    )
+
+
+def pair_section(found: Compared, data: StageData) -> Section | None:
+    """Theory's modes beside those measured, which play together; `None` where none has a partner that can be drawn."""
+    theory, known = platform_modes(data), {each.name for each in data.motions}
+    partners = [
+        (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")
+        for mode in found.modes
+        if mode.experiment is not None and mode.number <= len(theory) and f"measured {mode.experiment.number}" in known
+    ]
+    text = "Left theory, right the experiment: a chosen mode plays beside its partner. Signs are arbitrary; repeated modes mix."
+    joined = joined_viewers(partners)
+    return None if joined is None else section("Side by side", [joined, Prose(text)])
 
 
 def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[Picture]:
     for index, frequency in enumerate(found.frequencies):
         twists = {name: twist[:, index] for name, twist in shapes.motions.items() if name in seen.references}
-        largest = largest_motion(seen, twists)
-        if largest > 0.0:
-            picture = moved_picture(seen, twists, _REACH * seen.size / largest, width=THIRD)
+        picture = mode_picture(seen, twists, width=THIRD)
+        if picture is not None:
             caption = f"{index + 1}: {number(float(frequency))} Hz, damping {number(100.0 * float(found.damping[index]), 3)} %"
-            yield Picture(to_svg(picture, f"measured{index + 1}", caption), caption)
+            yield Picture(to_svg(picture, f"measured{index + 1}", caption), caption, f"mode measured {index + 1}")
 
 
 def compare_section(found: Compared) -> Section | None:

@@ -48,6 +48,14 @@ class Viewer:
 
 
 @dataclass(frozen=True)
+class Joined:
+    """Two viewers side by side: where a motion of one is chosen, its partner plays in the other."""
+
+    viewers: tuple[Viewer, Viewer]
+    partners: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
 class Fact:
     """A number that sums something up: what it is, its value with unit, a remark."""
 
@@ -86,7 +94,7 @@ class Legend:
     entries: tuple[tuple[str, str], ...]
 
 
-Block: TypeAlias = Prose | Picture | Viewer | Facts | Abreast | Folded | Legend | Table
+Block: TypeAlias = Prose | Picture | Viewer | Joined | Facts | Abreast | Folded | Legend | Table
 
 
 @dataclass(frozen=True)

@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import flexstage
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Head, Headline, Section, page
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import stage_section
+from flexstage.show.sections.stage import turning_section
+from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.motions import Motion
 
 
-def solid_report(mechanism: Mechanism, said: Headline, sections: Iterable[Section | None], cautions: tuple[Finding, ...] = ()) -> str:
+def solid_report(
+    mechanism: Mechanism,
+    said: Headline,
+    sections: Iterable[Section | None],
+    cautions: tuple[Finding, ...] = (),
+    more: tuple[Motion, ...] = (),
+) -> str:
     """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, cautions, the others.
 
-    `cautions` are those about the result; those about the description stand with them. Sections that are absent are left out.
+    `cautions` are those about the result; those about the description stand with them. Sections that are absent are left out. `more` are
+    motions of the viewer beside those of theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'
@@ -30,5 +39,7 @@ def solid_report(mechanism: Mechanism, said: Headline, sections: Iterable[Sectio
     )
     head = Head(mechanism.name or "stage", "A flexure stage as solids", origin, said)
     first, *rest = sections
-    shown = (stage_section(scene(mechanism)), first, caveat_section(mechanism, cautions), *rest)
-    return page(head, [each for each in shown if each is not None])
+    data = stage_data(mechanism)
+    data = replace(data, motions=(*data.motions, *more))
+    shown = (turning_section(mechanism, data), first, caveat_section(mechanism, cautions), *rest)
+    return page(head, [each for each in shown if each is not None], {"stage": data})

@@ -4,14 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.pairing import Moving, Pair, pair_modes
 from flexstage.analysis.trust import Trust
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from flexstage.show.display import number
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Block, Folded, Headline, Picture, Prose, Section, section
+from flexstage.show.scene.stage import scene
+from flexstage.show.sections.stage import joined_viewers
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import centre_table, direction_table, principal_table, stiffness_table
+from flexstage.show.viewer.motions import Group, Motion, Skeleton, body_twists
 from flexstage.solid.skin_figures import png_picture, skin_figure
 from flexstage.solid.stage import worst_strokes
 from flexstage.solid.surface import Surface, mode_surfaces, stress_surfaces
@@ -117,6 +127,31 @@ def verification_headline(found: Verification) -> Headline:
     off = max((row for row in rows if row.difference is not None), key=lambda row: abs(row.difference or 0.0), default=None)
     most = "" if off is None else f"; at most it is {100.0 * abs(off.difference or 0.0):.2g} % off, in {off.figure}"
     return Headline(f"{name.capitalize()}: theory will do for {len(good)} of {len(rows)} figures{most}.", len(good) == len(rows))
+
+
+def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
+    """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
+    bones, read = Skeleton(scene(mechanism).references), stage.read.model
+    found: list[Motion] = []
+    for index in stage.modes.platform:
+        twists = body_twists(read, ideal(mechanism), stage.modes.shapes[:, index], tuple(bones.references))
+        frequency = float(stage.modes.frequencies[index])
+        pair = theory.get(index)
+        told = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
+        label = f"FEA {index + 1}  {number(frequency)} Hz  {stage.modes.names[index]}"
+        found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{told}", frequency))
+    return tuple(found)
+
+
+def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
+    """The modes of theory that those of finite elements are paired with, by index, and both side by side."""
+    model = lumped(mechanism)
+    pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
+    alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
+    partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
+    text = "Left theory, right finite elements: a chosen mode plays beside its partner. Bodies move as rigid ones; signs are arbitrary."
+    joined = joined_viewers(partners)
+    return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
 
 
 def verification_section(found: Verification) -> Section | None:

@@ -8,13 +8,20 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.show.figures.style import FULL, canvas, style_context
 from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.stage import Scene, displace
+from flexstage.show.scene.stage import Scene, displace, largest_motion
 from flexstage.show.scene.view import Side, View, draw, order_facets, outline, triad, view, write
 
 _TALLEST = 1.1
 _MOVED = (Kind.PLATFORM, Kind.BODY, Kind.DRIVE)
+_REACH = 0.11
+"""The largest motion in the picture of a mode, of the stage's diagonal."""
+_ARM, _ARROW, _SMALL, _ALONE = 0.25, 0.24, 0.4, 0.9
+_IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
+_ALONG, _ABOUT = "#1d5fd1", "#b3261e"
+_SHAFT = {"arrowstyle": "-|>", "lw": 1.8, "mutation_scale": 9, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
 def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Any:
@@ -36,22 +43,63 @@ def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = F
     return axes.figure
 
 
-def moved_picture(scene: Scene, twists: Mapping[str, Array], factor: float, *, side: Side = Side.ISOMETRIC, width: float = FULL) -> Any:
-    """The stage with its bodies moved by `factor` times their twists, over the platform's outline at rest; hinges and gauges left out.
+def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FULL) -> Any:
+    """The stage moved by its bodies' twists, as far as to be seen, over the platform's outline at rest; hinges and gauges left out.
+
+    Seen from above where the platform stays in its plane, else from above a corner. Arrows are the platform's motion: blue along, red
+    about; `None` where nothing moves.
 
     >>> from flexstage.mechanism.mechanism import Mechanism
     >>> from flexstage.show.scene.stage import scene
-    >>> len(moved_picture(scene(Mechanism("")), {}, 1.0).axes)
-    1
+    >>> mode_picture(scene(Mechanism("")), {}) is None
+    True
     """
-    seen = view(side)
-    kept = [facet for facet in order_facets(scene, seen) if facet.paint.kind in _MOVED]
-    moved = displace(kept, scene, twists, factor)
+    largest = largest_motion(scene, twists)
+    if largest == 0.0:
+        return None
+    twist = np.real(twists.get(PLATFORM, np.zeros(6)))
+    sizes = np.abs(twist) * np.array([1.0] * 3 + [_ARM * scene.size] * 3)
+    seen = view(Side.TOP if sizes[_IN_PLANE].max() > sizes[_OUT_OF_PLANE].max() else Side.ISOMETRIC)
+    still = [facet for facet in order_facets(scene, seen) if facet.paint.kind in _MOVED]
+    moved = displace(still, scene, twists, _REACH * scene.size / largest)
     with style_context():
-        axes = _axes(kept, seen, width)
-        outline(axes, [facet for facet in kept if facet.paint.kind is Kind.PLATFORM], seen)
+        axes = _axes([*still, *moved], seen, width)
         draw(axes, moved, seen)
+        outline(axes, [facet for facet in still if facet.paint.kind is Kind.PLATFORM], seen)
+        triad(axes, seen)
+        if np.any(sizes):
+            _arrows(axes, scene, twist, sizes, seen)
     return axes.figure
+
+
+def _arrows(axes: Any, scene: Scene, twist: Array, sizes: Array, seen: View) -> None:
+    """The platform's translation and rotation, each where it is not small beside the other, named where it is along one axis."""
+    start, largest = scene.references[PLATFORM], sizes.max()
+    for part, names, colour in ((slice(0, 3), "xyz", _ALONG), (slice(3, 6), ("rx", "ry", "rz"), _ABOUT)):
+        size = float(np.sqrt(np.sum(sizes[part] ** 2)))
+        if size < _SMALL * largest:
+            continue
+        direction = twist[part] / np.sqrt(np.sum(twist[part] ** 2))
+        name = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
+        if colour == _ABOUT and abs(direction @ seen.axes[2]) > _ALONE:
+            _turn(axes, seen.project(start), 0.5e3 * _ARROW * scene.size, float(direction @ seen.axes[2]), name)
+            continue
+        tip = seen.project(start + _ARROW * scene.size * direction * size / max(size, largest))
+        axes.annotate("", xy=tuple(tip), xytext=tuple(seen.project(start)), arrowprops={**_SHAFT, "color": colour})
+        _write(axes, seen.project(start) + 1.2 * (tip - seen.project(start)), name, colour)
+
+
+def _turn(axes: Any, middle: Array, radius: float, sense: float, name: str) -> None:
+    """A turn about the direction of sight: an arc with a head."""
+    angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
+    arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    axes.plot(*arc.T, color=_ABOUT, linewidth=1.8)
+    axes.annotate("", xy=tuple(arc[-1] + 0.35 * (arc[-1] - arc[-4])), xytext=tuple(arc[-2]), arrowprops={**_SHAFT, "color": _ABOUT})
+    _write(axes, middle + np.array([0.0, 1.45 * radius]), name, _ABOUT)
+
+
+def _write(axes: Any, place: Array, name: str, colour: str) -> None:
+    axes.text(*place, name, ha="center", va="center", fontsize=8, fontweight="bold", color=colour, parse_math=False)
 
 
 def _axes(facets: list[Facet], seen: View, width: float) -> Any:

@@ -10,21 +10,25 @@ from flexstage.analysis.complete import Analysis
 from flexstage.analysis.modes import Modes
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.show.display import number
+from flexstage.show.display import number, percent
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import THIRD
 from flexstage.show.page import Abreast, Folded, Picture, Prose, Section, section
-from flexstage.show.scene.pictures import moved_picture
-from flexstage.show.scene.stage import Scene, largest_motion
+from flexstage.show.scene.pictures import mode_picture
+from flexstage.show.scene.stage import Scene
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.response import response_table
 from flexstage.show.viewer.motions import body_twists
 
 _SHAPES = 6
-_REACH = 0.07
+_LEAST, _NAMED = 0.01, 4
+SHAPES = (
+    "The amplitude is arbitrary. Dashed: the platform at rest. Arrows: how it moves, blue along and red about. Seen from above where it "
+    "stays in its plane."
+)
 
 
 def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
@@ -45,8 +49,7 @@ def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
     )
     spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
     shapes = tuple(_shapes(modes, model, analysis.kinematics, seen))
-    note = f"The amplitude is arbitrary: the largest motion is {100 * _REACH:g} % of the stage's diagonal. Dashed: the platform at rest."
-    gallery = [Abreast(shapes, narrow=True), Prose(note)] if shapes else []
+    gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
     return section("Modes", [Prose(text), mode_table(modes), Picture(spectrum), *gallery])
 
 
@@ -54,11 +57,21 @@ def _shapes(modes: Modes, model: LinearModel, kinematics: Kinematics, seen: Scen
     frequencies, shapes = first_design(modes.frequencies, 1), first_design(modes.shapes, 2)
     for index in modes.platform[:_SHAPES]:
         twists = body_twists(model, kinematics, shapes[:, index], tuple(seen.references))
-        largest = largest_motion(seen, twists)
-        if largest > 0.0:
-            picture = moved_picture(seen, twists, _REACH * seen.size / largest, width=THIRD)
-            caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz"
-            yield Picture(to_svg(picture, f"mode{index + 1}", caption), caption)
+        picture = mode_picture(seen, twists, width=THIRD)
+        if picture is not None:
+            caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz; kinetic energy: {_shares(modes, index)}"
+            yield Picture(to_svg(picture, f"mode{index + 1}", caption), caption, f"mode {index + 1}")
+
+
+def _shares(modes: Modes, index: int) -> str:
+    """Whose the kinetic energy of a mode is: the platform, units and other bodies from a hundredth on."""
+    shares: dict[str, float] = {}
+    for name, energy in zip(modes.bodies, first_design(modes.energies, 2)[:, index], strict=True):
+        owner = name.partition("/")[0]
+        shares[owner] = shares.get(owner, 0.0) + float(energy)
+    ranked = sorted((each for each in shares.items() if each[1] >= _LEAST), key=lambda each: -round(each[1], 3))
+    told = [f"{name} {percent(share, 2 if share < 0.1 else 3)}" for name, share in ranked[:_NAMED]]
+    return ", ".join(told) + (", others" if len(ranked) > _NAMED else "")
 
 
 def response_section(analysis: Analysis) -> Section | None:

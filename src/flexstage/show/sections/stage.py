@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Folded, Legend, Picture, Prose, Section, Viewer, section
+from flexstage.show.page import Abreast, Folded, Joined, Legend, Picture, Prose, Section, Viewer, section
 from flexstage.show.plan import plan_figure, rings
 from flexstage.show.scene.pictures import stage_picture
-from flexstage.show.scene.stage import Scene
+from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.scene.view import Side, legend
 from flexstage.show.tables.description import composition_table, link_table
 from flexstage.show.viewer.data import StageData
-from flexstage.show.viewer.motions import Group
+from flexstage.show.viewer.motions import PLATFORM_MODE, Group, Motion
 
 _WIDTH = 4.4
 _SIDES = (
@@ -37,6 +39,40 @@ def stage_section(seen: Scene, *, motion: str = "", ghost: str = "", said: str =
     return section("The stage", [viewer, Legend(legend(seen)), Prose(said) if said else None])
 
 
+def turning_section(mechanism: Mechanism, data: StageData) -> Section | None:
+    """The stage as it is seen first, beginning with its first motion; `data` are the page's "stage".
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.viewer.data import stage_data
+    >>> turning_section(double_triangle(), stage_data(double_triangle())).title
+    'The stage'
+    """
+    return stage_section(scene(mechanism), motion=first_motion(data))
+
+
+def platform_modes(data: StageData) -> tuple[Motion, ...]:
+    """The motions that are modes of the platform, ascending.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.show.viewer.data import stage_data
+    >>> [each.name for each in platform_modes(stage_data(double_triangle()))]
+    ['1', '2', '3', '4', '5', '6']
+    """
+    return tuple(each for each in data.motions if each.group is Group.MODE and each.remark == PLATFORM_MODE)
+
+
+def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
+    """Two viewers of the stage that play partners of each other, beginning with the first; `None` without any.
+
+    >>> joined_viewers([]) is None
+    True
+    """
+    if not partners:
+        return None
+    one, other = partners[0]
+    return Joined((Viewer("stage", (), one), Viewer("stage", (), other)), tuple(partners))
+
+
 def first_motion(data: StageData) -> str:
     """The motion that a viewer begins with: the lowest mode of the platform, else what there is, else none.
 
@@ -45,7 +81,7 @@ def first_motion(data: StageData) -> str:
     >>> first_motion(stage_data(double_triangle()))
     'mode 1'
     """
-    ranked = sorted(data.motions, key=lambda each: (each.group is not Group.MODE, "beside" in each.remark))
+    ranked = sorted(data.motions, key=lambda each: (each.group is not Group.MODE, each.remark != PLATFORM_MODE))
     return f"{ranked[0].group.value} {ranked[0].name}" if ranked else ""
 
 

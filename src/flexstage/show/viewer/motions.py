@@ -18,6 +18,8 @@ from flexstage.models.linear.static import displacement, part_deformation
 from flexstage.show.display import format_value, number, to_typography
 from flexstage.spatial.frame import COMPONENTS
 
+PLATFORM_MODE = "a mode of the platform"
+"""What the remark of such a mode says."""
 _UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
 _UNIT_MOTION = 1e-6
 
@@ -102,7 +104,7 @@ def mode_motions(model: LinearModel, kinematics: Kinematics | None, found: Modes
         twists = body_twists(model, kinematics, shapes[:, index], tuple(bones.references))
         frequency = float(frequencies[index])
         label = f"{index + 1}  {number(frequency)} Hz  {found.names[index]}"
-        remark = "a mode of the platform" if index in found.platform else "a mode beside those of the platform"
+        remark = PLATFORM_MODE if index in found.platform else "a mode beside those of the platform"
         energy = _energy(model, shapes[:, index])
         yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
 

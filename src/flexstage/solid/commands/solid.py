@@ -39,7 +39,15 @@ from flexstage.solid.plan import verification_plan
 from flexstage.solid.read import Solids, solids
 from flexstage.solid.report import solid_report
 from flexstage.solid.resolution import Converged, Resolution
-from flexstage.solid.sections import hinge_section, stage_solid_section, unit_section, verification_headline, verification_section
+from flexstage.solid.sections import (
+    hinge_section,
+    paired_with_theory,
+    solid_motions,
+    stage_solid_section,
+    unit_section,
+    verification_headline,
+    verification_section,
+)
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -164,8 +172,10 @@ def verify(  # noqa: PLR0913 (its options)
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
-        sections = iter([verification_section(found), hinge_section(found.hinges), units, stage])
-        save(report, solid_report(mechanism, verification_headline(found), sections, cautions), "--report")
+        pairs, beside = ({}, None) if found.stage is None else paired_with_theory(mechanism, found.stage.result)
+        more = () if found.stage is None else solid_motions(mechanism, found.stage.result, pairs)
+        sections = iter([verification_section(found), beside, hinge_section(found.hinges), units, stage])
+        save(report, solid_report(mechanism, verification_headline(found), sections, cautions, more), "--report")
     print_missing(found.reasons)
     answer(
         "verify",

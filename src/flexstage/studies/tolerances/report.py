@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import flexstage
 from flexstage.base.digest import digest
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, Section, page, section
-from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import stage_section
+from flexstage.show.sections.stage import platform_modes, turning_section
+from flexstage.show.viewer.data import StageData, stage_data
+from flexstage.show.viewer.motions import Group, Motion
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.tables import failure_table
 from flexstage.studies.tolerances.figures import crosstalk_figure, crosstalk_title, distributions_figure, shares_figure, yields_figure
@@ -28,8 +31,9 @@ def tolerance_report(found: Toleranced) -> str:
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     yields = Picture(to_svg(yields_figure(found), "yields", "yields of the specification's lines"), _YIELDS) if said.lines else None
     shares = Picture(to_svg(shares_figure(found), "shares", "shares of the variance"), _SHARES)
+    data = _spread(found, stage_data(study.design))
     sections: list[Section | None] = [
-        stage_section(scene(study.design)),
+        turning_section(study.design, data),
         section("Yield", [yield_table(found), yields]),
         caveat_section(study.design, loaded_findings(study)),
         section("What scatters", [scatter_table(found)]),
@@ -40,7 +44,22 @@ def tolerance_report(found: Toleranced) -> str:
         section("Copies without values", [failure_table(found.results)] if found.results.failures else []),
     ]
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
-    return page(Head(study.name, "Tolerances", origin, _headline(found)), [each for each in sections if each is not None])
+    return page(Head(study.name, "Tolerances", origin, _headline(found)), [each for each in sections if each is not None], {"stage": data})
+
+
+def _spread(found: Toleranced, data: StageData) -> StageData:
+    """The stage's motions, with the spread of the frequencies that the study asks for beside those of the platform's modes."""
+    spread = {
+        f"{measure.key}": float(found.summary.spread.deviation[column]) for column, measure in enumerate(found.study.measures.values())
+    }
+    known = {each.name: spread.get(f"frequency.platform.{place}") for place, each in enumerate(platform_modes(data), start=1)}
+    return replace(data, motions=tuple(_with_spread(each, known.get(each.name)) for each in data.motions))
+
+
+def _with_spread(motion: Motion, deviation: float | None) -> Motion:
+    if motion.group is not Group.MODE or deviation is None:
+        return motion
+    return replace(motion, remark=f"{motion.remark}; over the copies \u00b1{number(deviation, 3)} Hz (one standard deviation)")
 
 
 def _headline(found: Toleranced) -> Headline:
