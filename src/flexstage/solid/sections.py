@@ -11,7 +11,6 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.pairing import Moving, Pair, pair_modes
 from flexstage.analysis.trust import Trust
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.display import number
 from flexstage.show.figures.directional import directional_figure
@@ -134,7 +133,7 @@ def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, 
     bones, read = Skeleton(scene(mechanism).references), stage.read.model
     found: list[Motion] = []
     for index in stage.modes.platform:
-        twists = body_twists(read, ideal(mechanism), stage.modes.shapes[:, index], tuple(bones.references))
+        twists = body_twists(read, None, stage.modes.shapes[:, index], tuple(bones.references))
         frequency = float(stage.modes.frequencies[index])
         pair = theory.get(index)
         told = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
