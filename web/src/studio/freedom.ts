@@ -73,16 +73,15 @@ function arrow(screw: Screw, data: StageData, isLocked: boolean): Arrow {
 
 function list(title: string, screws: Screw[], point: (each: Screw) => void): HTMLElement[] {
   if (!screws.length) return [];
-  const items = screws.map((each) => h("li", {}, h("button", { type: "button", click: () => point(each) }, each.name), ` ${spell(each)}`));
+  const items = screws.map((each) => h("li", {}, h("button", { type: "button", click: () => point(each) }, each.name), ` ${spell(each)}`, h("small", { className: "quiet", title: each.links.join(", ") }, ` ${each.links.length} links ${title === "Locked" ? "hold it" : "bend"}`)));
   return [h("h4", {}, title), h("ul", {}, ...items)];
 }
 
 function spell(screw: Screw): string {
-  const links = screw.links.length ? `; held by ${screw.links.join(", ")}` : "";
-  if (screw.pitch === null) return `moves along (${screw.direction.map((each) => digits(each, 3)).join(", ")})${links}`;
-  const point = screw.point.map((each) => digits(1000 * each, 4)).join(", ");
+  if (screw.pitch === null) return `moves along (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")})`;
+  const point = screw.point.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : 1000 * each, 4)).join(", ");
   const pitch = Math.abs(screw.pitch) < 1e-9 ? "" : `, ${digits(1000 * screw.pitch, 4)} mm a radian`;
-  return `turns about (${screw.direction.map((each) => digits(each, 3)).join(", ")}) through (${point}) mm${pitch}${links}`;
+  return `turns about (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")}) through (${point}) mm${pitch}`;
 }
 
 function told(title: string, said: Fact[]): HTMLElement[] {

@@ -113,16 +113,15 @@ export class Jog {
   }
 
   private reset(): void {
-    this.strokes = this.strokes.map(() => 0);
-    this.moved();
     this.leave();
+    this.studio.viewer.value?.setPose(null);
   }
 
-  /** The stage back to rest or to its mode; the sliders keep their places. */
+  /** All strokes zero; what the picture shows then is left to who comes next. */
   private leave(): void {
+    this.studio.connection.drop("pose");
     this.strokes = this.strokes.map(() => 0);
     this.posed = null;
-    this.studio.viewer.value?.setPose(null);
     this.update();
   }
 
@@ -169,12 +168,12 @@ export class Jog {
     const told: Record<string, string> = this.isActive() ? { ...this.posed?.beyond } : {};
     for (const [name, row] of this.rows) {
       const isOut = outside(row.channel, Number(row.slider.dataset["value"] ?? 0));
-      if (isOut) told[name] ??= `${name} is at the end of its stroke`;
+      if (isOut) told[name] ??= "its stroke ends";
       row.root.classList.toggle("poor", name in told);
     }
     const isAny = Object.keys(told).length > 0;
     for (const row of this.axisRows.values()) row.root.classList.toggle("poor", isAny && Number(row.slider.dataset["value"]) !== 0);
-    if (this.rows.size) fill(this.beyond, ...Object.values(told).map((each) => h("span", { className: "poor" }, each)));
+    if (this.rows.size) fill(this.beyond, ...Object.entries(told).map(([name, each]) => h("span", { className: "poor" }, h("b", {}, name), ` ${each}`)));
     this.paint(told);
   }
 

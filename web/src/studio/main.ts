@@ -33,7 +33,7 @@ const card = new PartCard(studio, belongs);
 const modes = new ModeBar(studio, stage);
 const jog = new Jog(studio, stage);
 const jobs = new JobsPane(studio);
-const strip = motionStrip(modes, jog.root);
+const strip = motionStrip(modes, jog);
 new VerdictTable(studio);
 new FigureTable(studio);
 new FreedomPane(studio, stage);

@@ -131,14 +131,15 @@ export class ModeBar {
 }
 
 /** The strip below the stage: modes or jog. */
-export function motionStrip(modes: ModeBar, jog: HTMLElement): (name: "modes" | "jog") => void {
-  const strips = { modes: modes.root, jog };
+export function motionStrip(modes: ModeBar, jog: { root: HTMLElement; load(): void }): (name: "modes" | "jog") => void {
+  const strips = { modes: modes.root, jog: jog.root };
   const buttons = Object.keys(strips).map((name) => h("button", { type: "button", role: "tab", click: () => show(name as "modes" | "jog") }, name === "modes" ? "Modes" : "Jog"));
   const show = (name: "modes" | "jog"): void => {
     for (const [each, strip] of Object.entries(strips)) strip.hidden = each !== name;
     for (const [at, each] of Object.keys(strips).entries()) buttons[at]?.setAttribute("aria-selected", String(each === name));
+    if (name === "jog") jog.load();
   };
-  fill(byId("motion"), h("div", { className: "bar tabs", role: "tablist" }, ...buttons), modes.root, jog);
+  fill(byId("motion"), h("div", { className: "bar tabs", role: "tablist" }, ...buttons), modes.root, jog.root);
   show("modes");
   return show;
 }

@@ -75,8 +75,8 @@ export class Responses {
       height,
       legend: { show: false },
       cursor: { sync: { key: "response" }, points: { size: 6 }, drag: { x: false, y: false } },
-      scales: { x: { time: false, distr: 3 }, y: scale(what) },
-      axes: [axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360] } : {}) }],
+      scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: scale(what) },
+      axes: [axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : {}) }],
       series,
       hooks: { draw: [(plot) => this.modes(plot, what)], setCursor: [(plot) => this.tell(plot, curves)], ready: [(plot) => this.listen(plot)] },
     };
@@ -128,7 +128,7 @@ export class Responses {
 
   /** Which curve is which. */
   private name(present: Figures, before: Figures | null): void {
-    const names = present.curves.slice(0, 4).flatMap((each, at) => [h("i", { className: `curve-${at}` }), `${each.output}/${each.input}`]);
+    const names = present.curves.slice(0, 4).flatMap((each, at) => [h("i", { className: `curve-${at}` }), named(each)]);
     fill(this.told, ...names, ...(before ? [h("i", { className: "dashed" }), this.studio.against.value || "file"] : []));
   }
 
@@ -137,7 +137,7 @@ export class Responses {
     const along = at === null || at === undefined ? undefined : plot.data[0][at];
     const [magnitude, phase] = this.plots;
     if (at === null || at === undefined || along === undefined || !magnitude || !phase) return;
-    const values = curves.map((each, n) => h("div", {}, h("i", { className: `curve-${n}` }), `${each.output}/${each.input} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`));
+    const values = curves.map((each, n) => h("div", {}, h("i", { className: `curve-${n}` }), `${named(each)} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`));
     fill(this.values, h("b", {}, `${digits(along)} Hz`), ...values);
     this.values.hidden = false;
     this.values.classList.toggle("away", (plot.cursor.left ?? 0) > plot.over.clientWidth / 2);
@@ -164,10 +164,12 @@ function interpolated(along: number[], own: number[], values: number[]): number[
   });
 }
 
+const named = (curve: Curve): string => `${curve.output.replace("platform.", "")}/${curve.input}`;
+
 const colour = (at: number): (() => string) => () => getComputedStyle(document.documentElement).getPropertyValue(`--curve-${at % 4}`);
 
 function line(curve: Curve, at: number, isOld: boolean): Series {
-  return { label: `${curve.output}/${curve.input}`, stroke: colour(at), width: isOld ? 1 : 1.6, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
+  return { label: named(curve), stroke: colour(at), width: isOld ? 1 : 1.6, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
 }
 
 function scale(what: string): Scale {

@@ -1,0 +1,299 @@
+"""The studio in a browser, with its real server: one page is loaded, and most checks share it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+import flexstage as fs
+from flexstage.models.lumped import lumped
+from tests.apps.studio_page import served as served_studio
+from tests.browser.conftest import Watch, browser_path
+
+NECK = "parts.neck.thickness"
+LOCAL = ("file:", "data:", "blob:", "about:", "http://127.0.0.1:", "ws://127.0.0.1:")
+PATIENCE = 60.0  # s: a busy machine is slow, not wrong
+EDITOR = "#editor .cm-content"
+
+Served = tuple[str, Path]
+Serve = Callable[[str], Served]
+
+
+def until(page: Page, expression: str, patience: float = PATIENCE) -> object:
+    """What an expression comes to be, once it is something. The page's policy forbids the strings that the browser itself would wait for."""
+    end = time.monotonic() + patience
+    while not (found := page.evaluate(f"() => ({expression})")):
+        assert time.monotonic() < end, f"not within {patience:g} s: {expression}"
+        page.wait_for_timeout(50)
+    return found
+
+
+def settled(page: Page) -> None:
+    """All results are those of the text as it is, and the picture too."""
+    until(
+        page,
+        "studio.state.value && ['figures', 'verdicts', 'reach'].every((each) => studio[each].value?.revision === studio.state.value.revision)",
+    )
+    until(page, "studio.scene.value && studio.viewer.value")
+
+
+def slide(page: Page, address: str, share: float) -> None:
+    """Takes the slider of a number, moves it in steps to a share of its range and lets it go."""
+    page.evaluate(
+        """([address, share]) => {
+            const slider = document.querySelector(`[data-address="${address}"] input[type=range]`);
+            slider.dispatchEvent(new PointerEvent("pointerdown"));
+            for (const step of [0.4, 0.45, share]) { slider.value = String(1000 * step); slider.dispatchEvent(new Event("input")); }
+            slider.dispatchEvent(new Event("change"));
+        }""",
+        [address, share],
+    )
+
+
+@pytest.fixture(scope="module")
+def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serve]:
+    """Starts a studio on a text: its address, and the file."""
+    with ExitStack() as stack:
+
+        def start(text: str) -> Served:
+            file = tmp_path_factory.mktemp("studio") / "stage.toml"
+            file.write_text(text, encoding="utf-8")
+            studio, _ = stack.enter_context(served_studio(file))
+            return studio.url, file
+
+        yield start
+
+
+@pytest.fixture(scope="module")
+def served(serve: Serve) -> Served:
+    return serve(fs.dumps(fs.case("double-triangle")))
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, served: Served) -> Iterator[Page]:
+    """The studio's page on the shipped stage, drawn and settled; no error and no foreign request until its end."""
+    watch = Watch(LOCAL)
+    context = browser.new_context(viewport={"width": 1440, "height": 900})
+    made = watch.over(context.new_page())
+    made.goto(served[0])
+    settled(made)
+    yield made
+    context.close()
+    assert not watch.errors
+    assert not watch.requests
+
+
+@pytest.fixture(autouse=True)
+def _untouched(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Every test leaves the text as it found it."""
+    yield
+    if "page" in request.fixturenames:
+        page, (_, file) = request.getfixturevalue("page"), request.getfixturevalue("served")
+        undone(page)
+        assert page.evaluate("() => studio.state.value.text") == file.read_text(encoding="utf-8")
+
+
+def undone(page: Page) -> None:
+    """Undoes all that is to undo; what is computed then is nobody's business."""
+    while page.evaluate("() => studio.state.value.undo"):
+        before = page.evaluate("() => studio.state.value.revision")
+        page.keyboard.press("Control+z")
+        until(page, f"studio.state.value.revision > {before}")
+
+
+def test_the_token_leaves_the_address_bar_and_figures_stand_there(page: Page) -> None:
+    assert "#" not in page.url
+    assert "stroke.x" in page.inner_text("#verdicts")
+    assert page.locator(".amount").count() > 100
+    assert page.locator("#problems .error").count() == 0
+
+
+def test_figures_after_a_slider_are_the_librarys_and_undo_and_save_keep_the_file_byte_for_byte(page: Page, served: Served) -> None:
+    file = served[1]
+    original, before = file.read_bytes(), page.evaluate("() => studio.state.value.revision")
+    slide(page, NECK, 0.7)
+    until(page, f"studio.state.value.revision > {before}")
+    settled(page)
+    text = page.evaluate("() => studio.state.value.text")
+    frequencies = np.atleast_1d(fs.modes(lumped(fs.loads(text))).frequencies)
+    shown = page.evaluate("() => studio.figures.value.modes.map((each) => [each.number, each.frequency])")
+    assert len(shown) >= 6
+    # the same code on the same text: rounding of one eigenvalue solve
+    assert [each for _, each in shown] == pytest.approx([frequencies[number - 1] for number, _ in shown], rel=1e-9)
+    assert page.locator(f'[data-address="{NECK}"].changed .was').inner_text().startswith("was 1.54 mm")
+    page.keyboard.press("Control+s")
+    until(page, "studio.state.value.saved")
+    assert file.read_bytes() == text.encode() != original
+    undone(page)
+    page.keyboard.press("Control+s")
+    until(page, "studio.state.value.saved")
+    assert file.read_bytes() == original
+
+
+def test_a_click_picks_the_part_that_stands_there_and_shows_its_lines(page: Page) -> None:
+    # the middle of B1's stack: 85 mm from the axis along -y, 80 mm up; the first click may take what stands before it
+    x, y = page.evaluate("() => studio.viewer.value.probe.project([0, -0.085, 0.08])")
+    box = page.locator("#view").bounding_box()
+    assert box is not None
+    for _ in range(3):
+        page.mouse.click(box["x"] + x, box["y"] + y)
+        if page.evaluate("() => studio.link.value") == "B1/pzt":
+            break
+    until(page, "studio.link.value === 'B1/pzt' && !document.querySelector('#pane-part').hidden && document.querySelector('#pane-part h3')")
+    until(page, "document.querySelector('#pane-part h3').textContent.includes('stack_horizontal')")
+    until(page, "document.querySelector('#editor').shadowRoot.querySelectorAll('.cm-lit').length > 0")
+    assert "stack_horizontal" in " ".join(page.locator("#editor .cm-lit").all_inner_texts())
+    page.keyboard.press("Escape")
+
+
+def test_a_mode_moves_what_is_drawn(page: Page) -> None:
+    page.keyboard.press("0")
+    page.wait_for_timeout(100)
+    still = page.locator("#view").screenshot()
+    page.keyboard.press("4")
+    until(page, "studio.viewer.value.probe.motion?.name === '4'")
+    page.keyboard.press("Space")
+    page.evaluate("() => studio.viewer.value.setPhase(0.25)")
+    page.wait_for_timeout(100)
+    assert page.locator("#view").screenshot() != still
+    assert "mm" in page.inner_text("#motion output")
+    page.keyboard.press("Space")
+    page.keyboard.press("0")
+
+
+@pytest.mark.full
+def test_jog_reads_gauges_and_says_what_ends_it(page: Page) -> None:
+    page.get_by_role("tab", name="Jog").click()
+    until(page, "studio.motion.value?.revision === studio.state.value.revision")
+    page.evaluate(
+        """() => {
+            const slider = document.querySelector("#jog .channel input");
+            slider.value = slider.max;
+            slider.dispatchEvent(new Event("input"));
+        }"""
+    )
+    until(page, "document.querySelector('#jog .beyond').textContent.includes('B1')")
+    assert page.locator("#jog .channel.poor").count() > 0
+    gauge = page.evaluate("() => studio.motion.value.gauges.values[0][0] * 90e-6")  # 1.2 times half of 150 um
+    assert f"{gauge * 1e6:.3g}" in page.inner_text("#jog .gauges").replace("\u2212", "-")
+    page.get_by_role("button", name="to zero").click()
+    page.get_by_role("tab", name="Modes").click()
+
+
+def test_a_mistake_shows_at_its_line_and_the_last_sound_design_stays(page: Page) -> None:
+    verdicts = page.inner_text("#verdicts")
+    page.locator(EDITOR).click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type('\n[parts.oops]\nkind = "leaf"')
+    until(page, "!studio.state.value.sound")
+    line = page.evaluate("() => studio.state.value.problems[0].line")
+    lines = page.evaluate("() => studio.state.value.text.split('\\n')")
+    assert "oops" in " ".join(lines[line - 2 : line + 1])
+    assert f"line {line}" in page.inner_text("#problems")
+    assert page.locator("#editor .cm-lint-marker-error").count() >= 1
+    assert page.inner_text("#verdicts") == verdicts
+    undone(page)
+    assert page.locator("#problems .error").count() == 0
+
+
+@pytest.mark.full
+def test_two_pages_show_the_same_text_and_one_may_close_in_the_middle(page: Page, served: Served) -> None:
+    other = page.context.new_page()
+    other.goto(served[0])
+    settled(other)
+    slide(page, NECK, 0.55)
+    until(other, f"studio.state.value.amounts.some((each) => each.address === '{NECK}' && each.value !== each.old)")
+    slide(other, NECK, 0.8)
+    other.close()
+    settled(page)
+    undone(page)
+    assert page.evaluate("() => studio.connection.state.value") == "open"
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1024, 768), (390, 844)])
+def test_nothing_is_wider_than_the_window(browser: Browser, served: Served, width: int, height: int, dark: bool) -> None:
+    made = browser.new_page(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
+    made.goto(served[0])
+    settled(made)
+    assert made.evaluate("() => document.documentElement.scrollWidth") <= width
+    tops = {
+        name: made.evaluate(f"() => document.querySelector('#{name}').getBoundingClientRect().top")
+        for name in ("verdicts", "stage", "numbers")
+    }
+    assert width > 760 or tops["verdicts"] < min(tops["stage"], tops["numbers"])
+    made.close()
+
+
+@pytest.mark.full
+def test_without_webgl_figures_text_and_numbers_live(served: Served) -> None:
+    path = browser_path()
+    if path is None:
+        pytest.skip("no browser")
+    watch = Watch(LOCAL)
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu", "--disable-3d-apis"])
+        made = watch.over(launched.new_page())
+        made.goto(served[0])
+        until(made, "document.body.classList.contains('flat')")
+        assert "no WebGL" in made.inner_text("#told")
+        assert "stroke.x" in made.inner_text("#verdicts")
+        assert made.locator("#editor .cm-line").count() > 5
+        launched.close()
+    assert not [each for each in watch.errors if "WebGL" not in each]
+
+
+WIRES = """format = "flexstage 1"
+name = "a thousand wires"
+mode_limit = "1e5 Hz"
+
+[materials.steel]
+like = "SUS420"
+
+[parts.wire]
+kind = "rod"
+material = "steel"
+length = "40 mm"
+diameter = "0.4 mm"
+
+[bodies.platform.solids.plate]
+shape = "block"
+material = "steel"
+size = ["300 mm", "300 mm", "10 mm"]
+at = ["0 mm", "0 mm", "45 mm"]
+
+[units.wire.links]
+wire = { joins = ["ground", "platform"], part = "wire", at = ["0 mm", "0 mm", "0 mm"], along = "x" }
+
+[place.W1-W1000]
+unit = "wire"
+polar = { radius = "140 mm", first = "0 deg", facing = "axis", height = "20 mm" }
+"""
+
+
+@pytest.mark.full
+def test_a_stage_of_a_thousand_links_is_drawn_picked_and_turned_and_the_wait_is_told(browser: Browser, serve: Serve) -> None:
+    made = browser.new_page(viewport={"width": 1440, "height": 900})
+    made.goto(serve(WIRES)[0])
+    until(made, "document.querySelector('#engine').textContent !== ''")
+    settled(made)
+    assert made.evaluate("() => Object.keys(studio.state.value.links).length") == 1000
+    x, y = made.evaluate("() => studio.viewer.value.probe.project([0, -0.14, 0.02])")
+    before = made.evaluate("() => studio.viewer.value.probe.camera.position")
+    box = made.locator("#view").bounding_box()
+    assert box is not None
+    made.mouse.click(box["x"] + x, box["y"] + y)
+    until(made, "studio.link.value?.startsWith('W')")
+    made.mouse.move(box["x"] + 100, box["y"] + 100)
+    made.mouse.down()
+    made.mouse.move(box["x"] + 250, box["y"] + 140, steps=4)
+    made.mouse.up()
+    until(made, f"studio.viewer.value.probe.camera.position[0] !== {before[0]}")
+    made.close()
