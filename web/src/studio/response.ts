@@ -76,7 +76,10 @@ export class Responses {
       legend: { show: false },
       cursor: { sync: { key: "response" }, points: { size: 6 }, drag: { x: false, y: false } },
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: scale(what) },
-      axes: [axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : {}) }],
+      axes: [
+        { ...axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), splits },
+        { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : { splits }) },
+      ],
       series,
       hooks: { draw: [(plot) => this.modes(plot, what)], setCursor: [(plot) => this.tell(plot, curves)], ready: [(plot) => this.listen(plot)] },
     };
@@ -172,9 +175,21 @@ function line(curve: Curve, at: number, isOld: boolean): Series {
   return { label: named(curve), stroke: colour(at), width: isOld ? 1 : 1.6, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
 }
 
+/** Magnitudes over eight decades below the largest; what is less is rounding noise of the solve. */
 function scale(what: string): Scale {
-  return what === "magnitude" ? { distr: 3 } : { auto: true };
+  return what === "magnitude" ? { distr: 3, range: (_, low, high) => [Math.max(low, high * 1e-8), high * 1.5] } : { auto: true };
 }
+
+/** Powers of ten between two values, with twice and five times where there are few, and every second or third where there are many. */
+function decades(low: number, high: number): number[] {
+  const [first, last] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
+  const step = Math.max(1, Math.ceil((last - first) / 5));
+  const parts = last - first <= 3 ? [1, 2, 5] : [1];
+  const powers = Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, at) => 10 ** (first + at * step));
+  return powers.flatMap((power) => parts.map((part) => part * power)).filter((each) => each >= low && each <= high);
+}
+
+const splits: Axis.Splits = (_, __, low, high) => decades(low, high);
 
 function axis(size: number, values: Axis["values"]): Axis {
   const ink = (): string => getComputedStyle(document.documentElement).getPropertyValue("--quiet");
