@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -26,7 +28,11 @@ from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.fea.model import model
 from flexstage.solid.fea.ties import in_words, stated_links
+from flexstage.solid.resolution import Resolution
+from flexstage.solid.tables import verdict_table_of
+from flexstage.solid.verification import verify
 from tests.laws.test_superelement import elastic, part_of
+from tests.roundtrip.test_gltf import leaf_stage
 
 COARSE = Reduction(Fineness(neck=3.0, block=3.0, grading=0.8, order=2), modes=4)
 FINER = Reduction(Fineness(neck=3.0, block=3.0, grading=0.8, order=3), modes=4)
@@ -149,3 +155,15 @@ def test_shipped_stages_on_voice_coils_have_solids():
     for name in ("voice-coil-stage", "tilt-stage"):
         assert in_words(stated_links(expand(case(name)))) == "1 voice coil as stated"
         assert components(case(name))
+
+
+@pytest.mark.full
+def test_a_stage_on_a_voice_coil_verifies_and_says_what_was_not_meshed():
+    whole = leaf_stage()
+    coil = Link(("ground", "platform"), "coil", (15 * mm, 14 * mm, 0.0), (0.0, -1.0, 0.0), X)
+    found = verify(replace(whole, parts={**whole.parts, "coil": PARTS["coil"]}, links={**whole.links, "coil": coil}), Resolution(0.1, 2))
+    assert found.as_stated == {"coil": "voice_coil"}
+    assert "Not meshed: 1 voice coil as stated (coil)." in verdict_table_of(found).notes
+    first = next(row for row in found.rows if row.figure.startswith("platform mode 1"))
+    assert first.difference is not None
+    assert abs(first.difference) < 0.1

@@ -90,7 +90,7 @@ def test_a_solid_of_an_assembly_is_chosen_by_its_name_or_place(tmp_path: Path) -
 
 
 def test_a_reflected_solid_is_the_image_of_the_files(tmp_path: Path) -> None:
-    """A wedge beside the plane: its image has its volume, stands on the other side, and what is stated of it is held to the file as well."""
+    """A wedge beside the plane: its image has its volume, stands on the other side, held to the file as well."""
     wedge = occ.Box(occ.Pnt(0, 2, 0), occ.Pnt(4, 8, 3)) - occ.Box(occ.Pnt(1, 4, -1), occ.Pnt(5, 9, 4))
     path = tmp_path / "wedge.step"
     wedge.WriteStep(str(path))
