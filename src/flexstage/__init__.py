@@ -68,6 +68,7 @@ HOMES = {
     "analysis.random_response": "Spectrum random_response",
     "analysis.drift": "drift",
     "analysis.sensitivities": "sensitivities",
+    "analysis.stroke": "stroke",
     "analysis.workspace.workspace": "workspace",
     "analysis.workspace.reach": "reach",
     "analysis.inner_stage": "amplified",

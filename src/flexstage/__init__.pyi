@@ -32,6 +32,9 @@ from flexstage.analysis.response import (
 from flexstage.analysis.sensitivities import (
     sensitivities as sensitivities,
 )
+from flexstage.analysis.stroke import (
+    stroke as stroke,
+)
 from flexstage.analysis.statics import (
     freedom_stiffness as freedom_stiffness,
     statics as statics,

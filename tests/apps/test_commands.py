@@ -37,7 +37,7 @@ from tests.show.widths import broken
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [each.name for each in COMMANDS]
-LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop")
+LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop", "buckle")
 """Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
 
 EXAMPLES = [

@@ -17,9 +17,10 @@ FINE = 200
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """A rule of Gauss on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant from 0 to each point.
+    """A rule of Gauss on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant to each point.
 
-    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) the three points of Gauss in each interval between them.
+    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) the three points of Gauss in each interval between them. `ends` (2, n)
+    are the interpolant's values at 0 and 1.
     """
 
     points: Array
@@ -27,6 +28,7 @@ class Rule:
     running: Array
     knots: Array
     inner: Array
+    ends: Array
 
     @property
     def size(self) -> int:
@@ -49,7 +51,8 @@ def gauss(size: int) -> Rule:
     running = 0.5 * antiderivatives.T @ to_coefficients
     knots = np.concatenate([[0.0], points, [1.0]])
     inner = (knots[:-1, None] + np.diff(knots)[:, None] * GAUSS_THREE).ravel()
-    return Rule(points, 0.5 * weights, running, knots, inner)
+    ends = polynomials(size, np.array([0.0, 1.0])).T @ to_coefficients
+    return Rule(points, 0.5 * weights, running, knots, inner, ends)
 
 
 def polynomials(count: int, places: Array) -> Array:

@@ -17,9 +17,13 @@ from flexstage.models.nonlinear.graph import System, assemble
 from flexstage.models.nonlinear.newton import Effort
 from flexstage.models.nonlinear.stage import Nonlinear
 
+WEIGHT = "weight"
+"""The load that is the stage's own weight, payloads included."""
 _FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
-_NEAR = Effort(halvings=0)
+_NEAR = Effort(halvings=0, iterations=12)
 """Each state starts from one beside it."""
+_ROUGH = 1e-6
+"""How far a count is bisected where no stiffness goes through zero."""
 _SEEN = 1e-6
 """Work of the load on the motion, over their sizes, below which it does none."""
 
@@ -70,9 +74,11 @@ def critical(
 ) -> Critical:
     """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
 
-    The factor doubles from 0.001, each state from the one before; the change of `unstable_motions` is then bisected, or
-    found as a zero of the stage's lowest stiffness. Raises `DesignError` for a load that is nothing, for a stage that is unstable without
-    it, and where nothing gives way up to `most`.
+    Loads are named as in `equilibrium`; `weight` names the stage's own, which then counts as a load alone if `weight` is zero.
+
+    The factor doubles from 0.001, each state from the one before; the change of `unstable_motions` is then found, to `tolerance`, as a
+    zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Raises `DesignError` for a load that is nothing, for a stage that is
+    unstable without it, and where nothing gives way up to `most`.
     """
     if not any(load.values()):
         raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
@@ -99,8 +105,9 @@ class _Search:
 
     def at(self, factor: float, start: State | None) -> State:
         scaled = {name: factor * value for name, value in self.load.items()}
+        weight = self.weight + scaled.pop(WEIGHT, 0.0)
         together = {name: scaled.get(name, 0.0) + self.rest.get(name, 0.0) for name in {**self.rest, **scaled}}
-        return equilibrium(self.model, together, weight=self.weight, start=start, effort=_NEAR)
+        return equilibrium(self.model, together, weight=weight, start=start, effort=_NEAR)
 
     @staticmethod
     def motions(state: State) -> int:
@@ -109,18 +116,18 @@ class _Search:
 
 def _close(search: _Search, between: tuple[float, float], last: State, tolerance: float) -> Critical:
     """Bisect the count; once both sides are near, the stage's lowest stiffness is taken to zero instead."""
-    low, high = between
-    while high - low > tolerance * high:
+    (low, high), close = between, 1e-2
+    while high - low > max(_ROUGH, tolerance) * high:
         middle = 0.5 * (low + high)
         found = search.at(middle, last)
         if search.motions(found) == 0:
             last, low = found, middle
-        elif not bool(found.converged) or high - low > 1e-2 * high:
+        elif not bool(found.converged) or high - low > close * high:
             high = middle
         else:
             sharp = _zero(search, (low, middle), last, tolerance)
             if sharp is None:
-                high = middle
+                high, close = middle, 0.03 * close
             else:
                 return _told(search, sharp, search.at(sharp, last))
     return _told(search, 0.5 * (low + high), last)
@@ -164,9 +171,8 @@ def _told(search: _Search, factor: float, state: State) -> Critical:
     ]
     inside = min(weakest, default=(1.0, ""))
     own = inside[1] if inside[0] < 1e-7 else ""
-    pushed = model.dead(
-        replace(state.loads, inputs=_inputs(search), gravity=0.0 * state.loads.gravity, constant=0.0 * state.loads.constant)
-    )
+    gravity = search.load.get(WEIGHT, 0.0) * model.gravity[None]
+    pushed = model.dead(replace(state.loads, inputs=_inputs(search), gravity=gravity, constant=0.0 * state.loads.constant))
     work = _work(model, state, pushed, motion)
     return Critical(factor, model.bodies, motion.reshape(-1, 6), Kind.LIMIT if work > _SEEN else Kind.BIFURCATION, own, state)
 

@@ -1,0 +1,119 @@
+"""A stage over its stroke: force, stiffness, parasitic motion, frequencies, strain, stability at every point of a path."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.strain import Strains, strains
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_STRAIN, _CURVING = 0.02, 40.0
+_FREQUENCIES = 3
+_FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke(InNotebook):
+    """A stage along `drive`: a row a point `along` it.
+
+    Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
+    displacement and rotation vector; its first natural frequencies, free under that force; the largest strain of a flexure; and in how many
+    ways the free stage would leave that place (0: stable).
+    """
+
+    drive: str
+    along: Matrix
+    strained: Annotated[Strains, INNER]
+    provenance: str
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory, or not found."""
+        return tuple(_cautions(self))
+
+
+def stroke(path: Path) -> Stroke:
+    """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
+
+    Frequencies are NaN where the free stage is not stable. `loads` and weight are those of the path.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.path import path
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = stroke(path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
+    >>> found.along.columns[:4]
+    ('platform.x', 'force', 'stiffness', 'platform.y')
+    """
+    about = linearise(path.state)
+    strained = strains(path.state)
+    columns = dict(_columns(path, about, strained))
+    values = np.stack([values for values, _ in columns.values()], axis=-1)
+    rows = tuple(str(number + 1) for number in range(len(path.values)))
+    units = tuple(tuple(unit for _, unit in columns.values()) for _ in rows)
+    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), strained, about.provenance)
+
+
+def _columns(path: Path, about: LinearModel, strained: Strains) -> Iterator[tuple[str, tuple[Array, str]]]:
+    owner, _, component = path.drive.rpartition(".")
+    held = component in COMPONENTS and path.state.held == (path.drive,)
+    units: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
+    known = {channel.name: channel.unit for channel in about.inputs}
+    yield path.drive, (path.values, units[component] if held else known.get(path.drive, "1"))
+    if held:
+        force = WRENCH_UNITS[COMPONENTS.index(component)]
+        yield "force", (path.state.reactions[..., 0], force)
+        conjugate = f"{owner}.{_FORCE_OF[component]}"
+        if conjugate in known:
+            yield "stiffness", (_stiffness(about, path.drive, conjugate), f"{force}/{units[component]}")
+    twist = path.state.twist(PLATFORM)
+    yield from (
+        (f"platform.{name}", (twist[..., place], units[name])) for place, name in enumerate(COMPONENTS) if f"platform.{name}" != path.drive
+    )
+    frequencies = np.sqrt(eigen(about).values) / (2.0 * np.pi)
+    yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
+    yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
+    yield "unstable", (np.where(path.motions < 0, np.nan, path.motions), "1")
+
+
+def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
+    """Force over displacement in its own direction, everything else free."""
+    known = np.asarray(np.isfinite(about.stiffness_matrix).all(axis=(-2, -1)))[..., None, None]
+    matrix = np.where(known, about.stiffness_matrix, np.eye(len(about.coordinates)))
+    moved = np.linalg.solve(matrix, about.input_matrix[..., about.input_index((force,))])
+    compliance = (about.output[..., about.output_index((coordinate,)), :] @ moved)[..., 0, 0]
+    return np.where(known[..., 0, 0], 1.0 / compliance, np.nan)
+
+
+def _cautions(found: Stroke) -> Iterator[Finding]:
+    largest, curving = (np.nan_to_num(each) for each in (found.strained.largest, found.strained.curving))
+    values = found.along.values[:, 0]
+    for name, each in zip(found.strained.names, np.moveaxis(largest, -1, 0), strict=True):
+        if np.max(each) > _STRAIN:
+            what = f"its strain reaches {np.max(each):.2%}, beyond which no linear elastic law is physics"
+            yield Finding(name, what, "Ask for less stroke, or make it longer or thinner")
+    for name, each in zip(found.strained.names, np.moveaxis(curving, -1, 0), strict=True):
+        if np.max(each) > _CURVING:
+            what = f"b^2 k / t reaches {np.max(each):.3g}, above {_CURVING:g}: two shapes across its width do not suffice"
+            yield Finding(name, what, "Count on an error of some tenths of a per cent in bending")
+    lost = np.isnan(found.along.values[:, -2])
+    if lost.any():
+        what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {values[lost][0]:.4g}"
+        yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.trace)")
+    loose = found.along.values[:, -1] > 0
+    if loose.any():
+        what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {values[loose][0]:.4g}"
+        yield Finding(found.drive, what, "Ask flexstage buckle what gives way")

@@ -1,0 +1,130 @@
+"""Commands of stages away from their drawn position: `stroke`, `buckle`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from flexstage.analysis.stroke import stroke as over_stroke
+from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.labelled import Matrix
+from flexstage.base.quantity import ANGLE, LENGTH, RATIO, Quantity
+from flexstage.base.unit import parse, quantity_of_unit
+from flexstage.models.nonlinear.critical import WEIGHT, Critical, critical
+from flexstage.models.nonlinear.path import path
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.show.command.answer import answer
+from flexstage.show.command.design import open_design
+from flexstage.show.command.options import Changes, Csv, Design, Json, Xlsx, text_option
+from flexstage.show.table import result_tables
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_ENOUGH = 1e-4
+"""How closely a critical factor is printed."""
+_Loads = Annotated[
+    list[str] | None,
+    text_option("--load", "NAME=VALUE", 'A load that stays: "platform.fx=-20 N", a stroke "B1=10 um". May be given several times.'),
+]
+
+
+def stroke(  # noqa: PLR0913 (its options)
+    design: Design,
+    *,
+    drive: Annotated[
+        str, text_option("--drive", "NAME", "What is driven: a coordinate (platform.x), a stroke (B1), a force.")
+    ] = "platform.x",
+    start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: as drawn.")] = "",
+    end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
+    points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points of the stroke.")] = 11,
+    load: _Loads = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
+    xlsx: Xlsx = None,
+) -> None:
+    """Force, stiffness, parasitic motion, frequencies over a stroke.
+
+    At large displacements, under the stage's weight and the loads that are named: every point is an equilibrium, and its frequencies and
+    stiffness are those of the stage there.
+    """
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
+    model = nonlinear(mechanism)
+    quantity = _quantity_of(model, drive)
+    low = parse(start, quantity, where="--from") if start else 0.0
+    high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
+    found = over_stroke(path(model, drive, np.linspace(low, high, points), loads=_loads(model, load or ())))
+    answer(
+        "stroke",
+        mechanism,
+        lambda: found,
+        lambda: result_tables(found),
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=found.cautions,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Buckling:
+    """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body."""
+
+    load: str
+    factor: Annotated[float, RATIO]
+    kind: str
+    link: str
+    shape: Matrix
+
+
+def buckle(
+    design: Design,
+    *,
+    load: Annotated[
+        list[str] | None,
+        text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: the weight.'),
+    ] = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
+    xlsx: Xlsx = None,
+) -> None:
+    """How far a load may grow until the stage gives way.
+
+    At large displacements: a limit, which the load cannot pass, or a bifurcation into another motion. All else stays, the weight too.
+    """
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
+    model = nonlinear(mechanism)
+    found = (
+        critical(model, _loads(model, load), tolerance=_ENOUGH) if load else critical(model, {WEIGHT: 1.0}, weight=0.0, tolerance=_ENOUGH)
+    )
+    told = _buckling(", ".join(load or [WEIGHT]), found)
+    answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx)
+
+
+def _buckling(load: str, found: Critical) -> Buckling:
+    size = np.max(np.abs(found.shape))
+    shape = Matrix(found.shape / (size or 1.0), found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
+    return Buckling(load, found.factor, found.kind.value, found.link, shape)
+
+
+def _loads(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
+    """Loads in SI units from texts NAME=VALUE."""
+    units = {channel.name: channel.unit for channel in model.inputs}
+    found: dict[str, float] = {}
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        if name not in units:
+            raise refuse(f"--load {text}", f'there is no load "{name}"', suggest_nearest(name, units))
+        found[name] = parse(value, quantity_of_unit(units[name]), where=f"--load {name}")
+    return found
+
+
+def _quantity_of(model: Nonlinear, drive: str) -> Quantity:
+    units = {channel.name: channel.unit for channel in model.inputs}
+    if drive in units:
+        return quantity_of_unit(units[drive])
+    return ANGLE if drive.rpartition(".")[2].startswith("r") else LENGTH

@@ -1,0 +1,40 @@
+"""A stage over its stroke: what is told of every point agrees with the points beside it, and with the drawn stage at its middle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.cases.parallelogram import parallelogram
+from tests.laws.test_nonlinear import guide
+
+
+def test_stiffness_is_the_slope_of_force():
+    found = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.linspace(0.019, 0.021, 21))).along
+    force, stiffness = (found.values[:, found.columns.index(name)] for name in ("force", "stiffness"))
+    slope = np.gradient(force, 1e-4, edge_order=2)[1:-1]
+    assert stiffness[1:-1] == pytest.approx(slope, rel=1e-4)
+    assert stiffness[-1] > 1.02 * 2.0 * 12.0 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**3
+
+
+def test_at_rest_its_stiffness_and_frequencies_are_those_of_the_drawn_stage():
+    stage = parallelogram()
+    found = fs.stroke(fs.path(fs.nonlinear(stage), "platform.x", np.array([0.0, 1e-4]), weight=0.0)).along
+    small = fs.lumped(stage)
+    assert found.at("1", "f1") == pytest.approx(fs.modes(small).frequencies[0], rel=1e-4)
+    compliance = fs.statics(small).compliance
+    assert found.at("1", "stiffness") == pytest.approx(1.0 / compliance.at("platform.x", "platform.fx"), rel=1e-4)
+
+
+def test_what_is_beyond_theory_is_told():
+    told = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).cautions
+    assert told[0].where == "left"
+    assert "strain" in told[0].what
+
+
+def test_weight_is_a_load_that_grows():
+    """The guide upright, 1 kg on two leaves: 2 pi^2 E I / (L^2 m g), but for what plate action adds."""
+    found = fs.critical(fs.nonlinear(guide(gravity=(-9.80665, 0.0, 0.0))), {"weight": 1.0}, weight=0.0)
+    slender = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2 / 9.80665
+    assert 1.0 < found.factor / slender < 1.1
