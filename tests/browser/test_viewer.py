@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, Page
 import flexstage as fs
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import expand
-from flexstage.show.viewer.data import StageData, still_data
+from flexstage.show.viewer.data import StageData, stage_data, still_data
 from flexstage.show.viewer.fragment import element, fragment
 from flexstage.show.viewer.view import View
 from tests.browser.conftest import Open, Watch
@@ -26,12 +26,12 @@ QUIET = "const viewer = document.querySelector('[data-flexstage]').flexstage, pr
 
 @cache
 def bridge() -> StageData:
-    return fs.view(fs.case("bridge")).data
+    return stage_data(fs.case("bridge"))
 
 
 @cache
 def parallelogram() -> StageData:
-    return fs.view(fs.case("parallelogram")).data
+    return stage_data(fs.case("parallelogram"))
 
 
 def shown(page: Page) -> Page:

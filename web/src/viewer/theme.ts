@@ -20,7 +20,7 @@ const colour = (hex: string): Colour => [0, 2, 4].map((at) => parseInt(hex.slice
 const LIGHT: Theme = {
   kinds: {
     ground: colour("6b7580"), body: colour("c3cbd4"), platform: colour("7fb2dd"), hinge: colour("15998c"),
-    drive: colour("f2a33c"), gauge: colour("c2395a"), stop: colour("8a5fbf"),
+    drive: colour("f2a33c"), gauge: colour("c2395a"),
   },
   ink: [0.13, 0.17, 0.22, 0.75],
   chosen: colour("e5198a"),
@@ -34,7 +34,7 @@ const LIGHT: Theme = {
 const DARK: Theme = {
   kinds: {
     ground: colour("5c6772"), body: colour("8f9baa"), platform: colour("5b93c4"), hinge: colour("2cc0b0"),
-    drive: colour("f5ad4b"), gauge: colour("e8618a"), stop: colour("a98ae0"),
+    drive: colour("f5ad4b"), gauge: colour("e8618a"),
   },
   ink: [0.93, 0.95, 0.97, 0.42],
   chosen: colour("ff4fb0"),

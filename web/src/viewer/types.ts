@@ -4,7 +4,7 @@
 /** Base64 of the little-endian bytes of an array. */
 export type Packed = string;
 
-export type Kind = "ground" | "body" | "platform" | "hinge" | "drive" | "gauge" | "stop";
+export type Kind = "ground" | "body" | "platform" | "hinge" | "drive" | "gauge";
 
 /** Something that is drawn and can be picked; `B1/front foot` is the ground behind a link. Its index in `StageData.parts` is its part number. */
 export interface Part {

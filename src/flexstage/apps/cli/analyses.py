@@ -44,7 +44,7 @@ from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
 from flexstage.show.viewer.data import stage_data
-from flexstage.show.viewer.view import View
+from flexstage.show.viewer.view import view_of
 from flexstage.solid.moving import glb_of
 from flexstage.spatial.frame import COMPONENTS
 
@@ -194,7 +194,7 @@ def _view_ending(path: Path) -> str:
 def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None) -> str | bytes:
     """The stage with its modes, as a page or as a GLB file."""
     shown = stage_data(mechanism, model=linear, found=found)
-    return glb_of(shown) if ending == ".glb" else View(shown, "mode 1").html
+    return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
 
 
 def response(  # noqa: PLR0913 (its options)

@@ -22,19 +22,21 @@ _STYLE = (
 class View:
     """A stage that turns, with its motions: notebooks show it, `save` writes it as a page that stands alone.
 
-    `motion` is the one that it begins with, `height` that of its frame in a notebook, in pixels.
+    `motion` is the one that it begins with, `height` that of its frame in a notebook, in pixels; `picture` (HTML) is what stands there
+    in print and where nothing can turn.
     """
 
     data: StageData = field(repr=False)
     motion: str = ""
     height: int = 560
+    picture: str = field(default="", repr=False)
 
     @property
     def html(self) -> str:
         """The page: one file, nothing loaded from anywhere, the same bytes for the same stage."""
         name = escape(self.data.name)
         head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{name}</title>'
-        body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion)}</main>"
+        body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion, instead=self.picture)}</main>"
         return f'<!doctype html><html lang="en"><head>{head}<style>{_STYLE}</style></head><body>{body}</body></html>\n'
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -57,4 +59,11 @@ def view(mechanism: Mechanism, *, motion: str = "mode 1") -> View:
     >>> fs.view(fs.case("parallelogram")).html[:15]
     '<!doctype html>'
     """
-    return View(stage_data(mechanism), motion)
+    return view_of(mechanism, stage_data(mechanism), motion)
+
+
+def view_of(mechanism: Mechanism, data: StageData, motion: str = "mode 1") -> View:
+    """The view of a stage whose data is known, with the stage's picture."""
+    from flexstage.show.notebook import to_html  # loads matplotlib
+
+    return View(data, motion, picture=to_html(mechanism))
