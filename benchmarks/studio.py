@@ -19,7 +19,6 @@ import psutil
 from websockets.asyncio.client import connect
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.server import Studio
 from flexstage.apps.studio.wire import decode_said, encode
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dumps
@@ -52,24 +51,34 @@ class Page:
         return await self.until(lambda message: getattr(message, "to", None) == number)
 
 
-def spent(studio: Studio) -> float:
+def spent(studio: psutil.Process) -> float:
     """Processor time of the server and of its processes [s]."""
-    return time.process_time() + sum(sum(psutil.Process(each).cpu_times()[:2]) for each in studio.session.processes)
+    return sum(sum(each.cpu_times()[:2]) for each in (studio, *studio.children(recursive=True)))
 
 
 async def measured(folder: Path, links: int) -> None:
     """Everything, one after another."""
     stage = folder / "stage.toml"
     stage.write_text(dumps(case("double-triangle")), encoding="utf-8")
-    studio = Studio(stage)
-    await studio.start()
-    page = await opened(studio)
+    command = (sys.executable, "-m", "flexstage", "studio", str(stage), "--no-browser")
+    process = await asyncio.create_subprocess_exec(*command, stderr=asyncio.subprocess.PIPE)
+    try:
+        line = (await process.stderr.readline()).decode()
+        await measure(psutil.Process(process.pid), line.split()[-1], stage, links)
+    finally:
+        process.terminate()
+        await process.wait()
+
+
+async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> None:
+    """What the studio at an address costs."""
+    page = await opened(url)
     await page.until(lambda message: isinstance(message, say.Figures))
-    print(f"until figures (this process with its imports, and the one that computes): {spent(studio):.2f} s")
+    print(f"until figures, from the command on: {spent(studio):.2f} s")
     await page.until(lambda message: isinstance(message, say.Cautions))
     print(f"until cautions: {spent(studio):.2f} s, {page.bytes} bytes")
     row = next(each for each in page.told[say.State].amounts if each.address == ADDRESS)
-    await asyncio.sleep(2.0)  # the second process starts meanwhile
+    await page.ask(say.Line, line=1)  # the second process has started then
     await page.ask(say.Drag, address=ADDRESS, value=row.value)
     before = spent(studio)
     await page.ask(say.Grip, address=ADDRESS, low=row.low, high=row.high)
@@ -99,14 +108,13 @@ async def measured(folder: Path, links: int) -> None:
             if isinstance(message, (say.Engine, say.Figures, say.Verdicts, say.Reach, say.Scene, say.Cautions)):
                 told = f"{message.text}, {message.seconds} s" if isinstance(message, say.Engine) else ""
                 print(f"{links} links, {time.monotonic() - begun:.1f} s: {type(message).__name__} {told}")
-    await studio.stop()
 
 
-async def opened(studio: Studio) -> Page:
+async def opened(url: str) -> Page:
     """A page that is let in."""
-    host = f"127.0.0.1:{studio.port}"
+    host, token = url.removeprefix("http://").split("/#")
     page = Page(await connect(f"ws://{host}/socket", origin=f"http://{host}", max_size=None, compression=None, proxy=None))
-    await page.connection.send(encode(say.Hello(studio.token, say.VERSION)))
+    await page.connection.send(encode(say.Hello(token, say.VERSION)))
     return page
 
 

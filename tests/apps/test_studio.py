@@ -15,7 +15,9 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
 from flexstage.analysis.statics import statics
+from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
@@ -243,6 +245,22 @@ async def test_a_process_that_dies_is_started_anew(page, studio):
     await page.settle(say.Figures)
     assert page.state.sound
     assert len(page.told[say.Figures].modes) > 3
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="signals of POSIX")
+@on_page
+async def test_what_is_computed_too_long_of_a_text_that_is_no_more_is_given_up(page, studio):
+    """A process that computes is held still meanwhile; a page that waits for it is told, and the next text is computed."""
+    model = studio.session._model
+    (process,) = [each for each in studio.session.processes if each == model.process]
+    os.kill(process, signal.SIGSTOP)
+    await page.ask(say.Edit, text=TEXT.replace('"1 mm"', '"0.95 mm"', 1), revision=page.state.revision)
+    await page.until(lambda page: page.state.revision == page.revision and model.busy(Urgency.SOON) > 0.0)
+    model._since -= 10.0
+    await page.ask(say.Edit, text=TEXT.replace('"1 mm"', '"0.9 mm"', 1), revision=page.state.revision)
+    await page.settle(say.Figures)
+    assert page.told[say.Engine].state == "ready"
+    assert model.process != process
 
 
 @on_page
@@ -486,6 +504,18 @@ async def test_what_takes_long_is_told_before(page, studio):
     (told,) = (each for each in heard if isinstance(each, say.Engine) and each.state == "computes")
     assert told.seconds == 4.0
     assert heard.index(told) < next(place for place, each in enumerate(heard) if isinstance(each, say.Figures))
+
+
+def test_what_cannot_be_opened_is_refused(studio, tmp_path, capsys):
+    port = str(studio[0].port)
+    (tmp_path / "wrong.toml").write_text("x = ")
+    for words, told in (
+        ((tmp_path / "nowhere.toml",), "there is no such file"),
+        ((tmp_path,), "this is a directory"),
+        ((tmp_path / "wrong.toml", "--port", port), f"--port {port}: it cannot be listened at: Address already in use"),
+    ):
+        assert run(["studio", "--no-browser", *map(str, words)]) == 2
+        assert told in capsys.readouterr().err
 
 
 async def _got(port, path, host=None):

@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from flexstage.apps.studio.server import run
-from flexstage.base.finding import refuse
 from flexstage.show.command.options import Design
 from flexstage.show.command.terminal import print_note
 
@@ -35,9 +34,5 @@ def studio(
 
     try:
         asyncio.run(run(design, port, started))
-    except OSError as error:
-        raise refuse(
-            f"--port {port}", f"it cannot be listened at: {error.strerror or error}", "Choose another one, or leave it out"
-        ) from None
     except KeyboardInterrupt:
         print_note("The studio has ended.")

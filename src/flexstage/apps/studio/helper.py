@@ -54,6 +54,7 @@ class Helper:
         self._worker: Worker | None = None
         self._now: tuple[_Task, asyncio.Future[Outcome]] | None = None
         self._since = 0.0
+        self._given_up = False
         self._runner: asyncio.Task[None] | None = None
         self.spent = 0.0
         """Processor time of all tasks [s]."""
@@ -76,8 +77,9 @@ class Helper:
         return await answer
 
     def start_anew(self) -> None:
-        """End the process and what it does; it is started again for the next task."""
-        if self._worker is not None:
+        """Give up what it does: the process ends, and is started again for the next task."""
+        if self._worker is not None and self._now is not None:
+            self._given_up = True
             self._worker.process.kill()
 
     async def close(self) -> None:
@@ -99,12 +101,12 @@ class Helper:
                 task.answer.set_result(None)
                 continue
             outcome = await self._do(task)
-            self.spent += outcome.seconds
+            self.spent += 0.0 if outcome is None else outcome.seconds
             if not task.answer.done():
                 task.answer.set_result(outcome)
 
-    async def _do(self, task: _Task) -> Outcome:
-        """What comes of a task; where the process dies over it, that."""
+    async def _do(self, task: _Task) -> Outcome | None:
+        """What comes of a task; where the process dies over it, that; nothing where it was given up."""
         done: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
         self._now, self._since = (task, done), time.monotonic()
         try:
@@ -113,11 +115,13 @@ class Helper:
             await asyncio.to_thread(self._worker.ask, *task.call)
             return await done
         except EOFError as error:
+            if self._given_up:
+                return None
             return Outcome(None, (Problem(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
         except OSError as error:
             return Outcome(None, (Problem(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
         finally:
-            self._now = None
+            self._now, self._given_up = None, False
 
     def _start(self) -> Worker:
         heard: Heard = queue.SimpleQueue()
@@ -132,7 +136,8 @@ class Helper:
         if word is Word.ENDED and worker is self._worker:
             self._worker, words = None, worker.last_words()
             worker.end()
-            self._died(words)
+            if not self._given_up:
+                self._died(words)
             if waits is not None and not waits.done():
                 waits.set_exception(EOFError(words))
         elif waits is not None and not waits.done():

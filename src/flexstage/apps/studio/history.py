@@ -100,7 +100,8 @@ def _read(path: Path) -> tuple[bytes, str]:
             return raw, raw.decode("utf-8-sig")
     from flexstage.mechanism.store.file import read_text  # takes long to import
 
-    return path.read_bytes(), read_text(path)
+    text = read_text(path)
+    return path.read_bytes(), text
 
 
 def _digest(raw: bytes) -> str:

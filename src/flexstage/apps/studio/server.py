@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import http
+import os
 import secrets
 import urllib.parse
 from collections import deque
@@ -23,7 +24,7 @@ from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
 from flexstage.apps.studio.session import Session
 from flexstage.apps.studio.wire import decode, encode
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, refuse
 
 HOST = "127.0.0.1"
 LARGEST = 8_000_000
@@ -76,8 +77,17 @@ class Studio:
         return f"http://{HOST}:{self._port}/#{self.token}"
 
     async def start(self) -> None:
-        """Listen, and begin to compute. Raises `OSError` where the port is taken."""
-        self._server = await serve(
+        """Listen, and begin to compute. Raises `DesignError` where the port is taken."""
+        try:
+            self._server = await self._listen()
+        except OSError as error:
+            what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
+            raise refuse(f"--port {self._port}", what, "Choose another one, or leave it out") from None
+        self._port = next(iter(self._server.sockets)).getsockname()[1]
+        self._start(self.session.open())
+
+    async def _listen(self) -> Server:
+        return await serve(
             self._page,
             HOST,
             self._port,
@@ -88,8 +98,6 @@ class Studio:
             ping_interval=None,
             open_timeout=_PATIENCE,
         )
-        self._port = next(iter(self._server.sockets)).getsockname()[1]
-        self._start(self.session.open())
 
     async def stop(self) -> None:
         """End everything."""
