@@ -63,7 +63,7 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
 def _verdict_table(verdicts: Sequence[Verdict]) -> Table:
     ranked = sorted(verdicts, key=is_met)
     notes = [f"{verdict.requirement.key}: {verdict.reason}" for verdict in verdicts if verdict.reason]
-    heads = ["requirement", Column("value"), "demand", Column("margin"), "verdict", "what it means"]
+    heads = ["requirement", Column("value"), Column("demand"), Column("margin"), "verdict", "what it means"]
     return make_table("", heads, [_verdict_row(verdict) for verdict in ranked], notes=notes)
 
 

@@ -58,7 +58,7 @@ def platform_modes(data: StageData) -> tuple[Motion, ...]:
     >>> [each.name for each in platform_modes(stage_data(double_triangle()))]
     ['1', '2', '3', '4', '5', '6']
     """
-    return tuple(each for each in data.motions if each.group is Group.MODE and each.remark == PLATFORM_MODE)
+    return tuple(each for each in data.motions if each.group is Group.MODE and each.remark.startswith(PLATFORM_MODE))
 
 
 def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
@@ -81,7 +81,7 @@ def first_motion(data: StageData) -> str:
     >>> first_motion(stage_data(double_triangle()))
     'mode 1'
     """
-    ranked = sorted(data.motions, key=lambda each: (each.group is not Group.MODE, each.remark != PLATFORM_MODE))
+    ranked = sorted(data.motions, key=lambda each: (each.group is not Group.MODE, not each.remark.startswith(PLATFORM_MODE)))
     return f"{ranked[0].group.value} {ranked[0].name}" if ranked else ""
 
 
