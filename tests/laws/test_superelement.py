@@ -30,6 +30,7 @@ from flexstage.parts.condensation import condense, superelement
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.superelement import FileUnits, MatrixNames, Port, Superelement
 from flexstage.show.scene.stage import scene
+from flexstage.show.viewer.data import still_data
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, axes, mirror, rigid_inertia, spatial_rotation, transport, twist_transform
 from tests.conftest import examples
 
@@ -271,6 +272,10 @@ def test_pictures_show_it_between_its_ports_and_bend_it_with_their_bodies(folder
     made = stage(part_of(elastic(5), folder))
     bars = [facet for facet in scene(made).facets if facet.paint.name == "frame"]
     assert {facet.paint.carriers for facet in bars} == {("ground", "platform"), ("ground", "top"), ("platform", "top")}
+    shown = still_data(made)
+    own = shown.mesh.part == [thing.name for thing in shown.things].index("frame")
+    ends = {tuple(shown.bodies[number] for number in shown.mesh.bodies[carrier]) for carrier in shown.mesh.carrier[own]}
+    assert ends == {facet.paint.carriers for facet in bars}
 
 
 @pytest.mark.parametrize("form", ["npz", "mat", "sparse", "mat73", "mtx", "mtx dense", "millimetres"])
