@@ -116,3 +116,8 @@ export function grouped<T>(values: Iterable<T>, key: (value: T) => string): Map<
   }
   return found;
 }
+
+/** A finding in words: what was found, and what to do. */
+export function sentence(each: { what: string; advice: string }): string {
+  return [each.what, each.advice].filter(Boolean).join(". ");
+}

@@ -11,7 +11,7 @@ import { Decoration, EditorView, drawSelection, highlightActiveLine, keymap, lin
 import type { DecorationSet, ViewUpdate } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Place, Problem, State } from "../protocol";
-import { byId, fill, h, rested } from "./dom";
+import { byId, fill, h, rested, sentence } from "./dom";
 import type { Studio } from "./studio";
 
 const TYPED = 150; // ms without a key, then the text is checked
@@ -159,12 +159,12 @@ export class Editor {
     const { doc } = this.view.state;
     const line = doc.line(Math.max(1, Math.min(each.line ?? 1, doc.lines)));
     const from = each.column ? Math.min(line.from + each.column - 1, line.to) : line.from + (line.text.length - line.text.trimStart().length);
-    return { from, to: line.to, severity, message: `${each.what} ${each.advice}`.trim() };
+    return { from, to: line.to, severity, message: sentence(each) };
   }
 
   private item(each: Problem, severity: string): HTMLElement {
     const where = each.line === null ? each.where : `line ${each.line}: ${each.where}`;
-    return h("li", { className: severity }, h("button", { type: "button", disabled: each.line === null, click: () => this.goto(each.line ?? 0, true) }, where), ` ${each.what} ${each.advice}`);
+    return h("li", { className: severity }, h("button", { type: "button", disabled: each.line === null, click: () => this.goto(each.line ?? 0, true) }, where), ` ${sentence(each)}`);
   }
 
   /** Lights the lines of what is selected and shows the first. */

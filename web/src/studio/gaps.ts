@@ -1,7 +1,7 @@
 // Clashes and gaps with their distances, the least first; a click shows both bodies in colour.
 
 import type { Clash, Clearances } from "../protocol";
-import { byId, fill, h, shown, table } from "./dom";
+import { byId, fill, h, sentence, shown, table } from "./dom";
 import type { Studio } from "./studio";
 
 const LENGTH = { unit: "mm", factor: 1e-3 };
@@ -23,7 +23,7 @@ export class GapsPane {
     const rows = said.clashes.map((each) => [this.button(each), h("span", { className: each.distance < 0 ? "poor" : "" }, shown(each.distance, LENGTH, 4))]);
     fill(
       this.root,
-      ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${each.what} ${each.advice}`)),
+      ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)),
       said.clashes.length ? table(["bodies", "distance"], rows, "figures") : h("p", { className: "quiet" }, "No clash, and no gap to tell."),
     );
   }

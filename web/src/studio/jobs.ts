@@ -1,7 +1,7 @@
 // Commands that run beside: what they take, how far they are, and their results.
 
 import type { Jobs, JobState, Run } from "../protocol";
-import { byId, digits, fill, h } from "./dom";
+import { byId, digits, fill, h, sentence } from "./dom";
 import type { Studio } from "./studio";
 
 type Command = Run["command"];
@@ -75,7 +75,7 @@ export class JobsPane {
   private async run(question: Omit<Run, "id">): Promise<void> {
     const said = await this.studio.ask(question);
     if (said.kind === "done") fill(this.form);
-    else if (said.kind === "refusal") fill(this.form, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${each.what} ${each.advice}`)));
+    else if (said.kind === "refusal") fill(this.form, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)));
   }
 
   private show(said: Jobs): void {

@@ -163,7 +163,7 @@ export class Numbers {
     for (const [address, row] of this.rows) {
       const slope = worth.get(address);
       const gain = slope?.worst ?? null;
-      fill(row.buys, gain === null || Math.abs(gain) < 1e-6 ? "" : percent(gain, 2).replace(" %", ""));
+      fill(row.buys, gain === null || Math.abs(gain) < 5e-5 ? "" : percent(gain, 2).replace(" %", ""));
       row.buys.title = gain === null ? "" : `one per cent more changes the margin of ${said.worst} by ${percent(gain)}`;
       row.buys.dataset["gain"] = String(gain ?? 0);
       row.buys.style.setProperty("--share", String(Math.abs(gain ?? 0) / most));

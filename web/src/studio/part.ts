@@ -2,7 +2,7 @@
 
 import type { Card, Fact } from "../protocol";
 import type { Picked } from "../viewer/types";
-import { byId, fill, h, percent, shown } from "./dom";
+import { byId, fill, h, percent, sentence, shown } from "./dom";
 import { matrix } from "./figures";
 import type { Studio } from "./studio";
 
@@ -59,7 +59,7 @@ export class PartCard {
       card.compliance && section("Compliance about its centre, in its own frame", matrix(card.compliance)),
       card.stiffness && section("Stiffness", matrix(card.stiffness)),
       card.verified.length ? section("Theory against finite elements", facts(card.verified)) : null,
-      ...card.problems.map((each) => h("p", { className: "fair" }, `${each.what} ${each.advice}`)),
+      ...card.problems.map((each) => h("p", { className: "fair" }, sentence(each))),
       ...Object.entries(card.missing).map(([name, reason]) => h("p", { className: "quiet" }, h("b", {}, name), ` ${reason}`)),
     );
   }

@@ -77,8 +77,8 @@ export class Responses {
       cursor: { sync: { key: "response" }, points: { size: 6 }, drag: { x: false, y: false } },
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: scale(what) },
       axes: [
-        { ...axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), splits },
-        { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : { splits }) },
+        { ...axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), ...logarithmic },
+        { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : logarithmic) },
       ],
       series,
       hooks: { draw: [(plot) => this.modes(plot, what)], setCursor: [(plot) => this.tell(plot, curves)], ready: [(plot) => this.listen(plot)] },
@@ -109,6 +109,7 @@ export class Responses {
     const { ctx, bbox } = plot;
     const style = getComputedStyle(this.root);
     ctx.save();
+    ctx.setLineDash([]);
     let free = -1e9;
     for (const mode of this.listed()) {
       const x = plot.valToPos(mode.frequency, "x", true);
@@ -189,7 +190,7 @@ function decades(low: number, high: number): number[] {
   return powers.flatMap((power) => parts.map((part) => part * power)).filter((each) => each >= low && each <= high);
 }
 
-const splits: Axis.Splits = (_, __, low, high) => decades(low, high);
+const logarithmic: Pick<Axis, "splits" | "filter"> = { splits: (_, __, low, high) => decades(low, high), filter: (_, all) => all };
 
 function axis(size: number, values: Axis["values"]): Axis {
   const ink = (): string => getComputedStyle(document.documentElement).getPropertyValue("--quiet");

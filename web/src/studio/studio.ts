@@ -4,6 +4,7 @@ import type { Figures, Motion, Reach, Said, Slopes, State, Verdicts } from "../p
 import type { Controller, StageData } from "../viewer/types";
 import { Cell } from "./cell";
 import type { Connection, Question } from "./connection";
+import { sentence } from "./dom";
 
 export class Studio {
   readonly state = new Cell<State | null>(null);
@@ -37,7 +38,7 @@ export class Studio {
     connection.on("reach", (said) => this.reach.set(said));
     connection.on("slopes", (said) => this.slopes.set(said));
     connection.on("motion", (said) => this.motion.set(said));
-    connection.on("refusal", (said) => this.tell(said.problems.map((each) => [each.where, each.what, each.advice].filter(Boolean).join(": ")).join(" "), true));
+    connection.on("refusal", (said) => this.tell(said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" "), true));
     this.figures.watch(() => this.keepFile());
     this.scene.watch(() => this.keepFile());
   }
