@@ -21,7 +21,10 @@ from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.address import set_value
+from flexstage.mechanism.contact import gaps
 from flexstage.mechanism.store import dumps, loads, patch
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -317,6 +320,19 @@ def test_what_numbers_buy_are_derivatives_of_what_is_shown():
 async def test_what_numbers_buy_is_worked_out_beside(page, studio):
     told = await page.ask(say.Derive)
     assert [each.address for each in told.slopes] == [each.address for each in slopes(TEXT, "guide.toml", 1, 1).slopes]
+
+
+def test_gaps_are_those_that_are_drawn():
+    """Lever and pole of the shipped stage: |y| from 21 mm, and up to 20 mm; moved together, they overlap by as much."""
+    stage = double_triangle()
+    moved = set_value(stage, "units.vertical.bodies.pole.solids.left.at.y", 16.75e-3 + 1.25e-3)
+    assert _between(stage, 2e-3) == [pytest.approx(1e-3, rel=1e-9)]
+    assert _between(moved, 2e-3) == [pytest.approx(-0.25e-3, rel=1e-9)]
+    assert _between(stage, 0.9e-3) == []
+
+
+def _between(stage, within):
+    return [each.distance for each in gaps(stage, within) if {each.first, each.second} == {"B4/lever.left_tip", "B4/pole.left"}]
 
 
 @on_page
