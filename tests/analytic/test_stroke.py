@@ -7,6 +7,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.show.command.displaced import displaced
 from tests.laws.test_nonlinear import guide
 
 
@@ -38,3 +39,18 @@ def test_weight_is_a_load_that_grows():
     found = fs.critical(fs.nonlinear(guide(gravity=(-9.80665, 0.0, 0.0))), {"weight": 1.0}, weight=0.0)
     slender = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2 / 9.80665
     assert 1.0 < found.factor / slender < 1.1
+
+
+def test_options_bring_a_stage_where_it_is_to_be():
+    stage = parallelogram()
+    about = displaced(stage, ["platform.x=0.2 mm"], ["platform.fy=5 N"])
+    same = fs.linearise(fs.equilibrium(fs.nonlinear(stage), {"platform.fy": 5.0}, hold={"platform.x": 2e-4}))
+    assert about.stiffness_matrix == pytest.approx(same.stiffness_matrix)
+
+
+@pytest.mark.parametrize(
+    ("at", "load"), [(["platform.q=1 mm"], []), ([], ["platform.fq=1 N"]), (["platform.x=1 kg"], []), ([], ["platform.fy"])]
+)
+def test_options_that_mean_nothing_are_refused(at: list[str], load: list[str]):
+    with pytest.raises(fs.DesignError):
+        displaced(parallelogram(), at, load)

@@ -31,6 +31,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, known_point, open_design
+from flexstage.show.command.displaced import At, Load, displaced
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
@@ -157,7 +158,7 @@ def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
     yield loss_tables.energy_table(found)
 
 
-def modes(
+def modes(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
@@ -165,6 +166,8 @@ def modes(
         Path | None,
         text_option("--view", "STAGE.HTML", "Write the stage in motion: a page that stands alone (.html), or a GLB file (.glb)."),
     ] = None,
+    at: At = None,
+    load: Load = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -172,12 +175,15 @@ def modes(
 ) -> None:
     """Natural frequencies, names and shapes.
 
-    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed.
+    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed. With --at or --load
+    they are those of the stage where it then is, at large displacements and under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
     ending = None if view is None else _view_ending(view)
-    linear = elastic_model(mechanism, model)
+    linear = displaced(mechanism, at or (), load or ()) if at or load else elastic_model(mechanism, model)
     found = platform_modes(mechanism, linear)
+    if view is not None and (at or load):
+        raise refuse("--view", "it shows the stage as drawn", "Leave out --at and --load, or --view")
     if view is not None:
         save(view, _moving(mechanism, linear, found, ending), "--view")
     answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv, xlsx=xlsx)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -10,25 +9,21 @@ import numpy as np
 import typer
 
 from flexstage.analysis.stroke import stroke as over_stroke
-from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.quantity import ANGLE, LENGTH, RATIO, Quantity
-from flexstage.base.unit import parse, quantity_of_unit
+from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.unit import parse
 from flexstage.models.nonlinear.critical import WEIGHT, Critical, critical
 from flexstage.models.nonlinear.path import path
-from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
+from flexstage.show.command.displaced import Load, loads_of, quantity_of
 from flexstage.show.command.options import Changes, Csv, Design, Json, Xlsx, text_option
 from flexstage.show.table import result_tables
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _ENOUGH = 1e-4
 """How closely a critical factor is printed."""
-_Loads = Annotated[
-    list[str] | None,
-    text_option("--load", "NAME=VALUE", 'A load that stays: "platform.fx=-20 N", a stroke "B1=10 um". May be given several times.'),
-]
 
 
 def stroke(  # noqa: PLR0913 (its options)
@@ -40,7 +35,7 @@ def stroke(  # noqa: PLR0913 (its options)
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: as drawn.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
     points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points of the stroke.")] = 11,
-    load: _Loads = None,
+    load: Load = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -53,10 +48,10 @@ def stroke(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
     model = nonlinear(mechanism)
-    quantity = _quantity_of(model, drive)
+    quantity = quantity_of(model, drive)
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
-    found = over_stroke(path(model, drive, np.linspace(low, high, points), loads=_loads(model, load or ())))
+    found = over_stroke(path(model, drive, np.linspace(low, high, points), loads=loads_of(model, load or ())))
     answer(
         "stroke",
         mechanism,
@@ -99,7 +94,7 @@ def buckle(
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
     model = nonlinear(mechanism)
     found = (
-        critical(model, _loads(model, load), tolerance=_ENOUGH) if load else critical(model, {WEIGHT: 1.0}, weight=0.0, tolerance=_ENOUGH)
+        critical(model, loads_of(model, load), tolerance=_ENOUGH) if load else critical(model, {WEIGHT: 1.0}, weight=0.0, tolerance=_ENOUGH)
     )
     told = _buckling(", ".join(load or [WEIGHT]), found)
     answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx)
@@ -109,22 +104,3 @@ def _buckling(load: str, found: Critical) -> Buckling:
     size = np.max(np.abs(found.shape))
     shape = Matrix(found.shape / (size or 1.0), found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
     return Buckling(load, found.factor, found.kind.value, found.link, shape)
-
-
-def _loads(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
-    """Loads in SI units from texts NAME=VALUE."""
-    units = {channel.name: channel.unit for channel in model.inputs}
-    found: dict[str, float] = {}
-    for text in texts:
-        name, _, value = (part.strip() for part in text.partition("="))
-        if name not in units:
-            raise refuse(f"--load {text}", f'there is no load "{name}"', suggest_nearest(name, units))
-        found[name] = parse(value, quantity_of_unit(units[name]), where=f"--load {name}")
-    return found
-
-
-def _quantity_of(model: Nonlinear, drive: str) -> Quantity:
-    units = {channel.name: channel.unit for channel in model.inputs}
-    if drive in units:
-        return quantity_of_unit(units[drive])
-    return ANGLE if drive.rpartition(".")[2].startswith("r") else LENGTH
