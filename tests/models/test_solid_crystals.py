@@ -25,7 +25,7 @@ from flexstage.spatial.frame import axes
 
 SILICON = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
 """Hopcroft, Nix & Kenny, J. MEMS 19 (2010) 229-238."""
-THIRD, FOURTH = (Accuracy(error=0.5, orders=(order, order), meshes=1) for order in (3, 4))
+SECOND, THIRD, FOURTH = (Accuracy(error=0.5, orders=(order, order), meshes=1) for order in (2, 3, 4))
 DIRECTIONS = {
     "100": (((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), 130.0),
     "110": (((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 169.0),
@@ -39,7 +39,7 @@ def seen(*directions):
     return SILICON.oriented(axes(*directions))
 
 
-@pytest.mark.parametrize("name", DIRECTIONS)
+@pytest.mark.parametrize("name", [pytest.param("100", marks=pytest.mark.full), pytest.param("110", marks=pytest.mark.full), "111"])
 def test_a_bar_has_youngs_modulus_of_its_direction(name):
     """Of two bars the longer gives way by (L2 - L1) / E A more, and bends by (L2 - L1) / E I more: ends cancel, whatever they are."""
     directions, printed = DIRECTIONS[name]
@@ -55,11 +55,11 @@ def test_an_isotropic_material_stated_as_a_crystal_is_itself():
     lame = medium(steel).lame
     cubic = Material(None, None, 7750.0, c11=lame + 2.0 * steel.shear, c12=lame, c44=steel.shear)
     part = Notch("steel", 0.5 * mm, 2 * mm, Circular(1.5 * mm))
-    first, second = (hinge_compliance(part, each, THIRD).compliance for each in (steel, cubic.oriented(axes((1.0, 2.0, 3.0)))))
+    first, second = (hinge_compliance(part, each, SECOND).compliance for each in (steel, cubic.oriented(axes((1.0, 2.0, 3.0)))))
     np.testing.assert_allclose(second, first, rtol=1e-6, atol=1e-9 * np.max(np.abs(first)))
 
 
-@pytest.mark.parametrize("name", ["100", "110"])
+@pytest.mark.parametrize("name", ["100", pytest.param("110", marks=pytest.mark.full)])
 def test_a_wide_leaf_bends_as_a_plate_of_its_crystal(name):
     """E / (1 - nu12 nu21): 9 % more than the bar's along 100, where silicon contracts, and hardly more along 110, where it does not."""
     material = seen(*DIRECTIONS[name][0])
