@@ -151,6 +151,15 @@ def test_the_value_stands_beside_the_name_of_its_requirement() -> None:
     assert row[1] == "106.01 Hz"
 
 
+def test_printed_modes_are_told_apart_and_played_by_the_viewer() -> None:
+    page = reported("double-triangle")
+    told = re.findall(r'<figure data-play="mode (\d+)">.*?<figcaption>([^<]+)</figcaption>', page)
+    assert [number for number, _ in told] == ["1", "2", "3", "4", "5", "6"]
+    assert told[2][1] == "3: z, 126.16 Hz; kinetic energy: platform 87.5 %, B4 3.5 %, B5 3.5 %, B6 3.5 %"
+    arrows = [re.findall(r">(r?[xyz])</text>", picture) for picture in re.findall(r'<svg[^>]*aria-label="\d: .*?</svg>', page, re.DOTALL)]
+    assert [names[-1] for names in arrows] == ["rx", "ry", "z", "rz", "ry", "rx"]  # the names before are those of the axes
+
+
 def test_the_policy_of_the_page_allows_its_own_script_alone() -> None:
     page = reported("parallelogram")
     run = [text for tag, text in SCRIPT.findall(page) if tag == "<script>"]
