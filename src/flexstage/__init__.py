@@ -21,6 +21,7 @@ HOMES = {
     "parts.neck": "Neck",
     "parts.leaf": "Leaf LeafSection",
     "parts.reinforced_leaf": "ReinforcedLeaf",
+    "parts.membrane": "Membrane",
     "parts.rod": "Rod",
     "parts.given": "Given Joint",
     "parts.spring": "Spring",

@@ -197,6 +197,9 @@ from flexstage.parts.leaf import (
 from flexstage.parts.material import (
     Material as Material,
 )
+from flexstage.parts.membrane import (
+    Membrane as Membrane,
+)
 from flexstage.parts.neck import (
     Neck as Neck,
 )

@@ -15,7 +15,7 @@ from tests.laws.strategies import actuated_platforms, moved, turns
 
 seeds = st.integers(0, 2**32 - 1)
 STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
-STROKELESS |= {"leaf-guide", "resonator", "quad-suspension", "voice-coil-xy", "z-stage"}
+STROKELESS |= {"leaf-guide", "resonator", "quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "steering-mirror"}
 ACTUATED = [name for name in CASES if name not in STROKELESS]
 
 

@@ -47,6 +47,8 @@ EXPECTED = {
     "scott-russell": (1, 1),
     "scanner": (1, 1),
     "pointing-stage": (1, 1),
+    "spiral-stage": (1, 0),
+    "steering-mirror": (2, 0),
     "z-stage": (1, 0),
 }
 """Mobility and number of strokes that each case is meant to have."""

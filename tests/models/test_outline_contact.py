@@ -152,8 +152,8 @@ def test_two_hundred_random_stages_clash_as_cad_says() -> None:
 
 
 QUICK = ("parallelogram", "bridge")
-UNDRAWN = {"mirror-mount", "telescope-mount"}
-"""The mirrors and knees of the mounts have no outlines."""
+UNDRAWN = {"mirror-mount", "telescope-mount", "quad-suspension", "scott-russell", "steering-mirror"}
+"""The mirrors and knees of the mounts have no outlines, nor have the masses of the suspension, the lever of the linkage and a membrane."""
 DRAWN = [name for name in CASES if name not in UNDRAWN]
 
 

@@ -7,6 +7,7 @@ from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
 from flexstage.beams.leaf import LEAF
+from flexstage.beams.membrane import MEMBRANE
 from flexstage.beams.neck import NECK
 from flexstage.beams.notch import NOTCH
 from flexstage.beams.piezo import PIEZO
@@ -20,6 +21,7 @@ from flexstage.parts.contact import Contact
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
+from flexstage.parts.membrane import Membrane
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
@@ -30,6 +32,7 @@ from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING, Contact: CONTACT}
+_HINGES |= {Membrane: MEMBRANE}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})

@@ -59,6 +59,8 @@ CASES: Mapping[str, Shipped] = {
             FileCase("scott-russell", "one axis: a stack amplified by a Scott Russell linkage of notches"),
             FileCase("scanner", "one fast axis: a stack in a bridge of leaf hinges"),
             FileCase("pointing-stage", "one rotation: an arm on two cartwheel hinges, pushed by a stack"),
+            FileCase("spiral-stage", "one axis of millimetres: a shaft in two spiral flexures, pushed by a voice coil"),
+            FileCase("steering-mirror", "tip and tilt: a mirror on a wire and a membrane, moved by four voice coils"),
             FileCase("z-stage", "one vertical axis: four leaves, a payload, a spring that carries its weight, a voice coil"),
         )
     },

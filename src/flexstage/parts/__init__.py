@@ -11,6 +11,7 @@ from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.gauge import Gauge, Instrument
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
+from flexstage.parts.membrane import Membrane
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
@@ -28,7 +29,7 @@ _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
 PARTS: Register[type[Elastic]] = Register(
-    "flexstage.parts", {part.kind: part for part in (*_HINGES, Given, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)}
+    "flexstage.parts", {part.kind: part for part in (*_HINGES, Membrane, Given, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 
