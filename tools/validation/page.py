@@ -134,7 +134,7 @@ that is recorded agrees."""
 
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
-* Large deflections (elastica, beam constraint model), the load term and centre shift of cross-axis pivots: every elastic model is linear.
+* Large displacements (elastica, centre shift of cross pivots, more): they are compared in `tests/analytic/test_large_displacements.py`.
 * 3-D finite elements of other stages than the paper's: they are compared in `tests/models`."""
 
 _TREE = """\
