@@ -180,7 +180,7 @@ MOUNTS = ("mirror-mount", "telescope-mount")
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.full) if name in ALIKE else seldom(name) for name in sorted(CASES)])
 def test_every_case_is_analysed(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
-    ended = flexstage("analyse", "stage.toml", "--json", "out.json")
+    ended = flexstage("analyse", "stage.toml", "--full", "--json", "out.json")
     assert ended.code == 0, ended.err
     assert json.loads((tmp_path / "out.json").read_text())["mapping"]["mobility"] >= (0 if name in MOUNTS else 1)
     assert "Mobility" in ended.out

@@ -511,6 +511,7 @@ async def test_a_sweep_of_the_text_that_is_not_saved(page, studio):
 
 @on_page
 async def test_what_takes_long_is_told_before(page, studio):
+    await page.settle()
     studio.session._took["figures"] = (4.0, len(page.state.links))
     heard = []
     tell, studio.session._tell = studio.session._tell, lambda message: (heard.append(message), tell(message))

@@ -58,7 +58,7 @@ def axis_table(analysis: Analysis) -> Table | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> axis_table(analyse(double_triangle(), Model.MAPPED)).texts()[3]
-    ['z', '300 um', 'B4', '10.04 N/um', '10 nm']
+    ['z', '300 um', 'B4', '10.09 N/um', '10 nm']
     """
     strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
     columns = {

@@ -227,7 +227,8 @@ class _Run(Generic[AnyJob]):
     def _step(self, text: str, now: float) -> Step:
         """Where the jobs stand, those that have a mesh planned anew."""
         self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
-        shares = {mark: seconds / sum(self.planned.values()) for mark, seconds in self.planned.items()}
+        whole = sum(self.planned.values())  # none where nothing is known of them, or every job fails at once
+        shares = {mark: seconds / whole if whole else 1.0 / len(self.planned) for mark, seconds in self.planned.items()}
         stages = {child.job.mark: (child.stage, child.fraction) for child in self.children}
         running = {child.job.mark: now - child.begun for child in self.children}
         self.fraction = min(1.0, max(self.fraction, overall(stages, shares, self.spent)))
