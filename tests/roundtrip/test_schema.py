@@ -110,7 +110,8 @@ def test_any_description_fits_but_for_its_bounds(mechanism: Mechanism) -> None:
 def without_bounds(rule: Any) -> Any:
     """The schema without the bounds of bare numbers, which random designs do not keep."""
     if isinstance(rule, dict):
-        return {key: without_bounds(item) for key, item in rule.items() if not key.lower().endswith(("minimum", "maximum"))}
+        bounds = [key for key, item in rule.items() if key.lower().endswith(("minimum", "maximum")) and not isinstance(item, dict)]
+        return {key: without_bounds(item) for key, item in rule.items() if key not in bounds}  # `maximum` is a key of force actuators, too
     return [without_bounds(item) for item in rule] if isinstance(rule, list) else rule
 
 
