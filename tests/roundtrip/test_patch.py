@@ -165,7 +165,7 @@ def test_a_formula_is_replaced_by_a_number_or_by_another() -> None:
         ("wire.diameter=-5 %", "wire.diameter", 0.00095),
         ("wire.length=+10%", "wire.length", 0.033),
         ("steel.poisson=+10%", "steel.poisson", 0.33),
-            ("steel.poisson=10%", "steel.poisson", 0.1),  # without a sign it is the value
+        ("steel.poisson=10%", "steel.poisson", 0.1),  # without a sign it is the value
     ],
 )
 def test_assignments_in_percent(assignment: str, address: str, value: float) -> None:

@@ -31,9 +31,9 @@ from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Given: GIVEN, Spring: SPRING, Contact: CONTACT}
-_HINGES |= {Membrane: MEMBRANE}
+_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Membrane: MEMBRANE}
+_STATED = {Given: GIVEN, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
-_OWN = {**_HINGES, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
+_OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """The laws of parts by kind."""
