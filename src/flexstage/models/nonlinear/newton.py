@@ -27,7 +27,7 @@ class Effort:
     step: float = 1e-9
     gap: float = 1e-6
     iterations: int = 25
-    limit: float = 0.2
+    limit: float = 0.3
     halvings: int = 6
 
 
