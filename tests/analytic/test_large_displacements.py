@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from flexstage.analysis.drift import drift
 from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.strip import secant
 from flexstage.beams.section import rectangle
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.path import path, trace
@@ -65,6 +71,42 @@ def test_a_column_that_shears_buckles_as_haringx_has_it():
     assert found.kind is Kind.BIFURCATION
     assert np.argmax(np.abs(found.shape[0])) in {1, 5}
     assert critical(model, {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+
+
+def test_a_heated_column_buckles_at_its_temperature():
+    """Clamped, its other end free to go sideways but not along: alpha dT = pi^2 I / (A L^2), 1/12 of (pi t / L)^2."""
+    warm = replace(SOFT, expansion=1e-6)
+    leaf = replace(THIN, thickness=1e-3)
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    whole = replace(stage(leaf, {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}, warm), ground="none")
+    critical_temperature = (np.pi * 1e-3) ** 2 / 12.0 / 1e-6
+    counts = [
+        int(
+            unstable_motions(
+                equilibrium(nonlinear(whole, temperature=share * critical_temperature), hold={"platform.x": 0.0, "platform.rz": 0.0})
+            )
+        )
+        for share in (0.9999, 1.0001)
+    ]
+    assert counts == [0, 1]
+
+
+@pytest.mark.parametrize("case", [parallelogram, double_triangle, tilt_stage])
+def test_small_temperatures_move_as_drift_says(case: Callable[[], Mechanism]):
+    whole = case()
+    expected = drift(whole, lumped(whole), ground="none").of().values[:, 0]
+    found = equilibrium(nonlinear(whole, temperature=0.01, ground="none"), weight=0.0, stated=0.0).twist() / 0.01
+    assert found == pytest.approx(expected, abs=1e-4 * np.max(np.abs(expected)))
+
+
+def test_what_grows_alike_has_no_forces():
+    leaf = replace(THIN, thickness=1e-3, width=0.1)
+    rising = [Link(("ground", "platform"), "leaf", at=(0.5, y, 0.0), along=(1.0, 0.0, 0.0), bends=Z) for y in (-0.2, 0.2)]
+    warm = replace(SOFT, expansion=1e-3)
+    bodies = {"platform": body(1.0, 0.1, 0.3)}
+    whole = stage(leaf, bodies, {"left": rising[0], "right": rising[1]}, warm)
+    found = equilibrium(nonlinear(whole, temperature=10.0, ground="soft"))
+    assert found.twist() == pytest.approx([0.01, 0.001, 0.003, 0.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_a_strip_bent_upright_buckles_sideways():
