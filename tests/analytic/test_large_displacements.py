@@ -22,6 +22,7 @@ from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.path import path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
@@ -222,3 +223,23 @@ def test_a_drive_is_followed_where_no_load_could_go():
     traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
     assert found.state.converged.all()
     assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(("section", "share"), [(LeafSection.BEAM, 1.0), (LeafSection.PLATE, np.sqrt(1.0 - 0.3 + 0.09))])
+def test_stress_at_a_root_is_that_of_its_moment(section: LeafSection, share: float):
+    """M t / (2 I) along; at a clamped root, which cannot contract, nu times that across: E k t / (2 (1 - nu^2)) at the curvature there."""
+    leaf = replace(THIN, thickness=1e-3, width=0.2, section=section)
+    held = equilibrium(cantilever(leaf), hold={"platform.y": 1e-7, "platform.rz": 0.0})
+    moment = 0.5 * held.reactions[0]
+    assert strains(held).stress[0] == pytest.approx(share * moment * 6.0 / (0.2 * 1e-6), rel=3e-3)
+    pulled = strains(equilibrium(cantilever(leaf), {"platform.fx": 1e-9}))
+    assert pulled.stress[0] == pytest.approx(1e-9 / (0.2 * 1e-3), rel=1e-6)
+    assert np.isnan(pulled.limit).all()
+
+
+def test_twist_is_sheared_at_its_faces():
+    """T t / J of Saint-Venant's torsion, times sqrt(3) by von Mises."""
+    leaf = replace(THIN, thickness=1e-3, width=0.1)
+    torsion = float(rectangle(1e-3, 0.1).torsion)
+    found = strains(equilibrium(cantilever(leaf), {"platform.mx": 1e-6 * torsion}))
+    assert found.stress[0] == pytest.approx(np.sqrt(3.0) * 1e-9, rel=1e-3)

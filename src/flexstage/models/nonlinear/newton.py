@@ -13,7 +13,7 @@ from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, Status, put
 
-_CHUNK = 512
+_CHUNK = 128
 """Cases at once: what they need stays in the processor's caches."""
 
 
