@@ -10,7 +10,7 @@ import pytest
 
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import Resolution, leaf_law
-from flexstage.beams.leaf import torsional_compliance
+from flexstage.beams.leaf import leaf_diagonal, torsional_compliance
 from flexstage.beams.section import rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.hexapod import hexapod
@@ -26,7 +26,7 @@ from flexstage.models.nonlinear.newton import Effort
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Status
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.leaf import Leaf
+from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import spatial_rotation
@@ -101,6 +101,21 @@ def test_a_wide_short_leaf_twists_by_one_decay():
     assert found == pytest.approx(leaf.length / rigidity * (1.0 - np.tanh(decay) / decay), rel=1e-6)
     thin = leaf.thickness**3 * leaf.width / 3.0 / section.torsion
     assert 1.0 < torsional_compliance(leaf, STEEL) / found < thin
+
+
+@pytest.mark.parametrize(("ends", "section"), [(LeafEnds.FREE, LeafSection.PLATE), (LeafEnds.CLAMPED, LeafSection.BEAM)])
+def test_ends_that_may_warp_twist_by_the_rigidity_alone(ends: LeafEnds, section: LeafSection):
+    """L / (G J), at large displacements as in the lumped model; the plate bends as before."""
+    free = replace(LEAF, ends=ends, section=section)
+    small = lumped(replace(guide(), parts={"leaf": free}))
+    found = stiffness(equilibrium(nonlinear(replace(guide(), parts={"leaf": free})), weight=0.0))[0]
+    expected = small.stiffness_matrix[:6, :6]
+    scale = np.sqrt(np.diag(expected))
+    assert np.max(np.abs(found - expected) / scale / scale[:, None]) < 3e-3
+    torsion = leaf_diagonal(free, STEEL)[3] * STEEL.shear * rectangle(LEAF.thickness, LEAF.width).torsion
+    assert torsion == pytest.approx(LEAF.length, rel=1e-12)
+    bends = leaf_diagonal(replace(free, ends=LeafEnds.CLAMPED), STEEL)
+    assert np.delete(leaf_diagonal(free, STEEL), 3) == pytest.approx(np.delete(bends, 3), rel=1e-15)
 
 
 def test_the_steps_of_rotation_are_of_order_six():
