@@ -198,11 +198,11 @@ def test_weight_hangs_where_masses_do():
     assert other.twist() == pytest.approx(one.twist(), abs=1e-7)
 
 
-@pytest.mark.parametrize("thickness", [2e-3, 0.5e-3, 0.2e-3])
-def test_a_batch_is_its_cases_and_the_whole_load_is_taken_at_once(thickness: float):
+def taken_at_once(thickness: float, counts: tuple[int, int, int]) -> None:
     """Forces up to 20, -10 to 10 and moments -3 to 3 in units of E I / L^2, on leaves whose stretching is weak or strong."""
     model = nonlinear(replace(guide(), parts={"leaf": replace(LEAF, thickness=thickness)}))
-    grid = np.stack(np.meshgrid(np.linspace(-10, 10, 5), np.linspace(0, 20, 6), np.linspace(-3, 3, 3), indexing="ij"), -1).reshape(-1, 3)
+    ranges = [np.linspace(low, high, count) for (low, high), count in zip([(-10, 10), (0, 20), (-3, 3)], counts, strict=True)]
+    grid = np.stack(np.meshgrid(*ranges, indexing="ij"), -1).reshape(-1, 3)
     wrench, unit = np.zeros((len(grid), 6)), UNIT * (thickness / LEAF.thickness) ** 3
     wrench[:, :2], wrench[:, 5] = grid[:, :2] * unit, grid[:, 2] * unit * LEAF.length
     found = equilibrium(model, loads(wrench), effort=Effort(halvings=0))
@@ -210,6 +210,17 @@ def test_a_batch_is_its_cases_and_the_whole_load_is_taken_at_once(thickness: flo
     assert found.iterations.mean() < 6.2
     alone = equilibrium(model, loads(wrench[37]))
     assert alone.twist() == pytest.approx(found.twist()[37], abs=1e-12)
+
+
+@pytest.mark.parametrize("thickness", [2e-3, 0.5e-3, 0.2e-3])
+def test_a_batch_is_its_cases_and_the_whole_load_is_taken_at_once(thickness: float):
+    taken_at_once(thickness, (5, 6, 3))
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("thickness", [2e-3, 0.5e-3, 0.2e-3])
+def test_all_of_a_fine_grid_is_taken_at_once(thickness: float):
+    taken_at_once(thickness, (10, 15, 10))
 
 
 def test_plate_fields_have_the_least_energy_at_their_curvatures():
