@@ -19,7 +19,7 @@ HOMES = {
     "parts.profile": "Circular Elliptic Filleted Straight Parabolic Hyperbolic Power Vee FreeForm",
     "parts.notch": "Notch",
     "parts.neck": "Neck",
-    "parts.leaf": "Leaf LeafSection",
+    "parts.leaf": "Leaf LeafEnds LeafSection",
     "parts.reinforced_leaf": "ReinforcedLeaf",
     "parts.membrane": "Membrane",
     "parts.rod": "Rod",

@@ -192,6 +192,7 @@ from flexstage.parts.given import (
 )
 from flexstage.parts.leaf import (
     Leaf as Leaf,
+    LeafEnds as LeafEnds,
     LeafSection as LeafSection,
 )
 from flexstage.parts.material import (

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from flexstage.analysis.drift import drift
 from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.strip import secant
 from flexstage.beams.section import rectangle
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.path import path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
@@ -65,6 +72,42 @@ def test_a_column_that_shears_buckles_as_haringx_has_it():
     assert found.kind is Kind.BIFURCATION
     assert np.argmax(np.abs(found.shape[0])) in {1, 5}
     assert critical(model, {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+
+
+def test_a_heated_column_buckles_at_its_temperature():
+    """Clamped, its other end free to go sideways but not along: alpha dT = pi^2 I / (A L^2), 1/12 of (pi t / L)^2."""
+    warm = replace(SOFT, expansion=1e-6)
+    leaf = replace(THIN, thickness=1e-3)
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    whole = replace(stage(leaf, {"platform": body(1.0, 0.0, 0.0)}, {"leaf": link}, warm), ground="none")
+    critical_temperature = (np.pi * 1e-3) ** 2 / 12.0 / 1e-6
+    counts = [
+        int(
+            unstable_motions(
+                equilibrium(nonlinear(whole, temperature=share * critical_temperature), hold={"platform.x": 0.0, "platform.rz": 0.0})
+            )
+        )
+        for share in (0.9999, 1.0001)
+    ]
+    assert counts == [0, 1]
+
+
+@pytest.mark.parametrize("case", [parallelogram, double_triangle, tilt_stage])
+def test_small_temperatures_move_as_drift_says(case: Callable[[], Mechanism]):
+    whole = case()
+    expected = drift(whole, lumped(whole), ground="none").of().values[:, 0]
+    found = equilibrium(nonlinear(whole, temperature=0.01, ground="none"), weight=0.0, stated=0.0).twist() / 0.01
+    assert found == pytest.approx(expected, abs=1e-4 * np.max(np.abs(expected)))
+
+
+def test_what_grows_alike_has_no_forces():
+    leaf = replace(THIN, thickness=1e-3, width=0.1)
+    rising = [Link(("ground", "platform"), "leaf", at=(0.5, y, 0.0), along=(1.0, 0.0, 0.0), bends=Z) for y in (-0.2, 0.2)]
+    warm = replace(SOFT, expansion=1e-3)
+    bodies = {"platform": body(1.0, 0.1, 0.3)}
+    whole = stage(leaf, bodies, {"left": rising[0], "right": rising[1]}, warm)
+    found = equilibrium(nonlinear(whole, temperature=10.0, ground="soft"))
+    assert found.twist() == pytest.approx([0.01, 0.001, 0.003, 0.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_a_strip_bent_upright_buckles_sideways():
@@ -180,3 +223,23 @@ def test_a_drive_is_followed_where_no_load_could_go():
     traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
     assert found.state.converged.all()
     assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(("section", "share"), [(LeafSection.BEAM, 1.0), (LeafSection.PLATE, np.sqrt(1.0 - 0.3 + 0.09))])
+def test_stress_at_a_root_is_that_of_its_moment(section: LeafSection, share: float):
+    """M t / (2 I) along; at a clamped root, which cannot contract, nu times that across: E k t / (2 (1 - nu^2)) at the curvature there."""
+    leaf = replace(THIN, thickness=1e-3, width=0.2, section=section)
+    held = equilibrium(cantilever(leaf), hold={"platform.y": 1e-7, "platform.rz": 0.0})
+    moment = 0.5 * held.reactions[0]
+    assert strains(held).stress[0] == pytest.approx(share * moment * 6.0 / (0.2 * 1e-6), rel=3e-3)
+    pulled = strains(equilibrium(cantilever(leaf), {"platform.fx": 1e-9}))
+    assert pulled.stress[0] == pytest.approx(1e-9 / (0.2 * 1e-3), rel=1e-6)
+    assert np.isnan(pulled.limit).all()
+
+
+def test_twist_is_sheared_at_its_faces():
+    """T t / J of Saint-Venant's torsion, times sqrt(3) by von Mises."""
+    leaf = replace(THIN, thickness=1e-3, width=0.1)
+    torsion = float(rectangle(1e-3, 0.1).torsion)
+    found = strains(equilibrium(cantilever(leaf), {"platform.mx": 1e-6 * torsion}))
+    assert found.stress[0] == pytest.approx(np.sqrt(3.0) * 1e-9, rel=1e-3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -32,6 +34,14 @@ def test_what_is_beyond_theory_is_told():
     told = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).cautions
     assert told[0].where == "left"
     assert "strain" in told[0].what
+
+
+def test_stress_above_the_limit_of_the_material_is_told():
+    whole = guide()
+    weak = replace(whole, materials={name: replace(each, yield_stress=1e8) for name, each in whole.materials.items()})
+    found = fs.stroke(fs.path(fs.nonlinear(weak), "platform.y", np.array([1e-4, 4e-3])))
+    assert found.along.at("1", "stress") < 1e8 < found.along.at("2", "stress")
+    assert "limit is 100 MPa" in found.cautions[0].what
 
 
 def test_weight_is_a_load_that_grows():

@@ -31,8 +31,8 @@ class Stroke(InNotebook):
     """A stage along `drive`: a row a point `along` it.
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
-    displacement and rotation vector; its first natural frequencies, free under that force; the largest strain of a flexure; and in how many
-    ways the free stage would leave that place (0: stable).
+    displacement and rotation vector; its first natural frequencies, free under that force; the largest stress and strain of a flexure; and
+    in how many ways the free stage would leave that place (0: stable).
     """
 
     drive: str
@@ -85,6 +85,7 @@ def _columns(path: Path, about: LinearModel, strained: Strains) -> Iterator[tupl
     )
     frequencies = np.sqrt(eigen(about).values) / (2.0 * np.pi)
     yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
+    yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
     yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
     yield "unstable", (np.where(path.motions < 0, np.nan, path.motions), "1")
 
@@ -105,6 +106,11 @@ def _cautions(found: Stroke) -> Iterator[Finding]:
         if np.max(each) > _STRAIN:
             what = f"its strain reaches {np.max(each):.2%}, beyond which no linear elastic law is physics"
             yield Finding(name, what, "Ask for less stroke, or make it longer or thinner")
+    stressed = np.max(np.nan_to_num(found.strained.stress), axis=0)
+    for name, most, limit in zip(found.strained.names, stressed, found.strained.limit, strict=True):
+        if most > limit:
+            what = f"its stress reaches {most / 1e6:.4g} MPa, its material's limit is {limit / 1e6:.4g} MPa"
+            yield Finding(name, what, "Ask for less stroke, make it longer or thinner, or take a stronger material")
     for name, each in zip(found.strained.names, np.moveaxis(curving, -1, 0), strict=True):
         if np.max(each) > _CURVING:
             what = f"b^2 k / t reaches {np.max(each):.3g}, above {_CURVING:g}: two shapes across its width do not suffice"

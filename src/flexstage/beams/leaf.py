@@ -29,7 +29,7 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
     thickness, width = np.asarray(part.thickness)[..., None] + points.growth, np.asarray(part.width)[..., None]
     section = rectangle(thickness, width, np.asarray(cowper_rectangle(material.contraction))[..., None])
     young, shear = np.asarray(material.modulus)[..., None], np.asarray(material.shear)[..., None]
-    twisting = free_twist(section, shear) if part.section is LeafSection.BEAM else _twisting(part, points, section, material)
+    twisting = free_twist(section, shear) if part.warps else _twisting(part, points, section, material)
     density = np.asarray(material.density)[..., None]
     return Beam(points, section, flexibility(section, young, shear, twisting, shear_across(material)), inertia(section, density), twisting)
 
@@ -67,17 +67,20 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 def torsional_compliance(part: Leaf, material: Material) -> Number:
     """Twist of a leaf with ends that cannot warp [rad/(N m)]: L / (G J) (1 - tanh(lam) / lam), lam = (L/b) sqrt(6 / (1 + nu)).
 
-    J of the rectangle. Against plate elements (reference B6) it is too soft by 0.2 % at b/L = 0.1, 1.2 % at 0.5 and 6 % at 2.
+    L / (G J) where its ends may warp. J of the rectangle. Against plate elements (reference B6) it is too soft by 0.2 % at b/L = 0.1, 1.2 %
+    at 0.5 and 6 % at 2.
 
     >>> soft = Material(young=2.6, poisson=0.3, density=1.0)
     >>> thin = Leaf("soft", length=1.0, thickness=1e-5, width=0.5)
     >>> round(float(1.0 / torsional_compliance(thin, soft) / (0.5e-15 / 3.0)), 4)  # reference B6, closed form
     1.3032
     """
-    wavenumber = _wavenumber(part, material)
-    lam = 0.5 * wavenumber * part.length
     torsion = rectangle(part.thickness, part.width).torsion
-    return part.length / (material.shear * torsion) * (1.0 - np.tanh(lam) / lam)
+    free = part.length / (material.shear * torsion)
+    if part.warps:
+        return free
+    lam = 0.5 * _wavenumber(part, material) * part.length
+    return free * (1.0 - np.tanh(lam) / lam)
 
 
 def _wavenumber(part: Leaf, material: Material) -> Number:
@@ -108,7 +111,7 @@ def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]
     plate = Plate(part.width, material.contraction) if is_plate else None
     bending = Bending(part.length, rigidity, shear, density * section.area, density * section.inertia_z, plate)
     warped = section.area * section.area * section.area / 144.0
-    warping = material.modulus * warped / (1.0 - material.contraction * material.contraction) if is_plate else None
+    warping = material.modulus * warped / (1.0 - material.contraction * material.contraction) if not part.warps else None
     torsion = Torsion(part.length, material.shear * section.torsion, density * section.polar, warping, density * warped, plate)
     return held_bending(1, bending, part.inner_modes, places), held_twist(torsion, part.inner_modes, places)
 

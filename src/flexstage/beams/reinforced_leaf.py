@@ -18,7 +18,7 @@ from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 
 
 def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
-    """The leaf as a Timoshenko beam of varying thickness (Cowper's shear factor), its ends kept from warping unless its section is a beam.
+    """The leaf as a Timoshenko beam of varying thickness (Cowper's shear factor), its ends kept from warping unless they are free to.
 
     Warping and bimoment go on through the steps (Vlasov's beam with the shear of `beams.torsion`).
     """
@@ -26,8 +26,7 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
     section = rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.contraction))[..., None])
     young, shear, density = (np.asarray(each)[..., None] for each in (material.modulus, material.shear, material.density))
-    is_beam = part.section is LeafSection.BEAM
-    twisting = free_twist(section, shear) if is_beam else constrained_twist(section, points, young, shear)
+    twisting = free_twist(section, shear) if part.warps else constrained_twist(section, points, young, shear)
     return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)
 
 

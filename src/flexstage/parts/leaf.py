@@ -20,12 +20,20 @@ class LeafSection(Enum):
     BEAM = "beam"
 
 
+class LeafEnds(Enum):
+    """Whether the bodies at a leaf's ends keep its section from warping as it twists: `CLAMPED`, or `FREE` to warp."""
+
+    CLAMPED = "clamped"
+    FREE = "free to warp"
+
+
 @dataclass(frozen=True, eq=False)
 class Leaf(Shaped):
     """A leaf spring: `length` along x, `thickness` along y, `width` along z.
 
     Intended freedoms: translation along y, bending about z, twist about x. With `section` beam its law leaves plate action out, and its
-    ends are free to warp. `inner_modes` is how many of its own bending modes, and of its twist, the lumped model counts.
+    ends are free to warp; a plate's are with `ends` free. `inner_modes` is how many of its own bending modes, and of its twist, the lumped
+    model counts.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -36,6 +44,12 @@ class Leaf(Shaped):
     width: Annotated[Number, LENGTH, POSITIVE]
     section: LeafSection = LeafSection.PLATE
     inner_modes: Annotated[int, INNER_MODES] = 0
+    ends: LeafEnds = LeafEnds.CLAMPED
+
+    @property
+    def warps(self) -> bool:
+        """Whether its ends may warp as it twists."""
+        return self.section is LeafSection.BEAM or self.ends is LeafEnds.FREE
 
     @property
     def intended(self) -> tuple[Freedom, ...]:

@@ -20,7 +20,7 @@ from flexstage.parts.rod import Rod
 def _of_leaf(part: Leaf, material: Material, resolution: Resolution) -> FlexureLaw:
     if part.section is LeafSection.BEAM:
         return beam_law(beam_of(part, material), resolution, flat=True)
-    return leaf_law(part, material, resolution)
+    return leaf_law(part, material, resolution, warps=part.warps)
 
 
 def _of_rod(part: Rod, material: Material, resolution: Resolution) -> FlexureLaw:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.element import Tangent
+from flexstage.beams.flexure.law import FlexureLaw
+from flexstage.models.nonlinear.element import Tangent, field_system
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,18 @@ def condense(found: Tangent, gap: Array) -> Answer:
         right[..., size : size + 3, 7:] = -found.swayed[..., 0, :, :]
     answer = solve(matrix, right)
     return Answer(answer[..., 0], answer[..., 1:])
+
+
+def settle(law: FlexureLaw, strain: Array) -> Array:
+    """Amplitudes (..., b, q) whose plate fields have the least energy at their curvatures, in which it is quadratic.
+
+    Newton's method on fields and curvatures at once overshoots in thin leaves, where stretching goes with their squares' product.
+    """
+    count = law.modes.shape[-1]
+    if strain.shape[-1] == count:
+        return strain
+    matrix, right = field_system(law, strain)
+    return np.concatenate([strain[..., :count], solve(matrix, right[..., None])[..., 0]], axis=-1)
 
 
 def solve(matrix: Array, right: Array) -> Array:

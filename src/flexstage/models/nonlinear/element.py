@@ -135,6 +135,17 @@ def _running(rule: Rule, values: Array) -> Array:
     return (rule.running @ flat).reshape(values.shape)
 
 
+def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
+    """The matrix (..., b, e, e) and right side (..., b, e) of the plate's fields that go with curvatures (docs/nonlinear.md, 13)."""
+    weights, count = gauss(law.modes.shape[-3]).weights[:, None], law.modes.shape[-1]
+    curvature = _apply(law.modes, strain[..., :count])
+    twist, bend = curvature[..., :1], curvature[..., 2:]
+    stretch = weights * law.stretch[..., None, None, :] * bend
+    plate = law.plate[..., None, :, :, :]
+    matrix = law.form[..., None, count:, count:] + _product(plate, (stretch * bend)[..., None] * plate)
+    return matrix, _project(plate, stretch * twist * twist * [1.0, 0.0]) - strain[..., :count] @ law.form[..., :count, count:]
+
+
 def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
     """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included."""
     quadratic = 0.5 * np.sum(strain * (strain @ law.form), axis=-1)

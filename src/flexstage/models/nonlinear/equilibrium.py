@@ -50,7 +50,7 @@ class State:
     def displacement(self, place: str = "platform") -> Array:
         """How far (..., 3) a body's reference, or a named point, has moved from where it is drawn [m]."""
         body, arm = self.place(place)
-        moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ arm) - self.model.reference[body] - arm
+        moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ (self.model.growth[body] * arm)) - self.model.reference[body] - arm
         return self._known(moved)
 
     def rotation(self, body: str = "platform") -> Array:
@@ -153,7 +153,13 @@ def _hold(model: Nonlinear, held: Mapping[str, Number], values: list[Array], cas
     body = np.array([number for number, _ in found], dtype=int)
     arm = np.array([arm for _, arm in found]).reshape(-1, 3)
     component = np.array([COMPONENTS.index(name) for _, _, name in places], dtype=int)
-    return Hold(body, arm, component, model.reference[body] + arm, np.stack(values, axis=-1) if values else np.zeros((cases, 0)))
+    return Hold(
+        body,
+        arm * model.growth[body, None],
+        component,
+        model.reference[body] + arm,
+        np.stack(values, axis=-1) if values else np.zeros((cases, 0)),
+    )
 
 
 def _unknown_inputs(model: Nonlinear, given: Mapping[str, Number]) -> Iterator[Finding]:

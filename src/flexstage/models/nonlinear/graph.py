@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.flexure.law import FlexureLaw
-from flexstage.models.nonlinear.condense import Answer, condense
+from flexstage.models.nonlinear.condense import Answer, condense, settle
 from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
 from flexstage.models.nonlinear.hinge import Ends, stiffen
 from flexstage.models.nonlinear.hold import Hold, gradients
@@ -247,7 +247,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
     for number, group in enumerate(model.flexures):
         inner = follow(group, bent[number], moved) * share[:, None]
         count = group.law.form.shape[-1]
-        strain.append(pose.strain[number] + inner[..., :count])
+        strain.append(settle(group.law, pose.strain[number] + inner[..., :count]))
         wrench.append(pose.wrench[number] + inner[..., count:])
         largest = np.maximum(largest, np.max(np.abs(inner[..., :count]), axis=(0, 2)))
     moved = moved * share[:, None, None]

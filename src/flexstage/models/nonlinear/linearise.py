@@ -333,7 +333,7 @@ def _moved_twists(state: State, order: _Coordinates, places: Mapping[str, object
     found = []
     for name in places:
         number, arm = state.place(name)
-        found.append(transport(state.pose.turn[:, number] @ arm) @ order.body(number))
+        found.append(transport(state.pose.turn[:, number] @ (state.model.growth[number] * arm)) @ order.body(number))
     return found
 
 

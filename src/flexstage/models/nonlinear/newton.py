@@ -13,7 +13,7 @@ from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose, Status, put
 
-_CHUNK = 512
+_CHUNK = 128
 """Cases at once: what they need stays in the processor's caches."""
 
 
@@ -27,7 +27,7 @@ class Effort:
     step: float = 1e-9
     gap: float = 1e-6
     iterations: int = 25
-    limit: float = 0.2
+    limit: float = 0.3
     halvings: int = 6
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +16,7 @@ from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
 from flexstage.beams.flexure.of_part import flexure_law
 from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expansion import expansion
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Damping, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
@@ -52,7 +53,8 @@ class Nonlinear:
     """A stage for large displacements: see `nonlinear`.
 
     `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) as drawn. Dead loads act at `places`: first those of
-    the wrench inputs, then the stated forces with `stated` (d, 3), then the `masses` (d,).
+    the wrench inputs, then the stated forces with `stated` (d, 3), then the `masses` (d,). `growth` (n + 1,) is how many times their drawn
+    size bodies have.
     """
 
     assembly: Assembly
@@ -67,6 +69,7 @@ class Nonlinear:
     inertia: Mapping[str, Array]
     gravity: Array
     damping: Damping | None
+    growth: Array
     provenance: str
 
     @cached_property
@@ -107,11 +110,24 @@ class Nonlinear:
         return wrench
 
 
-def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT) -> Nonlinear:
+@dataclass(frozen=True, eq=False)
+class _Growth:
+    """How many times their drawn size `bodies` (n + 1,) have, and links' `parts` that are not as drawn."""
+
+    bodies: Array
+    parts: Mapping[str, float]
+
+    def of(self, name: str) -> float:
+        return self.parts.get(name, 1.0)
+
+
+def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
 
     Leaves, rods, notches and necks bend; all other links are their 6x6 in a frame that turns with them. Valid for small strains in the
-    flexures. Superelements, and batches of designs, are refused.
+    flexures. Superelements, and batches of designs, are refused. `temperature` is a uniform change [K]: every body and part grows freely
+    by its expansion, the `ground` (of this material; absent: as `drift` finds it) about the stage's origin, and what does not fit bends.
+    Moduli stay. What states no expansion is then refused.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
@@ -125,7 +141,8 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT) -> Nonl
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
     laws = {name: flexure_law(link.part, link.material, resolution) for name, link in assembly.links.items()}
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
-    flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, number, reference)
+    growth = _growth(mechanism, bodies, temperature, ground)
+    flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, number, (reference, growth))
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
     places, stated, masses = _places(mechanism, assembly, number, reference, centred)
     carried = {name: moving_inertia(mechanism, placed) for name, placed in assembly.bodies.items()}
@@ -134,16 +151,31 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT) -> Nonl
         bodies=bodies,
         reference=reference,
         flexures=flexures,
-        hinges=_hinges(assembly, centred, number, reference),
+        hinges=_hinges(assembly, centred, number, (reference, growth)),
         inputs=input_channels(assembly),
-        places=places,
+        places=Places(places.body, places.arm * growth.bodies[places.body, None]),
         stated=stated,
         masses=masses,
         inertia={name: item for name, item in carried.items() if item is not None},
         gravity=stack(mechanism.gravity),
         damping=mechanism.damping,
-        provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}",
+        growth=growth.bodies,
+        provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}" + (f" at {temperature:+g} K" if temperature else ""),
     )
+
+
+def _growth(mechanism: Mechanism, bodies: tuple[str, ...], temperature: float, ground: str | None) -> _Growth:
+    if not temperature:
+        return _Growth(np.ones(len(bodies) + 1), {})
+    found = expansion(mechanism, ground)
+    parts = {name: 1.0 + temperature * float(each) for name, (each, _) in found.parts.items()}
+    return _Growth(np.array([1.0 + temperature * float(found.bodies[name]) for name in (*bodies, GROUND)]), parts)
+
+
+def _grow(law: FlexureLaw, ratio: float) -> FlexureLaw:
+    """A flexure that has grown alike in all directions: its tables stay, being relative."""
+    inertia = law.inertia * np.array([1.0 / ratio, ratio, ratio, ratio])
+    return replace(law, length=law.length * ratio, rigidity=law.rigidity * ratio**4, inertia=inertia, half=law.half * ratio)
 
 
 def _one(value: Array, name: str) -> Array:
@@ -152,21 +184,28 @@ def _one(value: Array, name: str) -> Array:
     return np.asarray(value, dtype=float)
 
 
-def _flexures(assembly: Assembly, laws: Mapping[str, FlexureLaw], number: Mapping[str, int], reference: Array) -> tuple[Flexures, ...]:
+def _flexures(
+    assembly: Assembly, laws: Mapping[str, FlexureLaw], number: Mapping[str, int], drawn: tuple[Array, _Growth]
+) -> tuple[Flexures, ...]:
     groups: dict[tuple[int, ...], list[str]] = {}
     for name, item in laws.items():
         groups.setdefault(item.signature, []).append(name)
-    return tuple(_group(assembly, names, [laws[name] for name in names], number, reference) for names in groups.values())
+    return tuple(_group(assembly, names, [laws[name] for name in names], number, drawn) for names in groups.values())
 
 
-def _group(assembly: Assembly, names: list[str], laws: list[FlexureLaw], number: Mapping[str, int], reference: Array) -> Flexures:
+def _group(
+    assembly: Assembly, names: list[str], laws: list[FlexureLaw], number: Mapping[str, int], drawn: tuple[Array, _Growth]
+) -> Flexures:
+    reference, growth = drawn
     links = [assembly.links[name] for name in names]
+    half = 0.5 * np.stack([item.length for item in laws])[:, None] * np.stack([link.frame.rotation[:, 0] for link in links])
+    laws = [_grow(item, growth.of(name)) if name in growth.parts else item for name, item in zip(names, laws, strict=True)]
     together = FlexureLaw(**{each.name: np.stack([np.asarray(getattr(item, each.name)) for item in laws]) for each in fields(FlexureLaw)})
     first, second = _numbers(links, number)
     turn = np.stack([link.frame.rotation for link in links])
-    half = 0.5 * together.length[:, None] * turn[..., 0]
     centre = np.stack([_one(link.frame.position, link.name) for link in links])
-    return Flexures(tuple(names), together, first, second, turn, centre - half - reference[first], centre + half - reference[second])
+    arms = ((centre + side * half - reference[body]) * growth.bodies[body, None] for side, body in ((-1.0, first), (1.0, second)))
+    return Flexures(tuple(names), together, first, second, turn, *arms)
 
 
 def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Array, Array]:
@@ -174,10 +213,10 @@ def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Ar
     return np.array(first, dtype=int), np.array(second, dtype=int)
 
 
-def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping[str, int], reference: Array) -> Hinges:
+def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping[str, int], drawn: tuple[Array, _Growth]) -> Hinges:
     first, second = _numbers(links.values(), number)
     count, inputs = len(links), len(input_channels(assembly))
-    centre = np.array([_one(link.frame.position, link.name) for link in links.values()]).reshape(count, 3)
+    (reference, growth), centre = drawn, np.array([_one(link.frame.position, link.name) for link in links.values()]).reshape(count, 3)
     laws = [law(link.part, link.material) for link in links.values()]
     free = {name: assembly.actuator(actuator).free_deformation for actuator, name in assembly.strokes.items()}
     strokes, thrusts = imposed_strokes(assembly, free), exerted_wrenches(assembly)
@@ -188,14 +227,23 @@ def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping
         first=first,
         second=second,
         turn=np.array([link.frame.rotation for link in links.values()]).reshape(count, 3, 3),
-        arm_first=centre - reference[first],
-        arm_second=centre - reference[second],
+        arm_first=(centre - reference[first]) * growth.bodies[first, None] + _halves_more(links, growth, (first, 0.5)),
+        arm_second=(centre - reference[second]) * growth.bodies[second, None] + _halves_more(links, growth, (second, -0.5)),
         stiffness=np.array([item.stiffness for item in laws]).reshape(count, 6, 6),
         stroke=np.array([strokes.get(name, none) for name in links]).reshape(count, 6, inputs),
         thrust=np.array([thrusts.get(name, none) for name in links]).reshape(count, 6, inputs),
         push=np.array([[0.0 if push is None else push, 0, 0, 0, 0, 0] for push in pushes], dtype=float).reshape(count, 6),
         locked=np.array([(place, freedom.index) for place, item in enumerate(laws) for freedom in item.locked], dtype=int).reshape(-1, 2),
     )
+
+
+def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, end: tuple[Array, float]) -> Array:
+    """How much more (l, 3) than its body a part's half next to it has grown, seen from that end."""
+    more = [
+        side * float(span(link.part)) * (growth.of(name) - growth.bodies[body]) * link.frame.rotation[:, 0] * (name in growth.parts)
+        for body, side, (name, link) in zip(end[0], np.full(len(links), end[1]), links.items(), strict=True)
+    ]
+    return np.array(more).reshape(-1, 3)
 
 
 def _places(

@@ -1,4 +1,4 @@
-"""How far flexures are strained at a state, and how much their sections curve (docs/nonlinear.md, 28)."""
+"""How far flexures are strained at a state, their stress, and how much their sections curve (docs/nonlinear.md, 28 and 29)."""
 
 from __future__ import annotations
 
@@ -6,25 +6,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array
-from flexstage.models.nonlinear.element import shape
+from flexstage.base.number import Array, Number
+from flexstage.models.nonlinear.element import Shape, shape
 from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.stage import Flexures
+from flexstage.parts.material import Material
+
+_ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+"""Where across the width stress is looked at, over half of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Of every flexure by name: the largest strain along it (..., l), and b^2 k / t of its strongest bending (..., l)."""
+    """Of every flexure by name: the largest strain along it (..., l), and b^2 k / t of its strongest bending (..., l).
+
+    `stress` (..., l) is the largest stress of von Mises on its faces [Pa]; `limit` (l,) the least its material may have, NaN where none is
+    stated.
+    """
 
     names: tuple[str, ...]
     largest: Array
     curving: Array
+    stress: Array
+    limit: Array
 
 
 def strains(state: State) -> Strains:
     """Strains at the ends and the points of every flexure, of its thinnest section where that varies.
 
     |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the most each section can have at an edge of its surface. A leaf's section at a
-    clamped end has 1 / (1 - nu^2) times the stress of a beam of that strain.
+    clamped end has 1 / (1 - nu^2) times the stress of a beam of that strain. Stress is that of stretch, bending both ways, the curving of a
+    leaf's section and Saint-Venant's torsion; the warping of ends that twist, and the concentration at fillets, are left out.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -36,6 +48,7 @@ def strains(state: State) -> Strains:
     names: list[str] = []
     largest: list[Array] = []
     curving: list[Array] = []
+    stressed: list[Array] = []
     for number, group in enumerate(state.model.flexures):
         law = group.law
         lies = shape(law, state.pose.strain[number], state.pose.wrench[number][..., :3])
@@ -45,7 +58,45 @@ def strains(state: State) -> Strains:
         bending = bent[..., 2] * half + bent[..., 1] * wide + bent[..., 0] ** 2 * wide**2 / 3.0
         names += group.names
         largest += list(pulled + np.max(bending, axis=-1))
+        stressed += list(_stress(group, _materials(state, group), lies))
         curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * np.max(bent[..., 2], axis=-1))
     known = np.where(state.converged, 1.0, np.nan)[..., None]
-    both = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving))
-    return Strains(tuple(names), *both)
+    told = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
+    return Strains(tuple(names), *told, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
+
+
+def _materials(state: State, group: Flexures) -> list[Material]:
+    found = [state.model.assembly.links[name].material for name in group.names]
+    return [each for each in found if each is not None]
+
+
+def _limits(materials: list[Material]) -> Array:
+    return np.array([np.nan if each.limit is None else float(each.limit) for each in materials])
+
+
+def _column(values: list[Number]) -> Array:
+    return np.array([float(value) for value in values])[:, None, None, None, None]
+
+
+def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
+    """The largest stress of von Mises (l, b) at points and ends, five places across the width and both faces (docs/nonlinear.md, 29)."""
+    law, flat = group.law, group.law.plate.shape[-1] > 0
+    young, shear = _column([each.modulus for each in materials]), _column([each.shear for each in materials])
+    poisson = _column([each.contraction if flat else 0.0 for each in materials])
+    length, half, wide = (each[:, None, None, None, None] for each in (law.length, law.half[:, 0], law.half[:, 1]))
+    bent = np.concatenate([lies.curvature, lies.rule.ends @ lies.curvature], axis=-2)[..., None, None, :] / length[..., None]
+    ends = np.zeros((*lies.plate.shape[:-2], 2, 2))  # clamped: the section of a leaf cannot curve there
+    plate = np.concatenate([lies.plate, ends], axis=-2)[..., None, None, :] / length[..., None]
+    pulled = lies.tension * law.compliance[:, None, :, 0]
+    pulled = np.concatenate([pulled, pulled @ lies.rule.ends.T], axis=-1)[..., None, None]
+    twist, across, bend = (bent[..., axis] for axis in range(3))
+    u, face = _ACROSS[:, None], half * np.array([-1.0, 1.0])
+    square = wide * wide / 3.0
+    two, four = square * (3.0 * u**2 - 1.0) / 2.0, square * (35.0 * u**4 - 30.0 * u**2 + 3.0) / 8.0
+    flexed = plate[..., 0] + plate[..., 1] * (420.0 * u**2 - 60.0) / 24.0
+    stretched = pulled + twist * twist * two - bend * (plate[..., 0] * two + plate[..., 1] * four) + wide * u * across
+    factor = young / (1.0 - poisson * poisson)
+    along = young * stretched - factor * face * (bend + poisson * flexed)
+    over = -factor * face * (flexed + poisson * bend) if flat else 0.0 * along
+    torsion = 2.0 * shear * half * twist
+    return np.sqrt(np.max(along * along + over * over - along * over + 3.0 * torsion * torsion, axis=(2, 3, 4)))
