@@ -166,6 +166,12 @@ def test_stiffness_is_symmetric_without_dead_couples():
     assert asymmetry(nonlinear(guide()), SPACE) > 1e-6
 
 
+def test_asymmetry_falls_with_points():
+    force = SPACE * [1, 1, 1, 0, 0, 0]
+    coarse, middle, fine = (asymmetry(nonlinear(guide(), resolution=Resolution(points=points)), force) for points in (10, 14, 18))
+    assert coarse > 10.0 * middle > 100.0 * fine
+
+
 @pytest.mark.parametrize(("resolution", "most"), [(Resolution(), 2e-6), (FINE, 5e-8)])
 def test_energy_is_the_work_of_forces(resolution: Resolution, most: float):
     model = nonlinear(guide(), resolution=resolution)
