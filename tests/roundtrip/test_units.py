@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base import quantity
+from flexstage.base import dimension, quantity
 from flexstage.base.finding import DesignError
 from flexstage.base.quantity import (
     ANGLE,
@@ -117,6 +117,17 @@ def test_arrays_convert_and_show_their_range() -> None:
     assert show(values, LENGTH) == "1 mm to 2 mm (3 values)"
 
 
-def test_importing_the_package_and_this_module_leaves_pint_alone() -> None:
-    code = "import sys, flexstage, flexstage.base.unit; sys.exit('pint' in sys.modules)"
+SYMBOLS = ("m", "g", "s", "K", "rad", "B", "A", "N", "Pa", "J", "W", "Hz", "C", "V", "F", "H", "T")
+
+
+def test_common_units_are_those_of_pint() -> None:
+    names = [prefix + symbol for prefix in ("", *"pnuµmckMG") for symbol in SYMBOLS]
+    for name in (*names, "deg", "%"):
+        assert dimension.common_dimension(name) == dimension._dimension_by_pint(name), name
+    for name in ("lbf", "min", "mm_", "ohm", "cd", "mdeg", "Mi"):
+        assert dimension.common_dimension(name) is None
+
+
+def test_importing_the_package_and_reading_common_units_leaves_pint_alone() -> None:
+    code = "import sys, flexstage; from flexstage.base.dimension import dimension_of; dimension_of('N/um'); sys.exit('pint' in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -311,7 +311,8 @@ def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array) -> 
 
 def _equal(bodies: tuple[str, ...], shares: Array) -> list[str]:
     """The bodies with the largest share, in their order."""
-    return [body for body, share in zip(bodies, shares, strict=True) if body != _PLATFORM and share >= np.max(shares) - _EQUAL]
+    least = np.max(shares) - _EQUAL
+    return [body for body, share in zip(bodies, shares, strict=True) if body != _PLATFORM and share >= least]
 
 
 def _set(names: list[str]) -> str:

@@ -7,10 +7,10 @@ from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Annotated, TypeAlias
+from functools import cached_property, lru_cache
+from typing import Annotated, TypeAlias, TypeVar
 
 import numpy as np
 import scipy
@@ -29,12 +29,14 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
-from flexstage.parts.part import push_of
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
 """Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
 
+_Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
@@ -109,8 +111,7 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     True
     """
     require(_unknown_softening(expand(mechanism)))
-    pieces = _Pieces.of(mechanism, model)
-    dead = pieces.softening(*_dead(mechanism, pieces))
+    pieces, dead = _loaded(mechanism, model)
     unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
     matrices = np.broadcast_arrays(pieces.stiffness, dead, *unit)
     batch = matrices[0].shape[:-2]
@@ -129,6 +130,13 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
         moving=pieces.moving(rows[0].shapes),
         provenance=f"linearised buckling of the {model.provenance}",
     )
+
+
+@lru_cache(maxsize=2)
+def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
+    """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
+    pieces = _Pieces.of(mechanism, model)
+    return pieces, pieces.softening(*_dead(mechanism, pieces))
 
 
 def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
@@ -154,13 +162,7 @@ class _Pieces:
     def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
         assembly = expand(_with_drawn_parts(mechanism))
         twists = {name: _rows(model, name, COMPONENTS) for name in assembly.bodies}
-        known: dict[tuple[int, int], Geometric] = {}
-        parts: dict[str, Geometric] = {}
-        for name, link in assembly.links.items():
-            key = id(link.part), id(link.material)
-            if key not in known:
-                known[key] = geometric(link.part, link.material)
-            parts[name] = known[key]
+        parts = dict(zip(assembly.links, _by_part(assembly.links.values(), geometric), strict=True))
         return _Pieces(assembly, model, {GROUND: np.zeros((6, len(model.coordinates))), **twists}, parts)
 
     @property
@@ -183,6 +185,20 @@ class _Pieces:
                 place += 1
         return result
 
+    @cached_property
+    def shapes(self) -> Mapping[str, Array]:
+        """By link, the motion (..., 12 + k, n + k) of its ends and of its inner bending."""
+        found: dict[str, Array] = {}
+        place = len(self.model.coordinates)
+        for name, link in self.assembly.links.items():
+            inner, shape = self.parts[name].inner.shape[-1], self.ends(link)
+            wide = np.zeros((*shape.shape[:-2], ENDS + inner, self.size), dtype=shape.dtype)
+            wide[..., :ENDS, : shape.shape[-1]] = shape
+            wide[..., range(ENDS, ENDS + inner), range(place, place + inner)] = 1.0
+            place += inner
+            found[name] = wide
+        return found
+
     def ends(self, link: PlacedLink) -> Array:
         """Twists (..., 12, n) of both ends of a link, at its centre, in its frame."""
         seen = [self._end(body, link) for body in link.joins]
@@ -200,15 +216,8 @@ class _Pieces:
         for name, acting in loads.items():
             forces[name] += [(load[..., :3], point) for load, point in acting]
         total: Array = np.zeros((self.size, self.size))
-        place = len(self.model.coordinates)
         for name, link in self.assembly.links.items():
-            part, wrench = self.parts[name], wrenches[name]
-            inner = part.inner.shape[-1]
-            shape = self.ends(link)
-            wide = np.zeros((*shape.shape[:-2], ENDS + inner, self.size), dtype=shape.dtype)
-            wide[..., :ENDS, : shape.shape[-1]] = shape
-            wide[..., range(ENDS, ENDS + inner), range(place, place + inner)] = 1.0
-            place += inner
+            part, wrench, wide = self.parts[name], wrenches[name], self.shapes[name]
             law = np.einsum("...i,...iab->...ab", wrench, part.per_force)
             total = total + _transposed(wide) @ law @ wide
             force = link.frame.direction(wrench[..., :3])
@@ -282,10 +291,11 @@ def _weights(mechanism: Mechanism) -> _Loads:
     loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
     for name, placed in assembly.bodies.items():
         loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried_masses(mechanism, placed)]
-    for link in assembly.links.values():
+    masses = _by_part(assembly.links.values(), mass)
+    for link, own in zip(assembly.links.values(), masses, strict=True):
         back = _transposed(link.frame.rotation)
         fall = (back @ gravity[..., None])[..., 0]
-        pulled = mass(link.part, link.material)[..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
+        pulled = own[..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
         for place, body in enumerate(link.joins):
             if body != GROUND:
                 wrench = (spatial_rotation(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
@@ -294,6 +304,18 @@ def _weights(mechanism: Mechanism) -> _Loads:
         if force.body != GROUND:
             loads[force.body].append((_force(stack(force.force)), stack(force.at)))
     return loads
+
+
+def _by_part(links: Iterable[PlacedLink], work: Callable[[Part, Material | None], _Of]) -> list[_Of]:
+    """What a function gives of every link's part and material, asked once of links that share both."""
+    known: dict[tuple[int, int], _Of] = {}
+    found: list[_Of] = []
+    for link in links:
+        key = id(link.part), id(link.material)
+        if key not in known:
+            known[key] = work(link.part, link.material)
+        found.append(known[key])
+    return found
 
 
 def _force(force: Array) -> Array:

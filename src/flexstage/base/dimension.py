@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+_PI = Fraction("3.1415926535897932384626433832795028841971693993751")
 _DEFINITIONS = """
 pico- = 1e-12 = p-
 nano- = 1e-9 = n-
@@ -59,6 +60,21 @@ standard_gravity = 9.80665 * meter / second ** 2 = g0
 percent = 0.01 = %
 ppm = 1e-6
 """
+_PREFIXES = {"p": "1e-12", "n": "1e-9", "u": "1e-6", "µ": "1e-6", "m": "1e-3", "c": "1e-2", "k": "1e3", "M": "1e6", "G": "1e9"}
+_BASES = {"m": "length", "g": "mass", "s": "time", "K": "temperature", "rad": "angle", "B": "memory", "A": "current"}
+_DERIVED = {
+    "N": "kg m/s^2",
+    "Pa": "N/m^2",
+    "J": "N m",
+    "W": "J/s",
+    "Hz": "1/s",
+    "C": "A s",
+    "V": "W/A",
+    "F": "C/V",
+    "H": "V s/A",
+    "T": "V s/m^2",
+}
+"""Names that almost every text has, said once more: for them pint, which takes longer to import than numpy, is not asked."""
 _OFFSET_SCALE = re.compile(r"deg(?:ree)?_?[CF]|celsius|fahrenheit", re.IGNORECASE)
 _SPELLINGS = (("**", "^"), ("·", " "), ("²", "^2"), ("³", "^3"), ("°C", "degC"), ("°F", "degF"))
 _TOKEN = re.compile(r"\s*(?:(?P<name>g0|[A-Za-zµμ°%_]+)(?:\^(?P<power>-?[0-9](?:\.[0-9])?))?|(?P<sign>[*/()1]))\s*")
@@ -142,6 +158,29 @@ def _tokens(unit: str) -> Iterator[re.Match[str]]:
 
 
 def _dimension_of_unit(name: str) -> Dimension:
+    return common_dimension(name) or _dimension_by_pint(name)
+
+
+@functools.cache
+def common_dimension(name: str) -> Dimension | None:
+    """The dimension of a symbol of SI with or without a prefix, of a degree and of a per cent; absent for all other names.
+
+    >>> common_dimension("um").size, common_dimension("lbf")
+    (Fraction(1, 1000000), None)
+    """
+    if name in _BASES:
+        return Dimension(Fraction(1), ((f"[{_BASES[name]}]", Fraction(1)),))
+    if name in _DERIVED:
+        return dimension_of(_DERIVED[name])
+    if name == "deg":
+        return Dimension(_PI / 180, (("[angle]", Fraction(1)),))
+    if name == "%":
+        return Dimension(Fraction(1, 100))
+    own = common_dimension(name[1:]) if name[:1] in _PREFIXES and name[1:] in {*_BASES, *_DERIVED} else None
+    return None if own is None else Dimension(Fraction(_PREFIXES[name[:1]]) * own.size, own.powers)
+
+
+def _dimension_by_pint(name: str) -> Dimension:
     registry = _registry()
     try:
         unit = registry.Unit(name)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
+
 import numpy as np
 
 from flexstage.apps.studio.reading import design
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.unit import show
 from flexstage.mechanism.address import get, quantity_of, set_text
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.store import patch
+from flexstage.mechanism.store.lines import line_numbers, line_of
 
 _DIGITS, _EXACT = 6, 12
 
@@ -20,9 +24,30 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
     Raises `DesignError` in the checks' words where that is no such number, or where the design would not be one any more.
     """
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
-    written = patch(text, {address: stated}, where=file)
+    written = _in_its_line(text, file, address, stated) or patch(text, {address: stated}, where=file)
     require_valid(design(written, file))
     return written
+
+
+def _in_its_line(text: str, file: str, address: str, stated: str) -> str:
+    """The text with another value between the quotes behind its key; nothing where that is not the design with this number set.
+
+    It is much sooner done than `patch`, which finds its way in any layout and takes out tags.
+    """
+    found = design(text, file)
+    line = line_of(address, line_numbers(text))
+    rows = text.split("\n")
+    key = re.escape(address.rpartition(".")[2])
+    quoted = [] if line is None else list(re.finditer(rf'(?<![\w."-]){key} *= *"([^"\\]*)"', rows[line - 1]))
+    if line is None or len(quoted) != 1 or '"' in stated or "\\" in stated:
+        return ""
+    start, end = quoted[0].span(1)
+    rows[line - 1] = rows[line - 1][:start] + stated + rows[line - 1][end:]
+    written = "\n".join(rows)
+    with contextlib.suppress(DesignError):
+        if design(written, file) == set_text(found, address, stated):
+            return written
+    return ""
 
 
 def _tidy(text: str, file: str, address: str, value: str) -> str:
