@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
 from flexstage.control.study.file import FORMAT, example, load_setup, loads_setup, setup_schema
-from flexstage.control.study.setup import FileMotion, LoopSetup, NotchAt, RasterMotion, VibrationSetup
+from flexstage.control.study.setup import FileMotion, LoopNumbers, LoopSetup, NotchAt, PrefilterAt, RasterMotion, VibrationSetup
 from flexstage.mechanism.store import schema
 from tests.roundtrip.test_schema import Rules
 
@@ -82,6 +82,22 @@ lines = 5
     assert not list(setup_findings(found))
 
 
+def test_numbers_of_single_loops_mean_what_they_say() -> None:
+    found = loads_setup(f"""
+format = "{FORMAT}"
+[controller]
+integral = "300 1/s"
+[[controller.loops]]
+of = ["x", "y"]
+proportional = 4.85
+notches = [{{ frequency = "103.5 Hz", depth = 0.0409, damping = 2.37 }}]
+prefilter = {{ frequency = "93 Hz", lead = "208 Hz" }}
+""").controller
+    notch, prefilter = NotchAt(103.5, 0.0409, 2.37), PrefilterAt(93.0, 1.0, 208.0)
+    assert found.loops == (LoopNumbers(("x", "y"), proportional=4.85, notches=(notch,), prefilter=prefilter),)
+    assert found.stated == ("proportional", "integral")
+
+
 def test_all_findings_come_at_once_with_file_line_and_key(tmp_path) -> None:
     path = tmp_path / "loop.toml"
     path.write_text(f"""format = "{FORMAT}"
@@ -133,6 +149,13 @@ def test_numbers_out_of_bounds_are_found() -> None:
         ('[controller]\nderivative = "1 ms"', "kind pi has none"),
         ('[controller]\nkind = "lqg"\nproportional = 1', "kind lqg does not have it"),
         ('[controller]\nkind = "none"\nbandwidth = "20 Hz"', "no loop to be tuned"),
+        ('[controller]\nloops = [{ of = ["x"], integral = "3 1/s" }, { of = ["z", "x"], integral = "3 1/s" }]', "x stands 2 times"),
+        ('[controller]\nloops = [{ of = [], integral = "3 1/s" }]', "nothing says of which loops"),
+        ('[controller]\nloops = [{ of = ["x"] }]', "loops are stated without gains"),
+        ('[controller]\nsensitivity = 2\nloops = [{ of = ["x"], integral = "3 1/s" }]', "asks for tuning, and integral is given"),
+        ('[controller]\nloops = [{ of = ["x"], derivative = "3 ms" }]', "kind pi has none"),
+        ('[controller]\nkind = "pid"\nloops = [{ of = ["x"], derivative = "3 ms" }]', "the derivative has no filter"),
+        ('[controller]\nprefilter = { frequency = "90 Hz" }', "there are no gains that it belongs to"),
         ('compensate = ["hysteresis"]', "the stacks have none"),
         ('compensate = ["load", "load"]', "stands 2 times"),
         ("seed = -1", "0 or more"),

@@ -15,6 +15,7 @@ HOMES = {
     "controllers.pid": "PID",
     "controllers.resonant": "IntegralResonant",
     "controllers.notch": "notch_of_mode",
+    "controllers.prefilter": "Prefilter",
     "controllers.loops": "actuator_loops modal_loops platform_loops",
     "controllers.decentralised": "Decentralised",
     "tuning.goal": "Goal",
@@ -34,8 +35,8 @@ HOMES = {
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
     "study.setup": (
-        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup HystereticStacks LoopSetup Motion NotchAt RasterMotion VibrationSetup "
-        "SineMotion SpiralMotion StepMotion"
+        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup HystereticStacks LoopNumbers LoopSetup Motion NotchAt PrefilterAt "
+        "RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
     "study.study": "loop_study",

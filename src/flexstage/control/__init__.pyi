@@ -19,6 +19,9 @@ from flexstage.control.controllers.pi import (
 from flexstage.control.controllers.pid import (
     PID as PID,
 )
+from flexstage.control.controllers.prefilter import (
+    Prefilter as Prefilter,
+)
 from flexstage.control.controllers.resonant import (
     IntegralResonant as IntegralResonant,
 )
@@ -101,9 +104,11 @@ from flexstage.control.study.setup import (
     Floor as Floor,
     GaugeSetup as GaugeSetup,
     HystereticStacks as HystereticStacks,
+    LoopNumbers as LoopNumbers,
     LoopSetup as LoopSetup,
     Motion as Motion,
     NotchAt as NotchAt,
+    PrefilterAt as PrefilterAt,
     RasterMotion as RasterMotion,
     VibrationSetup as VibrationSetup,
     SineMotion as SineMotion,

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.sheet import rows_of
 from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.disk import DiskMargin
 from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
@@ -75,10 +76,19 @@ def law_table(found: LoopStudy) -> Table | None:
     numbers = rows_of([each.law for each in loops.values()]).columns.items()
     known = [field_column(each, values) for each, values in numbers if any(value is not None for value in values)]
     notches = [_notches(each.notches) for each in loops.values()]
-    rows = zip([Cell(name, Mark.STRONG) for name in loops], *(cells for _, cells in known), notches, strict=True)
-    columns = ["loop", *(column for column, _ in known), "notches"]
+    shaped = [_prefilter(each.prefilter) for each in loops.values()] if any(each.prefilter for each in loops.values()) else None
+    extra = () if shaped is None else (shaped,)
+    rows = zip([Cell(name, Mark.STRONG) for name in loops], *(cells for _, cells in known), notches, *extra, strict=True)
+    columns = ["loop", *(column for column, _ in known), "notches", *(["prefilter"] if extra else [])]
     note = "From the loop's error to its command, both in metres: rotations times the stage's length."
     return make_table("Controller", columns, list(rows), notes=[note])
+
+
+def _prefilter(found: Prefilter | None) -> str:
+    if found is None:
+        return "none"
+    lead = "" if found.lead is None else f", lead at {number(found.lead, 4)} Hz"
+    return f"{number(found.frequency, 4)} Hz, damping {number(found.damping, 3)}{lead}"
 
 
 def _notches(group: Sequence[Notch]) -> str:

@@ -13,6 +13,7 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.coordinates import Coordinates
 from flexstage.control.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
@@ -23,13 +24,15 @@ class Decentralised:
     """One law for each of the loops, each followed by its notches; strokes = drive times the loops' commands + `feedforward` reference.
 
     `laws` and `notches` are as many as `loops` has names. `feedforward` (n, f) are the strokes by which the reference is fed forward: R_a,
-    or the gains that correct lost motion; absent, nothing. Raises `DesignError` where the numbers do not fit.
+    or the gains that correct lost motion; absent, nothing. `prefilters`, as many, shape the reference of each loop, also where it is fed
+    forward; absent, it is taken as it is. Raises `DesignError` where the numbers do not fit.
     """
 
     loops: Loops
     laws: tuple[Law, ...]
     notches: tuple[tuple[Notch, ...], ...] = ()
     feedforward: Array | None = None
+    prefilters: tuple[Prefilter | None, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse numbers that do not fit."""
@@ -38,8 +41,9 @@ class Decentralised:
     def system(self, step: float | None = None) -> System:
         """The controller as a system.
 
-        Inputs `error.<c>`, `pose.<c>` (only where a law wants it), `reference.<c>` (only with `feedforward`) and `applied.<actuator>`, what
-        it was given less what was commanded; outputs `command.<actuator>`. Raises `DesignError` for what cannot be sampled this slowly.
+        Inputs `error.<c>`, `pose.<c>` (only where a law wants it), `reference.<c>` (with `feedforward` or `prefilters`) and
+        `applied.<actuator>`, what it was given less what was commanded; outputs `command.<actuator>`. Raises `DesignError` for what cannot
+        be sampled this slowly.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
@@ -70,7 +74,8 @@ class Decentralised:
             step=step,
         )
         poses = [f"pose.{name}" for name in loops.coordinates.names] if any(np.any(each.B[:, 1]) for each in chains) and count else []
-        return with_feedforward(_drop_unused_poses(found, poses), self.feedforward, loops.coordinates)
+        whole = with_feedforward(_drop_unused_poses(found, poses), self.feedforward, loops.coordinates)
+        return with_prefilters(whole, self.prefilters, loops.sense, loops.coordinates)
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
@@ -156,7 +161,7 @@ def _block_columns(columns: list[Array], size: int) -> Array:
 
 def _findings(control: Decentralised) -> Iterator[Finding]:
     count = len(control.loops.names)
-    for kind, given in (("laws", control.laws), ("sets of notches", control.notches)):
+    for kind, given in (("laws", control.laws), ("sets of notches", control.notches), ("prefilters", control.prefilters)):
         if len(given) != count and (given or kind == "laws"):
             yield Finding("controller", f"{len(given)} {kind} for {count} loops ({', '.join(control.loops.names)})", "Give one for each")
     shape = (len(control.loops.coordinates.actuators), len(control.loops.coordinates.names))

@@ -27,7 +27,6 @@ _MOST_BITS = 32
 _HIGHEST_ORDER = 20
 _MOST_LINES = 100_000
 _TUNED = ("bandwidth", "sensitivity")
-_GAINS = ("proportional", "integral", "derivative")
 
 
 def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
@@ -113,18 +112,34 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
 
 def _controller(found: ControllerSetup) -> Iterator[Finding]:
     tuned = [name for name in _TUNED if getattr(found, name) is not None]
-    gains = [name for name in _GAINS if getattr(found, name) is not None]
+    gains = list(found.stated)
     if found.law in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
         yield Finding(f"controller.{gains[0]}", f"a controller of kind {found.law.value} does not have it", "Leave it out, or take kind pi")
     elif tuned and gains:
         what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
         yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
-    if found.derivative is not None and found.law is not ControllerKind.PID:
+    yield from _loops(found)
+    if "derivative" in gains and found.law is not ControllerKind.PID:
         yield Finding("controller.derivative", f"a controller of kind {found.law.value} has none", "Take kind pid, or leave it out")
-    if found.law is ControllerKind.PID and found.derivative and found.filter is None:
+    unfiltered = any(each.derivative and each.filter is None for each in (found, *found.loops))
+    if found.law is ControllerKind.PID and unfiltered and found.filter is None:
         yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
     if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
+
+
+def _loops(found: ControllerSetup) -> Iterator[Finding]:
+    """Loops that are named twice, or not at all; numbers without gains, and prefilters of what takes none."""
+    names = [name for each in found.loops for name in each.of]
+    for name in dict.fromkeys(names):
+        if names.count(name) > 1:
+            yield Finding("controller.loops", f"{name} stands {names.count(name)} times", "State the numbers of a loop once")
+    if not all(each.of for each in found.loops):
+        yield Finding("controller.loops", "nothing says of which loops the numbers are", 'Write for example of = ["x", "y"]')
+    if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
+        yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
+    if found.prefilter is not None and not found.stated:
+        yield Finding("controller.prefilter", "there are no gains that it belongs to", "State the gains, or leave it out")
 
 
 def _contradiction(tuned: list[str], gains: list[str]) -> str:

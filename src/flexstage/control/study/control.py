@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated
@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
@@ -20,9 +21,10 @@ from flexstage.control.controllers.lqg import LQG, Disturbances
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
+from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.control.study.setup import ControllerSetup, NotchAt
+from flexstage.control.study.setup import GAINS, ControllerSetup, LoopNumbers, NotchAt, PrefilterAt
 from flexstage.control.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Kind, Tuning
@@ -46,10 +48,11 @@ _FILTER = 1e3
 
 @dataclass(frozen=True)
 class SingleLoop:
-    """One of several loops: its `law`, with the numbers that its kind has, and the `notches` behind it."""
+    """One of several loops: its `law`, with the numbers that its kind has, the `notches` behind it, the `prefilter` of its reference."""
 
     law: Law
     notches: tuple[Notch, ...]
+    prefilter: Prefilter | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +74,9 @@ class Control:
         if not isinstance(made, Decentralised):
             return {}
         notches = made.notches or ((),) * len(made.laws)
-        return {name: SingleLoop(law, group) for name, law, group in zip(made.loops.names, made.laws, notches, strict=True)}
+        shaped = made.prefilters or (None,) * len(made.laws)
+        pieces = zip(made.loops.names, made.laws, notches, shaped, strict=True)
+        return {name: SingleLoop(law, group, prefilter) for name, law, group, prefilter in pieces}
 
     @property
     def notches(self) -> tuple[Notch, ...]:
@@ -106,9 +111,8 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.law is ControllerKind.NONE:
         return Control(_open_loop(given, gains), None, None, gains)
     loops = _loops(given, gains)
-    if any(value is not None for value in (asked.proportional, asked.integral, asked.derivative)):
-        notches = tuple(_notch(each, given) for each in asked.notches)
-        made_of = Decentralised(loops, (_law(asked),) * len(loops.names), (notches,) * len(loops.names) if notches else (), forward)
+    if asked.stated:
+        made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
     task = Task(
         kind=_KINDS[asked.law],
@@ -138,11 +142,48 @@ def _loops(given: ResolvedSetup, gains: Array) -> Loops:
     return modal_loops(loop, np.asarray(found.platform_shapes)[:, list(loop_modes(found, loop))], gains)
 
 
-def _law(asked: ControllerSetup) -> PI | PID:
-    proportional, integral = asked.proportional or 0.0, asked.integral or 0.0
+def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> Decentralised:
+    """Laws, notches and prefilters as stated, loop by loop."""
+    asked = given.setup.controller
+    require(_loop_findings(asked, loops.names))
+    own = {name: each for each in asked.loops for name in each.of}
+    numbers = [own.get(name, LoopNumbers((name,))) for name in loops.names]
+    notches = tuple(tuple(_notch(stated, given) for stated in (*asked.notches, *each.notches)) for each in numbers)
+    prefilters = tuple(_prefilter(each.prefilter or asked.prefilter) for each in numbers)
+    return Decentralised(
+        loops=loops,
+        laws=tuple(_law(asked, each) for each in numbers),
+        notches=notches if any(notches) else (),
+        feedforward=forward,
+        prefilters=prefilters if any(prefilters) else (),
+    )
+
+
+def _loop_findings(asked: ControllerSetup, names: tuple[str, ...]) -> Iterator[Finding]:
+    """Numbers of loops that the stage does not have, and loops without any."""
+    stated = [name for each in asked.loops for name in each.of]
+    for name in dict.fromkeys(stated):
+        if name not in names:
+            what = f"the stage has no such loop: in {asked.coordinates.value} coordinates it has {', '.join(names)}"
+            yield Finding(f"controller.loops {name}", what, suggest_nearest(name, names))
+    missing = [name for name in names if name not in stated]
+    if missing and all(getattr(asked, name) is None for name in GAINS):
+        what = f"{', '.join(missing)} {'has' if len(missing) == 1 else 'have'} no gains"
+        yield Finding("controller.loops", what, "State them too, or gains of all loops under [controller]")
+
+
+def _law(asked: ControllerSetup, own: LoopNumbers) -> PI | PID:
+    """The law of a loop by its `own` numbers, or those of all loops."""
+    proportional, integral, derivative, corner = (
+        value if (value := getattr(own, name)) is not None else getattr(asked, name) for name in (*GAINS, "filter")
+    )
     if asked.law is ControllerKind.PI:
-        return PI(proportional, integral)
-    return PID(proportional, integral, asked.derivative or 0.0, asked.filter or _FILTER)
+        return PI(proportional or 0.0, integral or 0.0)
+    return PID(proportional or 0.0, integral or 0.0, derivative or 0.0, corner or _FILTER)
+
+
+def _prefilter(stated: PrefilterAt | None) -> Prefilter | None:
+    return None if stated is None else Prefilter(stated.frequency, stated.damping, stated.lead)
 
 
 def _notch(stated: NotchAt, given: ResolvedSetup) -> Notch:

@@ -90,8 +90,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
 def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
     """The usual controller where none is stated: force moves a mass above its resonance, and what is as late as that needs a lead."""
     asked = setup.controller
-    tuned = all(value is None for value in (asked.proportional, asked.integral, asked.derivative))
-    kind = ControllerKind.PID if forced and tuned and asked.kind is None else asked.law
+    kind = ControllerKind.PID if forced and not asked.stated and asked.kind is None else asked.law
     fed = tuple(each for each in setup.compensate if not forced or each is not Compensation.LOST_MOTION)
     return replace(setup, controller=replace(asked, kind=kind), compensate=fed)
 

@@ -36,6 +36,8 @@ from flexstage.models.theory import Model
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
 _CREEP = Bound(low=-0.2, high=0.2)
+GAINS = ("proportional", "integral", "derivative")
+"""Keys of a law's gains."""
 
 
 @dataclass(frozen=True)
@@ -116,13 +118,38 @@ class NotchAt:
 
 
 @dataclass(frozen=True)
+class PrefilterAt:
+    """A prefilter of the reference: a low-pass of second order at a `frequency` with a `damping`, and a `lead` above it."""
+
+    frequency: Annotated[float, FREQUENCY, POSITIVE]
+    damping: Annotated[float, RATIO, POSITIVE] = 1.0
+    lead: Annotated[float, FREQUENCY, POSITIVE] | None = None
+
+
+@dataclass(frozen=True)
+class LoopNumbers:
+    """The numbers of some of the loops, `of` which they are: x, rz ..., in other coordinates mode1 or the actuator's name.
+
+    What is absent is that of all loops; `notches` are besides theirs.
+    """
+
+    of: tuple[str, ...]
+    proportional: Annotated[float, RATIO] | None = None
+    integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
+    derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+    filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    notches: tuple[NotchAt, ...] = ()
+    prefilter: PrefilterAt | None = None
+
+
+@dataclass(frozen=True)
 class ControllerSetup:
     """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
 
     Without a kind it is PI, where forces drive the stage PID (unless numbers are given). What it shall reach: `bandwidth` (where the open
     loop's gain passes 1; absent: the highest that `sensitivity` allows) and `sensitivity`, the highest peak of S. Its numbers:
-    `proportional` (strokes or motion per error), `integral` rate, `derivative` time and its `filter` corner. `notches` besides those
-    placed by themselves.
+    `proportional` (strokes or motion per error), `integral` rate, `derivative` time and its `filter` corner, of all loops; `loops` state
+    those of single ones. `notches` besides those placed by themselves. `prefilter` shapes what is commanded.
     """
 
     kind: ControllerKind | None = None
@@ -135,6 +162,13 @@ class ControllerSetup:
     filter: Annotated[float, FREQUENCY, POSITIVE] | None = None
     notching: Notching = Notching.AUTOMATIC
     notches: tuple[NotchAt, ...] = ()
+    loops: tuple[LoopNumbers, ...] = ()
+    prefilter: PrefilterAt | None = None
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """Gains that are stated, of all loops or of single ones: what is then not tuned."""
+        return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
     def law(self) -> ControllerKind:

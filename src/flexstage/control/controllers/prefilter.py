@@ -1,0 +1,109 @@
+"""Prefilters: what a loop is asked to follow, of what was commanded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.sampling import bilinear
+from flexstage.control.system import System, connect
+from flexstage.models.linear.model import Channel
+
+_PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
+
+
+@dataclass(frozen=True)
+class Prefilter:
+    """F(s) = (1 + s/w_l) / (1 + 2 zeta s/w + s^2/w^2), w = 2 pi `frequency`, zeta = `damping`, w_l = 2 pi `lead`; without a lead, 1 above.
+
+    The second degree of freedom of a loop (Astrom and Haegglund, Advanced PID Control, 2006, section 3.4): a law with strong integrators
+    has a zero at k_i/k_p, which makes steps overshoot; F takes from the command what would ring, and leaves S, margins and noise as they
+    are. Gain 1 at rest. Raises `DesignError` for numbers that cannot be.
+
+    >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
+    >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there
+    [1.0, 0.5]
+    """
+
+    frequency: Annotated[float, FREQUENCY]
+    damping: float = 1.0
+    lead: Annotated[float | None, FREQUENCY] = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be."""
+        given = {"frequency": self.frequency, "damping": self.damping, "lead": self.lead}
+        require(
+            Finding("prefilter", f"its {name} is {value:g}", "Give a positive number")
+            for name, value in given.items()
+            if value is not None and not 0.0 < value < np.inf
+        )
+
+    def system(self, step: float | None = None) -> System:
+        """Input `reference`, output `shaped`; with a step by Tustin's rule, prewarped at its frequency where that is sampled."""
+        omega = 2.0 * np.pi * self.frequency
+        A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
+        slope = 0.0 if self.lead is None else self.frequency / self.lead
+        found = System(A, np.array([[0.0], [omega]]), np.array([[1.0, slope]]), np.zeros((1, 1)), *_PORTS)
+        if step is None:
+            return found
+        return bilinear(found, step, self.frequency if self.frequency < 0.4 / step else None)
+
+
+def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
+    """The controller behind prefilters, one a loop: it is given e + (S^+ F S - 1) r for e, and S^+ F S r for r, S = `sense` (k, f).
+
+    Inputs `reference.<c>` are added where the controller has none.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.system import static
+    >>> from flexstage.models.ideal import ideal
+    >>> gain = static(np.ones((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))
+    >>> found = with_prefilters(gain, (Prefilter(90.0),), np.eye(1), coordinates(ideal(parallelogram())))
+    >>> found.input_names, abs(found.transfer(np.array([90.0]))[0, 0]).round(3).tolist()  # F - 1 of the reference
+    (('error.x', 'reference.x'), [1.0, 1.118])
+    """
+    if not any(filters):
+        return control
+    shaped = _shaped(filters, np.asarray(sense), coordinates, control.step)
+    links: dict[str, dict[str, float]] = {}
+    for name in coordinates.names:
+        links[f"asked.{name}"] = {f"reference.{name}": 1.0}
+        if f"error.{name}" in control.input_names:
+            links[f"error.{name}"] = {f"error.{name}": 1.0, f"shaped.{name}": 1.0, f"reference.{name}": -1.0}
+        if f"reference.{name}" in control.input_names:
+            links[f"reference.{name}"] = {f"shaped.{name}": 1.0}
+    return connect([control, shaped], links, _inputs(control, coordinates), control.output_names)
+
+
+def _inputs(control: System, coordinates: Coordinates) -> tuple[Channel, ...]:
+    """Those of the controller, with the reference before what was applied."""
+    wanted = tuple(Channel(f"reference.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
+    rest = [each for each in control.inputs if not each.name.startswith("reference.")]
+    before = [each for each in rest if not each.name.startswith("applied.")]
+    return (*before, *wanted, *rest[len(before) :])
+
+
+def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates, step: float | None) -> System:
+    """From `asked.<c>` to `shaped.<c>`."""
+    back = np.linalg.pinv(sense)
+    entry, exit_ = (
+        tuple(Channel(f"{kind}.{name}", unit) for name, unit in zip(coordinates.names, coordinates.units, strict=True))
+        for kind in ("asked", "shaped")
+    )
+    parts = [each.system(step) if each is not None else None for each in filters]
+    size = sum(len(each.A) for each in parts if each is not None)
+    A, B, C, D = np.zeros((size, size)), np.zeros((size, len(parts))), np.zeros((len(parts), size)), np.eye(len(parts))
+    row = 0
+    for loop, each in enumerate(parts):
+        if each is not None:
+            own = slice(row, row + len(each.A))
+            A[own, own], B[own, [loop]], C[loop, own], D[loop, loop] = each.A, each.B, each.C[0], each.D[0, 0]
+            row = own.stop
+    return replace(System(A, B @ sense, back @ C, back @ D @ sense, entry, exit_), step=step)
