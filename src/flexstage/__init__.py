@@ -70,6 +70,7 @@ HOMES = {
     "analysis.drift": "drift",
     "analysis.sensitivities": "sensitivities",
     "analysis.stroke": "stroke",
+    "analysis.stance": "stance",
     "analysis.workspace.workspace": "workspace",
     "analysis.workspace.reach": "reach",
     "analysis.inner_stage": "amplified",

@@ -32,6 +32,9 @@ from flexstage.analysis.response import (
 from flexstage.analysis.sensitivities import (
     sensitivities as sensitivities,
 )
+from flexstage.analysis.stance import (
+    stance as stance,
+)
 from flexstage.analysis.stroke import (
     stroke as stroke,
 )

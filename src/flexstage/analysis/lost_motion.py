@@ -96,7 +96,8 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i
     with all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij =
     sum_e f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin &
-    Moon). Small motions. Raises `DesignError` where the strokes do not determine the platform.
+    Moon). Small motions. Of a model about a displaced state the ideal motion is still that of the drawn position, and there is no budget.
+    Raises `DesignError` where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -136,11 +137,13 @@ def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
 
 
 def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[str, Matrix]:
-    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis."""
+    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none of a displaced stage's flexures."""
     names = kinematics.actuators
     rows = model.output_index(_PLATFORM_TWIST)
     loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
     strains = part_deformation(model, displacement(model, loads))
+    if any(strain.shape[-2] != kinematics.strains[link].shape[-2] for link, strain in strains.items() if link in kinematics.strains):
+        return {}
     inverse = kinematics.inverse
     shares: dict[str, Array] = {}
     for link, strain in strains.items():

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.analysis.strained import strain_cautions
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -21,7 +22,6 @@ from flexstage.models.nonlinear.path import Path
 from flexstage.models.nonlinear.strain import Strains, strains
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
-_STRAIN, _CURVING = 0.02, 40.0
 _FREQUENCIES = 3
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
@@ -100,21 +100,8 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
 
 
 def _cautions(found: Stroke) -> Iterator[Finding]:
-    largest, curving = (np.nan_to_num(each) for each in (found.strained.largest, found.strained.curving))
+    yield from strain_cautions(found.strained)
     values = found.along.values[:, 0]
-    for name, each in zip(found.strained.names, np.moveaxis(largest, -1, 0), strict=True):
-        if np.max(each) > _STRAIN:
-            what = f"its strain reaches {np.max(each):.2%}, beyond which no linear elastic law is physics"
-            yield Finding(name, what, "Ask for less stroke, or make it longer or thinner")
-    stressed = np.max(np.nan_to_num(found.strained.stress), axis=0)
-    for name, most, limit in zip(found.strained.names, stressed, found.strained.limit, strict=True):
-        if most > limit:
-            what = f"its stress reaches {most / 1e6:.4g} MPa, its material's limit is {limit / 1e6:.4g} MPa"
-            yield Finding(name, what, "Ask for less stroke, make it longer or thinner, or take a stronger material")
-    for name, each in zip(found.strained.names, np.moveaxis(curving, -1, 0), strict=True):
-        if np.max(each) > _CURVING:
-            what = f"b^2 k / t reaches {np.max(each):.3g}, above {_CURVING:g}: two shapes across its width do not suffice"
-            yield Finding(name, what, "Count on an error of some tenths of a per cent in bending")
     lost = np.isnan(found.along.values[:, -2])
     if lost.any():
         what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {values[lost][0]:.4g}"

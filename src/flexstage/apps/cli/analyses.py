@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -30,8 +30,19 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.design import elastic_model, known_point, open_design
-from flexstage.show.command.displaced import At, Load, displaced
+from flexstage.show.command.design import known_point, open_design
+from flexstage.show.command.displaced import (
+    At,
+    Held,
+    Load,
+    Warmth,
+    model_there,
+    place,
+    stance_at,
+    stance_cautions,
+    stance_tables,
+    with_stance,
+)
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
@@ -87,12 +98,23 @@ def _mapping_tables(kinematics: Kinematics) -> Iterator[Table | None]:
     yield motion_tables.redundant_table(kinematics)
 
 
-def stiffness(
+def stiffness(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
-    at: Annotated[str, typer.Option(metavar="POINT", help="Point whose motion is read: platform, or a named point.")] = "platform",
+    at: Annotated[
+        list[str] | None,
+        text_option(
+            "--at",
+            "POINT|NAME=VALUE",
+            "Point whose motion is read, platform or a named one; and where the stage is brought from where it rests: "
+            '"platform.x=5 mm", by a force that stays. Several times.',
+        ),
+    ] = None,
     load_at: Annotated[str, typer.Option(metavar="POINT", help="Point that is loaded. Default: the one that is read.")] = "",
+    load: Load = None,
+    hold: Held = None,
+    temperature: Warmth = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -101,25 +123,36 @@ def stiffness(
     """Compliance and stiffness of the platform.
 
     6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
+    With a place (--at NAME=VALUE, --load, --hold, --temperature) it is that of the stage there, at large displacements, under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
-    linear = elastic_model(mechanism, model)
-    found = statics(linear, load_point=known_point(linear, load_at or at), read_point=known_point(linear, at))
-    sagging = deflection(mechanism, linear, point=at) if model is Model.LUMPED else None
-    mass = mass_matrix(mechanism, linear, point=at)
+    point, brought = _point_and_place(at or ())
+    there = stance_at(mechanism, place(brought, load, hold, temperature), model)
+    linear = model_there(mechanism, model, there)
+    found = statics(linear, load_point=known_point(linear, load_at or point), read_point=known_point(linear, point))
+    sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there is None else None
+    mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
     answer(
         "stiffness",
         mechanism,
-        lambda: stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing),
-        lambda: _stiffness_tables(found, freedoms, mass, sagging),
+        lambda: with_stance(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing), there),
+        lambda: [*stance_tables(there), *_stiffness_tables(found, freedoms, mass, sagging)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
+        cautions=stance_cautions(there),
     )
+
+
+def _point_and_place(texts: Sequence[str]) -> tuple[str, list[str]]:
+    """The one point that is read, and where the stage is brought."""
+    points = [text for text in texts if "=" not in text]
+    if len(points) > 1:
+        raise refuse("--at", f"{' and '.join(points)} are two points", "Ask for one at a time")
+    return (points or [PLATFORM])[0], [text for text in texts if "=" in text]
 
 
 def _stiffness_tables(
@@ -135,17 +168,38 @@ def _stiffness_tables(
     yield None if sagging is None else deflection_table(sagging)
 
 
-def lost_motion(
-    design: Design, *, model: ModelName = Model.LUMPED, changes: Changes = None, json: Json = None, csv: Csv = None, xlsx: Xlsx = None
+def lost_motion(  # noqa: PLR0913 (its options)
+    design: Design,
+    *,
+    model: ModelName = Model.LUMPED,
+    at: At = None,
+    load: Load = None,
+    hold: Held = None,
+    temperature: Warmth = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
+    xlsx: Xlsx = None,
 ) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
-    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
+    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it. With --at, --load, --hold or
+    --temperature those of the stage where it then is; the ideal motion stays that of the drawn position.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
-    found = losses.lost_motion(ideal(mechanism), elastic_model(mechanism, model))
-    answer("lost-motion", mechanism, lambda: found, lambda: _loss_tables(found), model=model, json=json, csv=csv, xlsx=xlsx)
+    there = stance_at(mechanism, place(at, load, hold, temperature), model)
+    found = losses.lost_motion(ideal(mechanism), model_there(mechanism, model, there))
+    answer(
+        "lost-motion",
+        mechanism,
+        lambda: with_stance(found, there),
+        lambda: [*stance_tables(there), *_loss_tables(found)],
+        model=model,
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=stance_cautions(there),
+    )
 
 
 def _loss_tables(found: LostMotion) -> Iterator[Table | None]:
@@ -168,6 +222,8 @@ def modes(  # noqa: PLR0913 (its options)
     ] = None,
     at: At = None,
     load: Load = None,
+    hold: Held = None,
+    temperature: Warmth = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -175,18 +231,29 @@ def modes(  # noqa: PLR0913 (its options)
 ) -> None:
     """Natural frequencies, names and shapes.
 
-    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed. With --at or --load
-    they are those of the stage where it then is, at large displacements and under its weight.
+    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed. With --at, --load,
+    --hold or --temperature they are those of the stage where it then is, at large displacements and under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
-    ending = None if view is None else _view_ending(view)
-    linear = displaced(mechanism, at or (), load or ()) if at or load else elastic_model(mechanism, model)
+    ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)
+    if view is not None and asked:
+        raise refuse("--view", "it shows the stage as drawn", f"Leave out {asked.options}, or --view")
+    there = stance_at(mechanism, asked, model)
+    linear = model_there(mechanism, model, there)
     found = platform_modes(mechanism, linear)
-    if view is not None and (at or load):
-        raise refuse("--view", "it shows the stage as drawn", "Leave out --at and --load, or --view")
     if view is not None:
         save(view, _moving(mechanism, linear, found, ending), "--view")
-    answer("modes", mechanism, lambda: found, lambda: [mode_table(found)], model=model, json=json, csv=csv, xlsx=xlsx)
+    answer(
+        "modes",
+        mechanism,
+        lambda: with_stance(found, there),
+        lambda: [*stance_tables(there), mode_table(found)],
+        model=model,
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=stance_cautions(there),
+    )
 
 
 def _view_ending(path: Path) -> str:
@@ -224,6 +291,10 @@ def response(  # noqa: PLR0913 (its options)
             'White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
         ),
     ] = None,
+    at: At = None,
+    load: Load = None,
+    hold: Held = None,
+    temperature: Warmth = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -232,11 +303,12 @@ def response(  # noqa: PLR0913 (its options)
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground. With --noise, the rms values of the outputs too.
+    over absolute motion of the ground. With --noise, the rms values of the outputs too. With --at, --load, --hold or --temperature it is
+    that of the stage where it then is.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-
-    linear = elastic_model(mechanism, model)
+    there = stance_at(mechanism, place(at, load, hold, temperature), model)
+    linear = model_there(mechanism, model, there)
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
@@ -246,12 +318,13 @@ def response(  # noqa: PLR0913 (its options)
     answer(
         "response",
         mechanism,
-        lambda: SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})),
-        lambda: [response_table(found), None if shaken is None else random_table(shaken)],
+        lambda: with_stance(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})), there),
+        lambda: [*stance_tables(there), response_table(found), None if shaken is None else random_table(shaken)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
+        cautions=stance_cautions(there),
     )
 
 

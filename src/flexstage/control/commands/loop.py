@@ -36,6 +36,7 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
+from flexstage.show.command.displaced import At, Held, Load, Warmth, place, stance_at, stance_cautions, stance_tables, with_stance
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
@@ -111,6 +112,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     model: Annotated[
         Model | None, word_option("--model", Model, "Model of the stage as the plant. Default: lumped.", show_default=False)
     ] = None,
+    at: At = None,
+    load: Load = None,
+    hold: Held = None,
+    temperature: Warmth = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -127,7 +132,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
     With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
-    forces drive the stage, a PID controller.
+    forces drive the stage, a PID controller. With --at, --load, --hold or --temperature it is the loop of the stage where it then is.
     """
     exports = export or []
     if example is not None:
@@ -167,8 +172,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     asked = _override(given, options)
     require([*values.findings, *setup_findings(asked)])
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports)])
+    there = stance_at(mechanism, place(at, load, hold, temperature), asked.model)
     with progress_bar() as shown:
-        found = loop_study(mechanism, asked, tell=shown.share)
+        found = loop_study(mechanism, asked, there=there, tell=shown.share)
     if report is not None:
         save(report, loop_report(found), "--report")
     for target in exports:
@@ -176,13 +182,13 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     answer(
         "loop",
         mechanism,
-        lambda: found,
-        lambda: _tables(found),
+        lambda: with_stance(found, there),
+        lambda: [*stance_tables(there), *_tables(found)],
         model=asked.model,
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        cautions=(*stance_cautions(there), *found.cautions),
         beside=(report,),
     )
 
@@ -295,9 +301,9 @@ def _require_names(exports: Sequence[Path]) -> None:
 
 
 def _export(found: LoopStudy, target: Path) -> None:
-    for place, content in _contents(found, target).items():
-        write(place, content, "--export")
-        announce(f"Wrote {place}")
+    for path, content in _contents(found, target).items():
+        write(path, content, "--export")
+        announce(f"Wrote {path}")
     if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
         announce(f"Within {target} the model is called {name}: its own name would not do in C.")
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.random_response import Spectrum
+from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
@@ -37,7 +38,8 @@ class ResolvedSetup:
     """What a set-up means for a stage: its kinematics, its linear model by the set-up's model, the plant, the floor's spectra by input.
 
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
-    `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates.
+    `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
+    brought somewhere, where it has already sagged.
     """
 
     mechanism: Mechanism
@@ -48,6 +50,7 @@ class ResolvedSetup:
     whole: Plant
     floor: Mapping[str, Spectrum]
     highest: float
+    displaced: bool = False
 
     @property
     def rate(self) -> float:
@@ -60,8 +63,8 @@ class ResolvedSetup:
         return 1.0 / self.rate
 
 
-def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
-    """Settle a set-up for a stage.
+def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None) -> ResolvedSetup:
+    """Settle a set-up for a stage, drawn or as small motions about where it is brought.
 
     Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
     that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
@@ -72,7 +75,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
     (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
     """
     require(setup_findings(setup))
-    kinematics, model = ideal(mechanism), read(mechanism, setup.model)
+    kinematics, model = ideal(mechanism), read(mechanism, setup.model) if there is None else there.linear
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     require(_force_findings(kinematics, setup))
@@ -84,7 +87,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup) -> ResolvedSetup:
     given = _hardware(mechanism, setup, rate, delay)
     whole = plant(model, kinematics, given)
     found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
-    return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest)
+    return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest, there is not None)
 
 
 def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:

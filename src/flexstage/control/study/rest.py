@@ -51,7 +51,7 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     (0.032, True)
     """
     kinematics = given.kinematics
-    load = np.real(first_design(deflection(given.mechanism, given.model).total, 1))
+    load = np.zeros(6) if given.displaced else np.real(first_design(deflection(given.mechanism, given.model).total, 1))
     carrying = lost_motion_compensation(lost, kinematics, load)
     other, model = _other_gains(given)
     return RestErrors(
@@ -67,6 +67,8 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
 
 def _other_gains(given: ResolvedSetup) -> tuple[LostMotion | None, Model]:
     other = Model.MAPPED if given.setup.model is Model.LUMPED else Model.LUMPED
+    if given.displaced:
+        return None, other
     try:
         linear = read(given.mechanism, other)
         return (None if linear is None else lost_motion(given.kinematics, linear)), other

@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -103,8 +104,10 @@ class LoopStudy(InNotebook):
 
 
 @one_thread
-def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: Told | None = None) -> LoopStudy:
+def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: Stance | None = None, tell: Told | None = None) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
+
+    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up.
 
     Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.
 
@@ -114,7 +117,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, tell: To
     (True, 'x')
     """
     said = _Steps(tell)
-    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup()))
+    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there))
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
     control = said.of(0.05, "tuning", lambda: make_controller(given, _gains(given, lost)))
     closed = loop(given.plant, control.system)

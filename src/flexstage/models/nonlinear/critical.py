@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -50,14 +50,17 @@ class Critical:
     state: State
 
 
-def unstable_motions(state: State) -> Array:
+def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
     """How many independent motions (...) lower the potential of each case: zero if it is stable. -1 where a case has no state.
 
-    The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers.
+    The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers. Of what the state
+    holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
     """
     whole = _system(state)
-    held = whole.stiffness.shape[-1] - state.model.freedoms
-    count = _negative(whole.stiffness) - held
+    first = whole.stiffness.shape[-1] - len(state.held)
+    kept = [*range(first), *(first + place for place, name in enumerate(state.held) if locked is None or name in locked)]
+    matrix = whole.stiffness[:, kept][:, :, kept]
+    count = _negative(matrix) - (len(kept) - state.model.freedoms)
     for bent in whole.bent:
         count = count + np.sum(_negative(_indefinite(system(bent.tangent))) - 6, axis=0)
     return np.where(state.converged.ravel(), count, -1).reshape(state.shape)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.beams.compliance import viscous_damping
 from flexstage.beams.mass import mass
@@ -27,6 +27,7 @@ from flexstage.models.nonlinear.element import mode_paths
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, end_motion, geometric, hinge_ends, weight_motion
 from flexstage.models.nonlinear.hinge import stiffen
+from flexstage.models.nonlinear.hold import gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.parts.part import inner
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform
@@ -74,12 +75,14 @@ class _Coordinates:
         return np.concatenate([self.body(joins[0]), self.body(joins[1]), inside])
 
 
-def linearise(state: State) -> LinearModel:
+def linearise(state: State, *, locked: Sequence[str] = ()) -> LinearModel:
     """Small motions about a state, all cases of it as a batch: modes, responses and losses of a displaced or loaded stage.
 
-    What was held is released: stiffness is that of the free stage under the force that held it. Plate fields follow without mass. Stiffness
-    is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are not told (`unknown`). Gauges look
-    along their drawn lines. Raises `DesignError` where no case has a state.
+    What was held is released: stiffness is that of the free stage under the force that held it, which keeps its direction (of a rotation:
+    the moment conjugate to that component of the rotation vector). Coordinates `locked`, of those that were held, stay held. Plate fields
+    follow without mass. Stiffness is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are
+    not told (`unknown`). Gauges look along their drawn lines. Raises `DesignError` where no case has a state, and for `locked` names that
+    were not held.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -90,6 +93,9 @@ def linearise(state: State) -> LinearModel:
     """
     if not np.any(state.converged):
         raise refuse("stage", "no case has an equilibrium to move about", "Look at the status of the state, or ask for less load")
+    for name in locked:
+        if name not in state.held:
+            raise refuse(name, "it was not held at this state", suggest_nearest(name, state.held))
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
     links = {name: item for group, bent in zip(model.flexures, whole.bent, strict=True) for name, item in _flexures(group, bent).items()}
@@ -100,10 +106,13 @@ def linearise(state: State) -> LinearModel:
         for group in (*model.flexures, model.hinges)
         for name, one, other in zip(group.names, group.first, group.second, strict=True)
     }
-    return _assembled(state, order, joins, links)
+    return _assembled(state, order, joins, (links, [state.held.index(name) for name in locked]))
 
 
-def _assembled(state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], links: Mapping[str, _Linear]) -> LinearModel:
+def _assembled(
+    state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], given: tuple[Mapping[str, _Linear], list[int]]
+) -> LinearModel:
+    links, locked = given
     model, assembly = state.model, state.model.assembly
     stiffness: dict[str, Contribution] = {}
     bending = np.zeros((len(state.pose.position), order.size, order.size))
@@ -120,7 +129,7 @@ def _assembled(state: State, order: _Coordinates, joins: Mapping[str, tuple[int,
     stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
     inertia, seen = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
-    basis, kept = _free(model, rows, order, joins)
+    basis, kept = _free(np.concatenate([_locked_rows(model, rows, order, joins), *_held_rows(state, order, locked)], axis=-2), order)
     known = np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
     imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
     rigid = np.zeros((len(state.pose.position), order.size, 6))
@@ -244,7 +253,7 @@ def _hinges(state: State) -> tuple[Array, Array]:
 
 
 def _turning(model: Nonlinear, state: State) -> Array:
-    """What dead forces add to the stiffness of bodies (b, n, n) as their arms turn."""
+    """What dead forces, and those that hold coordinates, add to the stiffness of bodies (b, n, n) as their arms turn."""
     cases = len(state.pose.position)
     result = np.zeros((cases, model.freedoms + 6, model.freedoms + 6))
     dead = model.dead(state.loads)
@@ -253,6 +262,10 @@ def _turning(model: Nonlinear, state: State) -> Array:
     for place, number in enumerate(model.places.body):
         part = slice(6 * number + 3, 6 * number + 6)
         result[:, part, part] += turning[:, place]
+    first = state.pose.held.shape[1] - len(state.held)
+    for place, number in enumerate(state.hold.body):
+        part = slice(6 * number, 6 * number + 6)
+        result[:, part, part] += state.pose.held[:, first + place, None, None] * gradients(state.hold, place, state.pose)[2]
     return result[:, : model.freedoms, : model.freedoms]
 
 
@@ -347,17 +360,22 @@ def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
     return twist
 
 
-def _free(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> tuple[Array, tuple[int, ...]]:
-    """What the locked freedoms leave: motions (..., n, k) and the coordinates they are named after."""
-    if not len(model.hinges.locked):
+def _locked_rows(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> Array:
+    """Locked freedoms of links by all coordinates (b, c, n)."""
+    names = model.hinges.names
+    found = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
+    return np.concatenate(found, axis=-2) if found else np.zeros((rows.shape[1], 0, order.size))
+
+
+def _held_rows(state: State, order: _Coordinates, locked: list[int]) -> list[Array]:
+    """Held coordinates that stay held, by all coordinates (b, 1, n) each."""
+    return [gradients(state.hold, place, state.pose)[1][:, None] @ order.body(int(state.hold.body[place])) for place in locked]
+
+
+def _free(locked: Array, order: _Coordinates) -> tuple[Array, tuple[int, ...]]:
+    """What the locked freedoms (b, c, n) leave: motions (..., n, k) and the coordinates they are named after."""
+    if not locked.shape[-2]:
         return np.eye(order.size), tuple(range(order.size))
-    locked = np.stack(
-        [
-            rows[link, :, freedom] @ order.link(model.hinges.names[link], joins[model.hinges.names[link]])
-            for link, freedom in model.hinges.locked
-        ],
-        axis=-2,
-    )
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in order.names])
     solution = eliminate(locked, scale, keep=tuple(range(6)))
     return solution.basis, solution.independent

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated, TypeAlias
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeAlias
 
-from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.quantity import ANGLE, LENGTH, Quantity
+from flexstage.analysis.stance import Stance, stance
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
+from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse, quantity_of_unit
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.theory import Model
+from flexstage.show.command.design import elastic_model
 from flexstage.show.command.options import text_option
+from flexstage.show.table import Table, matrix_table
 
 Load: TypeAlias = Annotated[
     list[str] | None,
@@ -23,37 +27,113 @@ Load: TypeAlias = Annotated[
 At: TypeAlias = Annotated[
     list[str] | None,
     text_option(
-        "--at", "NAME=VALUE", 'Where the stage is: "platform.x=5 mm", under its weight and the force that it takes. Several times.'
+        "--at",
+        "NAME=VALUE",
+        'Where the stage is brought from where it rests: "platform.x=5 mm", by a force that stays; a stroke "B1=10 um". Several times.',
     ),
 ]
 
+Held: TypeAlias = Annotated[
+    list[str] | None, text_option("--hold", "NAME", 'A coordinate that stays locked: "platform.rz". May be given several times.')
+]
 
-def displaced(mechanism: Mechanism, at: Sequence[str], load: Sequence[str]) -> LinearModel:
-    """Small motions about where the stage rests under its weight, loads, and the forces that bring coordinates where they are to be."""
-    model = nonlinear(mechanism)
-    found = equilibrium(model, loads_of(model, load), hold=coordinates_of(model, at))
-    if not bool(found.converged):
-        what = "no equilibrium was found there"
-        raise refuse("--at" if at else "--load", what, "Ask for less, or see how far it gets: flexstage stroke")
-    return linearise(found)
+Warmth: TypeAlias = Annotated[
+    str | None, text_option("--temperature", "VALUE", 'A uniform change of temperature, "5 K": what expands unlike bends.')
+]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a stage is to be looked at, in the words of the command line; `bool()` says whether anywhere but as drawn."""
+
+    at: Sequence[str] = ()
+    load: Sequence[str] = ()
+    hold: Sequence[str] = ()
+    temperature: str | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.at or self.load or self.hold or self.temperature)
+
+    @property
+    def options(self) -> str:
+        """The options that were given."""
+        given = {"--at": self.at, "--load": self.load, "--hold": self.hold, "--temperature": self.temperature}
+        return ", ".join(option for option, value in given.items() if value)
+
+
+def place(at: Sequence[str] | None, load: Sequence[str] | None, hold: Sequence[str] | None, temperature: str | None) -> Place:
+    """What the options of a command say."""
+    return Place(at or (), load or (), hold or (), temperature)
+
+
+def stance_at(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Stance | None:
+    """How the stage stands where it is asked for; `None` as drawn. Refused with a model that knows no large displacements."""
+    if not asked:
+        return None
+    if model is not Model.LUMPED:
+        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
+    known = nonlinear(mechanism)
+    brought = _values(asked.at, "--at", lambda name: quantity_of(known, name))
+    held = [name.strip() for name in asked.hold]
+    require(
+        Finding(f"--hold {name}", "what stays locked has no value here", f'Write --at "{name}" --hold {name.partition("=")[0]}')
+        for name in held
+        if "=" in name
+    )
+    warmth = 0.0 if asked.temperature is None else parse(asked.temperature, TEMPERATURE, where="--temperature")
+    return stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth)
+
+
+def model_there(mechanism: Mechanism, model: Model, found: Stance | None) -> LinearModel:
+    """Small motions about where the stage stands; of the drawn stage by the model that is asked for."""
+    return elastic_model(mechanism, model) if found is None else found.linear
+
+
+def with_stance(body: Any, found: Stance | None) -> Any:
+    """A result, and beside it how the stage stands."""
+    return body if found is None else SideBySide((body, {"stance": found}))
+
+
+def stance_tables(found: Stance | None) -> Iterator[Table]:
+    """Where the stage stands, before what is told about it."""
+    if found is None:
+        return
+    yield matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)
+    if found.moved is not None:
+        yield matrix_table("From there it is brought by", found.moved)
+    if found.held is not None:
+        kept = f" ({', '.join(found.locked)} stays locked)" if found.locked else ""
+        yield matrix_table(f"Held by, counted from the sagged position{kept}", found.held)
+
+
+def stance_cautions(found: Stance | None) -> tuple[Finding, ...]:
+    """What is doubtful where the stage stands."""
+    return () if found is None else found.cautions
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
     """Loads in SI units from texts NAME=VALUE."""
     units = {channel.name: channel.unit for channel in model.inputs}
-    found: dict[str, float] = {}
-    for text in texts:
-        name, _, value = (part.strip() for part in text.partition("="))
+
+    def quantity(name: str) -> Quantity:
         if name not in units:
-            raise refuse(f"--load {text}", f'there is no load "{name}"', suggest_nearest(name, units))
-        found[name] = parse(value, quantity_of_unit(units[name]), where=f"--load {name}")
-    return found
+            raise refuse(f"--load {name}", f'there is no load "{name}"', suggest_nearest(name, units))
+        return quantity_of_unit(units[name])
+
+    return _values(texts, "--load", quantity)
 
 
 def coordinates_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
     """Coordinates in SI units from texts NAME=VALUE."""
+    return _values(texts, "--at", lambda name: quantity_of(model, name))
+
+
+def _values(texts: Sequence[str], option: str, quantity: Callable[[str], Quantity]) -> dict[str, float]:
+    """Values in SI units from texts NAME=VALUE; refused where a name is given twice."""
     pairs = [[part.strip() for part in text.partition("=")] for text in texts]
-    return {name: parse(value, quantity_of(model, name), where=f"--at {name}") for name, _, value in pairs}
+    names = [name for name, _, _ in pairs]
+    require(Finding(f"{option} {name}", "it is given twice", "Say one value") for name in dict.fromkeys(names) if names.count(name) > 1)
+    return {name: parse(value, quantity(name), where=f"{option} {name}") for name, _, value in pairs}
 
 
 def quantity_of(model: Nonlinear, drive: str) -> Quantity:

@@ -70,8 +70,10 @@ def own_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
     return dict(sorted(gathered.items(), key=lambda item: -abs(round(item[1], 12))))
 
 
-def budget_table(lost: LostMotion) -> Table:
+def budget_table(lost: LostMotion) -> Table | None:
     """Every actuator's loss divided among links: its unit's by axis, other units' by name; each column adds up to its loss.
+
+    `None` of a stage about a displaced state, whose model has no budget.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -79,6 +81,8 @@ def budget_table(lost: LostMotion) -> Table:
     >>> budget_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[-1][4]
     '3.368 %'
     """
+    if not lost.budget:
+        return None
     budgets = {name: _named_budget(lost, name) for name in lost.loss.rows}
     notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones give back what others take."]
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)

@@ -1,0 +1,132 @@
+"""Laws of stages that are brought somewhere: what is released and what is locked, in any frame, and what contradicts itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.stance import coordinate, stance
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
+from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation
+from flexstage.spatial.rotation import exponential
+from tests.laws.test_nonlinear import FINE, UNIT, guide
+
+TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
+WRENCH = tuple(f"platform.{name}" for name in FORCES)
+DOWN = (-9.80665, 0.0, 0.0)
+
+
+def compliance(model: LinearModel) -> np.ndarray:
+    return static_gain(model, TWIST, WRENCH).values
+
+
+@pytest.mark.parametrize("locked", ["platform.rz", "platform.z"])
+def test_a_lock_takes_its_coordinate_out_of_the_free_compliance(locked: str):
+    """C - c c^T / c_ll, c the locked coordinate's column: the Schur complement, where the lock does not itself press."""
+    stage = guide(gravity=DOWN)
+    free = compliance(stance(stage, {"platform.y": 8e-3}).linear)
+    state = fs.equilibrium(fs.nonlinear(stage), hold={"platform.y": 8e-3})
+    held = {"platform.y": 8e-3, locked: float(coordinate(state, locked))}
+    found = compliance(fs.linearise(fs.equilibrium(fs.nonlinear(stage), hold=held), locked=[locked]))
+    place = TWIST.index(locked)
+    column = free[:, place]
+    expected = free - np.outer(column, column) / column[place]
+    scale = np.sqrt(np.diag(free))
+    assert np.max(np.abs(found - expected) / scale / scale[:, None]) < 1e-6
+    assert np.max(np.abs(found[place])) < 1e-12 * np.max(np.abs(found))
+
+
+def test_the_force_that_brings_a_stage_somewhere_keeps_it_there():
+    """Loaded by what was found, it comes to the same place, with the same modes."""
+    stage = guide(gravity=DOWN)
+    found = stance(stage, {"platform.y": 8e-3})
+    assert found.held is not None
+    force = found.held.at("platform.y", "force")
+    again = stance(stage, loads={"platform.fy": force})
+    assert again.sag.at("platform", "y") == pytest.approx(8e-3, rel=1e-9)
+    assert fs.modes(again.linear).frequencies[:6] == pytest.approx(fs.modes(found.linear).frequencies[:6], rel=1e-8)
+
+
+@pytest.mark.parametrize("held", ["tip.y", "platform.rz"])
+def test_what_is_released_moves_as_two_more_equilibria_say(held: str):
+    """Compliance under the force that holds a point off the reference, or a component of the rotation vector, by differences."""
+    body = replace(guide().bodies["platform"], points={"tip": (0.13, 0.02, 0.01)})
+    stage = replace(guide(), bodies={"platform": body})
+    model, size = fs.nonlinear(stage, resolution=FINE), {"tip.y": 0.01, "platform.rz": 0.02}[held]
+    side = {"platform.fz": 5.0 * UNIT, "platform.mx": 0.02 * UNIT}
+    state = fs.equilibrium(model, side, hold={held: size})
+    step = 1e-6 * size
+    reactions = fs.equilibrium(model, side, hold={held: size + np.array([step, -step])}).reactions[:, 0]
+    rate = (reactions[0] - reactions[1]) / (2.0 * step)
+    about = fs.linearise(state)
+    place = [TWIST[5]] if held == "platform.rz" else ["tip.y"]
+    load = [WRENCH[5]] if held == "platform.rz" else ["tip.fy"]
+    found = 1.0 / static_gain(about, tuple(place), tuple(load)).values[0, 0]
+    tolerance = 2e-3 if held == "platform.rz" else 1e-5  # its moment is about the rotation vector's component, not about z
+    assert found == pytest.approx(rate, rel=tolerance)
+
+
+def test_the_frame_does_not_matter():
+    turn = exponential(np.array([0.0, 0.0, 0.5 * np.pi]))
+    here = stance(guide(gravity=DOWN), {"platform.y": 8e-3}, loads={"platform.fx": -10.0})
+    there = stance(guide(turn, gravity=tuple(turn @ DOWN)), {"platform.x": -8e-3}, loads={"platform.fy": -10.0})
+    assert spatial_rotation(turn).T @ compliance(there.linear) @ spatial_rotation(turn) == pytest.approx(compliance(here.linear), abs=1e-9)
+    assert fs.modes(there.linear).frequencies[:6] == pytest.approx(fs.modes(here.linear).frequencies[:6], rel=1e-8)
+
+
+def test_small_loads_add_up_as_in_the_lumped_model():
+    """Sags under two small loads, and under both, against K^-1 f; leaves differ by the shear of their clamps."""
+    stage = replace(parallelogram(), gravity=(0.0, 0.0, 0.0))
+    loads = {"platform.fx": 0.01, "platform.fz": -0.01}
+    both = stance(stage, loads=loads).sag.values[0]
+    single = sum((stance(stage, loads={name: value}).sag.values[0] for name, value in loads.items()), np.zeros(6))
+    small = static_gain(fs.lumped(stage), TWIST, tuple(loads)).values @ list(loads.values())
+    assert both == pytest.approx(single, rel=1e-5, abs=1e-6 * np.max(np.abs(both)))
+    assert both == pytest.approx(small, rel=3e-3, abs=3e-3 * np.max(np.abs(small)))
+
+
+def test_strokes_stay_and_places_count_from_the_sagged_one():
+    stage = parallelogram()
+    found = stance(stage, {"B": 1e-5}, loads={"platform.fx": 50.0})
+    assert found.held is None
+    assert found.sag.at("platform", "x") == pytest.approx(
+        float(fs.equilibrium(fs.nonlinear(stage), {"platform.fx": 50.0}).displacement()[0])
+    )
+    assert found.moved is not None
+    assert found.moved.at("platform", "x") == pytest.approx(0.987e-5, rel=1e-3)
+
+
+def test_a_warm_stage_sags_as_it_drifts():
+    stage = parallelogram()
+    warm = replace(stage, materials={name: replace(each, expansion=12e-6) for name, each in stage.materials.items()}, gravity=(0, 0, 0))
+    parts = {name: replace(part, expansion=2e-6) if isinstance(part, fs.Piezo) else part for name, part in warm.parts.items()}
+    warm = replace(warm, parts=parts)
+    found = stance(warm, temperature=0.1).sag.at("platform", "x")
+    assert found == pytest.approx(0.1 * float(fs.drift(warm, fs.lumped(warm)).motion.at("platform.x", "uniform")), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"at": {"platform.y": 1e-3}, "loads": {"platform.fy": 1.0}}, "platform.fy states it"),
+        ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "both a load that stays and what is driven"),
+        ({"at": {"platform.q": 1.0}}, "no coordinate"),
+        ({"hold": ["platform.ry", "body.x"]}, "neither a body nor a point"),
+        ({"at": {"platform.rz": 1.5, "platform.y": 0.09}}, "of the way"),
+        ({"at": {"platform.x": -3e-2}}, "leaves in"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: str):
+    with pytest.raises(fs.DesignError, match=said):
+        stance(guide(), **asked)
+
+
+def test_drives_that_do_nothing_are_told():
+    stage = parallelogram()
+    assert [each.where for each in stance(stage, loads={"platform.fy": 0.0}).cautions] == ["platform.fy"]
