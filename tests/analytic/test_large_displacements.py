@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.polynomial import Legendre, legendre
 
 from flexstage.analysis.drift import drift
 from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import DEFAULT, Resolution
-from flexstage.beams.flexure.strip import secant
+from flexstage.beams.flexure.strip import secant, stiffness
 from flexstage.beams.section import cowper_rectangle, rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
@@ -25,7 +26,7 @@ from flexstage.models.nonlinear.path import path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
-from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from tests.analytic.shooting import cross_pivot
 
@@ -150,6 +151,38 @@ def test_a_strip_of_elements_stiffens_so_too():
         for length in (0.4, 0.8)
     ]
     assert 0.4 * beta * 1e-4 / 0.1**2 / (turns[1] - turns[0]) == pytest.approx(1.0, abs=5e-4)
+
+
+@pytest.mark.parametrize("kind", [{"section": LeafSection.BEAM}, {"ends": LeafEnds.FREE}], ids=["beam", "plate"])
+def test_a_twisted_strip_stiffens_and_shortens(kind: dict[str, LeafSection | LeafEnds]):
+    """M = (G J + N I_p / A) k + E t b^5 k^3 / 360 (H. Wagner, 25 Jahre TH Danzig, 1929), and k^2 I_p / (2 A) shorter."""
+    strip = Leaf("soft", length=1.0, thickness=2e-4, width=0.05, **kind)
+    section, polar = rectangle(2e-4, 0.05), (0.05**2 + 4e-8) / 12.0
+    twist, pull = np.array([0.05, 0.5, 0.5]), np.array([0.0, 0.0, 1e-10])
+    found = equilibrium(cantilever(strip), {"platform.fx": pull}, hold={"platform.rx": twist})
+    saint_venant, wagner = section.torsion / 2.6 * twist, 2e-4 * 0.05**5 * twist**3 / 360.0
+    assert wagner[1] > 0.5 * saint_venant[1]
+    assert found.reactions[:, 0] == pytest.approx(saint_venant + pull * polar * twist + wagner, rel=1e-9)
+    assert found.displacement()[:, 0] == pytest.approx(pull / 1e-5 - 0.5 * polar * twist**2, rel=1e-9)
+
+
+def test_the_form_of_a_strip_is_the_energy_of_its_plate():
+    """Mindlin's, by quadrature over the plate: curvatures psi' phi and a phi'', the twist (a' + psi) phi' / 2, the shear (a' - psi) phi."""
+    width, thickness, poisson, amplitudes = 0.3, 0.02, 0.27, np.random.default_rng(3).normal(size=(4, 30))
+    nodes, weights = legendre.leggauss(40)
+    ends = Legendre([2.0 / 3.0, 0.0, -2.0 / 3.0], domain=[0.0, 1.0])  # 1 - u^2
+    fields = [ends * Legendre(row, domain=[0.0, 1.0]) for row in amplitudes]
+    across = [width**2 / 12.0 * Legendre.basis(degree, domain=[-0.5 * width, 0.5 * width]) for degree in (2, 4)]
+    (a, slope), (psi, turned) = (
+        [np.array([each.deriv(order)(0.5 * (nodes + 1.0)) for each in pair]) for order in (0, 1)] for pair in (fields[:2], fields[2:])
+    )
+    phi, tilt, curve = (np.array([each.deriv(order)(0.5 * width * nodes) for each in across]) for order in (0, 1, 2))
+    along, over, twist, shear = turned.T @ phi, a.T @ curve, (slope + psi).T @ tilt, (slope - psi).T @ phi
+    bending = along**2 + over**2 + 2.0 * poisson * along * over + 0.5 * (1.0 - poisson) * twist**2
+    density = bending + 5.0 / 6.0 * 12.0 * (1.0 - poisson**2) / (2.0 * (1.0 + poisson)) / thickness**2 * shear**2
+    energy = 0.25 * weights @ density @ weights
+    row = amplitudes.ravel()
+    assert row @ stiffness(width, thickness, poisson) @ row == pytest.approx(energy, rel=1e-10)
 
 
 def pivot(crossing: float) -> Nonlinear:
