@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from flexstage.base.native import SWITCH
+from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import Resolution, leaf_law
 from flexstage.beams.leaf import leaf_diagonal, torsional_compliance
@@ -18,13 +20,13 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.compiled import kernel, tables
 from flexstage.models.nonlinear.condense import condense, settle
 from flexstage.models.nonlinear.element import energy, shape, tangent
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import assemble
-from flexstage.models.nonlinear.newton import Effort
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Status
+from flexstage.models.nonlinear.state import Effort, Status
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
@@ -39,6 +41,9 @@ UNIT = 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2
 FINE = Resolution(10, 10, 14, (8, 6), 20)
 SPACE = np.array([3.0, 12.0, 2.0, 0.02, 0.03, -0.1])
 """A load in all directions on a guide, over `UNIT`."""
+
+
+Given = Mapping[str, Number]
 
 
 def guide(
@@ -216,6 +221,88 @@ def taken_at_once(thickness: float, counts: tuple[int, int, int]) -> None:
     assert found.iterations.mean() < 6.2
     alone = equilibrium(model, loads(wrench[37]))
     assert alone.twist() == pytest.approx(found.twist()[37], abs=1e-12)
+
+
+@pytest.fixture
+def plain(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Callable[[], State]], State]]:
+    """What numpy finds, without the kernel in C."""
+
+    def without(search: Callable[[], State]) -> State:
+        with monkeypatch.context() as context:
+            context.setenv(SWITCH, "off")
+            kernel.cache_clear()
+            assert kernel() is None
+            found = search()
+        kernel.cache_clear()
+        return found
+
+    yield without
+    kernel.cache_clear()
+
+
+def same(one: State, other: State, share: float) -> bool:
+    """Whether poses agree, and amplitudes and forces of flexures, as a share of the largest."""
+    inside = zip((*one.pose.strain, *one.pose.wrench), (*other.pose.strain, *other.pose.wrench), strict=True)
+    near = all(np.max(np.abs(a - b), initial=0.0) <= share * np.max(np.abs(b), initial=1.0) for a, b in inside)
+    return (
+        near
+        and bool(np.max(np.abs(one.pose.position - other.pose.position)) <= share * one.model.size)
+        and bool(np.max(np.abs(one.pose.turn - other.pose.turn)) <= share)
+    )
+
+
+RANDOM = np.random.default_rng(3).uniform(-1.0, 1.0, (11, 6)) * [5.0, 15.0, 3.0, 0.05, 0.05, 0.2] * UNIT
+
+
+@pytest.mark.parametrize(
+    ("stage", "given", "held"),
+    [
+        (guide(swap=True), loads(RANDOM), {}),
+        (guide(gravity=(400.0, 600.0, -100.0), mass=1e-4), loads(RANDOM), {}),
+        (guide(gravity=(4.0, -9.0, 3.0)), {}, {"platform.y": np.linspace(0.0, 0.02, 5), "platform.rx": 0.02}),
+        (parallelogram(), {"B": [1e-5, 2e-5]}, {}),
+        (double_triangle(), {"B1": [1e-5, -1e-5]}, {}),
+    ],
+)
+def test_the_kernel_is_numpy(stage: Mechanism, given: Given, held: Given, plain: Callable[[Callable[[], State]], State]):
+    model = nonlinear(stage)
+    if kernel() is None:
+        pytest.skip("no compiler")
+    assert tables(model) is not None
+    fast, reference = equilibrium(model, given, hold=held), plain(lambda: equilibrium(model, given, hold=held))
+    assert fast.iterations.tolist() == reference.iterations.tolist()
+    assert fast.status.tolist() == reference.status.tolist()
+    assert same(fast, reference, 1e-11)
+
+
+def test_a_batch_is_its_cases_to_the_bit():
+    if kernel() is None:
+        pytest.skip("no compiler")
+    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0)))
+    together = equilibrium(model, loads(RANDOM))
+    for place, row in enumerate(RANDOM):
+        alone = equilibrium(model, loads(row))
+        assert np.array_equal(alone.pose.position[0], together.pose.position[place])
+        assert np.array_equal(alone.pose.wrench[0][:, 0], together.pose.wrench[0][:, place])
+        assert alone.residual == together.residual[place]
+
+
+def test_a_batch_is_its_cases_in_numpy(plain: Callable[[Callable[[], State]], State]):
+    model = nonlinear(guide())
+    together = plain(lambda: equilibrium(model, loads(RANDOM)))
+    alone = plain(lambda: equilibrium(model, loads(RANDOM[7])))
+    assert alone.twist() == pytest.approx(together.twist()[7], abs=1e-12)
+
+
+def test_a_law_that_the_kernel_does_not_know_is_left_to_numpy():
+    model = nonlinear(guide())
+    (group,) = model.flexures
+    coupled = np.array(group.law.form)
+    coupled[:, 0, 12] = coupled[:, 12, 0] = 1e-3
+    strange = replace(model, flexures=(replace(group, law=replace(group.law, form=coupled)),))
+    assert tables(model) is not None
+    assert tables(strange) is None
+    assert equilibrium(strange, loads(SPACE * UNIT)).converged
 
 
 @pytest.mark.parametrize("thickness", [2e-3, 0.5e-3, 0.2e-3])

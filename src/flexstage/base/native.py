@@ -24,9 +24,12 @@ from pathlib import Path
 
 from filelock import FileLock
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.store import cache_folder, temporary_folder
 
+SWITCH = "FLEXSTAGE_KERNEL"
+"""The variable that, at `off`, does without kernels."""
+_KERNEL = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
 COMPILERS = ("cc", "gcc", "clang")
 """Names by which a compiler is looked for."""
 _KEPT = 64
@@ -128,6 +131,30 @@ def load_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
         except (OSError, AttributeError) as error:
             what = f"what {found.command[0]} makes of {recipe.what} does not work ({error})"
             raise refuse("compiler", what, "Set CC to another compiler") from None
+
+
+def kernel_recipe(what: str, source: Path) -> Recipe:
+    """How a kernel of the package is built: one file of C, for this processor.
+
+    >>> kernel_recipe("none", Path(__file__)).what
+    'none'
+    """
+    return Recipe(what, {source.name: source.read_text(encoding="utf-8")}, _KERNEL)
+
+
+def kernel_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL | None:
+    """A kernel, which does what numpy does faster; `None` where FLEXSTAGE_KERNEL is off, nothing can build it, or what is built fails.
+
+    >>> one = Recipe("an example", {"one.c": "int one(void); int one(void) { return 1; }"}, ("-fPIC", "-shared"))
+    >>> kernel_library(one, lambda library: library.one() == 2) is None
+    True
+    """
+    if os.environ.get(SWITCH, "") == "off":
+        return None
+    try:
+        return load_library(recipe, answers)
+    except DesignError:
+        return None
 
 
 def folder() -> Path:

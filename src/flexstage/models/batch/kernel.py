@@ -8,15 +8,9 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import os
 from pathlib import Path
 
-from flexstage.base.finding import DesignError
-from flexstage.base.native import Recipe, compiler, key, load_library
-
-SWITCH = "FLEXSTAGE_KERNEL"
-_SOURCE = Path(__file__).with_name("kernel.c")
-_FLAGS = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
+from flexstage.base.native import Recipe, compiler, kernel_library, kernel_recipe, key
 
 
 @functools.cache
@@ -27,12 +21,7 @@ def kernel() -> ctypes.CDLL | None:
     >>> found is None or found.flexstage_width() in (2, 4, 8)
     True
     """
-    if os.environ.get(SWITCH, "") == "off":
-        return None
-    try:
-        return load_library(_recipe(), _answers)
-    except DesignError:
-        return None
+    return kernel_library(_recipe(), _answers)
 
 
 @functools.cache
@@ -47,7 +36,7 @@ def kernel_name() -> str:
 
 
 def _recipe() -> Recipe:
-    return Recipe("the kernel", {_SOURCE.name: _SOURCE.read_text(encoding="utf-8")}, _FLAGS)
+    return kernel_recipe("the kernel", Path(__file__).with_name("kernel.c"))
 
 
 def _answers(library: ctypes.CDLL) -> bool:

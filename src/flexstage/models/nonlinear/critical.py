@@ -14,8 +14,8 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.condense import system
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import System, assemble
-from flexstage.models.nonlinear.newton import Effort
 from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import Effort
 
 WEIGHT = "weight"
 """The load that is the stage's own weight, payloads included."""

@@ -11,9 +11,9 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import USUAL, Effort, Found, equilibrate
+from flexstage.models.nonlinear.newton import USUAL, Found, equilibrate
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Loads, Pose, Status
+from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.spatial.rotation import logarithm
 

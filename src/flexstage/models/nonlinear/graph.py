@@ -40,6 +40,14 @@ class Bent:
 
 
 @dataclass(frozen=True, eq=False)
+class Rest:
+    """What is not made of flexures: `residual` (b, n) and `stiffness` (b, n, n) of links about centres and of held coordinates."""
+
+    residual: Array
+    stiffness: Array
+
+
+@dataclass(frozen=True, eq=False)
 class System:
     """Residual (b, n) and stiffness (b, n, n) of bodies' freedoms and of reactions; the groups as they are bent."""
 
@@ -50,17 +58,35 @@ class System:
 
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
     """Residual and stiffness of the stage, the forces of flexures already brought up to date."""
-    cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
-    residual, stiffness = np.zeros((cases, size + count)), np.zeros((cases, size + count, size + count))
+    residual, stiffness, kept = _nothing(model, pose, hold)
     bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
     for group, found in zip(model.flexures, bent, strict=True):
         force, own = _flexure_terms(group.law, found)
         _scatter(residual, stiffness, (group.first, group.second), force, own)
-    _add_hinges(model, pose, loads, residual, stiffness)
     _add_loads(model, pose, loads, residual, stiffness)
-    _add_holds(hold, pose, residual, stiffness, size + len(model.hinges.locked))
-    kept = np.r_[: model.freedoms, size : size + count]
+    _add_rest(model, pose, loads, hold, (residual, stiffness))
     return System(residual[:, kept], stiffness[:, kept[:, None], kept], bent)
+
+
+def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
+    """What links about centres and held coordinates add; `None` where there are neither."""
+    if not model.hinges.names and not len(hold.body):
+        return None
+    residual, stiffness, kept = _nothing(model, pose, hold)
+    _add_rest(model, pose, loads, hold, (residual, stiffness))
+    return Rest(residual[:, kept], stiffness[:, kept[:, None], kept])
+
+
+def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array, Array]:
+    """A residual and a stiffness of zeros, the ground's rows among them, and which rows are kept in the end."""
+    cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
+    kept = np.r_[: model.freedoms, size : size + count]
+    return np.zeros((cases, size + count)), np.zeros((cases, size + count, size + count)), kept
+
+
+def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, into: tuple[Array, Array]) -> None:
+    _add_hinges(model, pose, loads, *into)
+    _add_holds(hold, pose, *into, model.freedoms + 6 + len(model.hinges.locked))
 
 
 def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:

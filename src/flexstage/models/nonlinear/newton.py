@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
 from flexstage.models.nonlinear.condense import solve
-from flexstage.models.nonlinear.graph import System, advance, assemble
+from flexstage.models.nonlinear.graph import System, advance, assemble, rest
 from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Loads, Pose, Status, put
+from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
 
 _CHUNK = 128
 """Cases at once: what they need stays in the processor's caches."""
-
-
-@dataclass(frozen=True)
-class Effort:
-    """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
-
-    `limit` is the largest step. What fails is loaded in 2, 4, ... 2^`halvings` steps.
-    """
-
-    step: float = 1e-9
-    gap: float = 1e-6
-    iterations: int = 25
-    limit: float = 0.3
-    halvings: int = 6
 
 
 USUAL = Effort()
@@ -102,7 +89,11 @@ def _merge(found: Found, cases: Array, other: Found) -> Found:
 
 
 def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
-    """Iterate all cases together; those that are done leave."""
+    """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
+    compiled = kernel() is not None and tables(model) is not None
+    if compiled and not model.hinges.names and not len(hold.body):
+        found = iterate_compiled(model, start, loads, effort, None)
+        return Found(found.pose, found.status, found.count, found.lack)
     count = len(loads.inputs)
     status, iterations, residual = np.full(count, Status.NOT_CONVERGED), np.zeros(count, dtype=int), np.full(count, np.inf)
     pose, active = start, np.arange(count)
@@ -111,7 +102,8 @@ def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Eff
             if not active.size:
                 break
             here = pose.of(active)
-            after, size, gap = iterate(model, here, loads.of(active), hold.of(active), effort)
+            step = _iterate_compiled if compiled else iterate
+            after, size, gap = step(model, here, loads.of(active), hold.of(active), effort)
             pose = pose.put(active, after)
             iterations[active] += 1
             residual[active] = gap
@@ -120,6 +112,12 @@ def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Eff
             status[active[done]], status[active[lost]] = Status.CONVERGED, Status.SINGULAR
             active = active[~(done | lost)]
     return Found(pose, status, iterations, residual)
+
+
+def _iterate_compiled(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:
+    """As `iterate`, flexures, loads and the solution in C."""
+    found = iterate_compiled(model, pose, loads, replace(effort, iterations=1), rest(model, pose, loads, hold))
+    return found.pose, found.moved, found.lack
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:

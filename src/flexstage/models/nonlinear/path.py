@@ -14,9 +14,9 @@ from flexstage.models.nonlinear.critical import Kind, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
 from flexstage.models.nonlinear.graph import advance, assemble, exerted_by
 from flexstage.models.nonlinear.hold import nothing
-from flexstage.models.nonlinear.newton import USUAL, Effort, Found, join, lack, motion
+from flexstage.models.nonlinear.newton import USUAL, Found, join, lack, motion
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Loads, Pose, Status
+from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,20 @@ class Status(IntEnum):
     SINGULAR = 2
 
 
+@dataclass(frozen=True)
+class Effort:
+    """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
+
+    `limit` is the largest step. What fails is loaded in 2, 4, ... 2^`halvings` steps.
+    """
+
+    step: float = 1e-9
+    gap: float = 1e-6
+    iterations: int = 25
+    limit: float = 0.3
+    halvings: int = 6
+
+
 @dataclass(frozen=True, eq=False)
 class Loads:
     """Loads of b cases: `inputs` (b, m) by the model's channels, `gravity` (b, 3) [m/s^2], and the share `constant` (b,) of stated forces.
