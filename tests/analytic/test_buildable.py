@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.mechanism.outline import Outline, outlines
-from flexstage.parts.body import Block
+from flexstage.parts.body import Block, PlacedSolid
 from flexstage.parts.part import is_actuator
 
 BUILDABLE = ("double-triangle", "parallelogram", "xy-stage", "tip-tilt", "tip-tilt-four")

@@ -19,7 +19,7 @@ from flexstage.mechanism.path import complete, has_member, replace_member
 from flexstage.mechanism.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
 from flexstage.mechanism.sight import PlacedGauge, PlacedStop, gauge_findings, link_names, place_stop, place_sum, sight, sight_of_link
 from flexstage.parts.actuator import Actuator
-from flexstage.parts.body import Body, Solid, owner_of, pierce
+from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
@@ -32,17 +32,6 @@ _Copy: TypeAlias = tuple[str, str, Frame]
 _EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
 NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
 """What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
-
-
-@dataclass(frozen=True, eq=False)
-class PlacedSolid:
-    """An outline of the expanded stage and its own frame in the stage's frame.
-
-    The frame's origin is the solid's centre, its axes a block's edges (z along its hole), or x a cylinder's axis.
-    """
-
-    solid: Solid
-    frame: Frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -385,17 +374,16 @@ class _DrawnBody:
         """The mass properties in the stage's frame."""
         return None if self.own is None else within(self.own, self.frame)
 
-    def solids(self) -> Iterator[tuple[str, tuple[Solid, Frame]]]:
-        """The outlines by address, and the frames of their centres in the stage's frame."""
+    def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
+        """The outlines by address, in the stage's frame."""
         for name, solid in self.body.solids.items():
             frame = solid.frame.within(self.frame)
-            yield f"{self.name}.{name}", (solid.mirrored if frame.mirrored else solid, frame.right_handed)
+            yield f"{self.name}.{name}", PlacedSolid(solid.mirrored if frame.mirrored else solid, frame.right_handed)
 
 
 def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
     """The outlines of a body, without those that are holes in the others."""
-    found = pierce(dict(solid for item in drawn for solid in item.solids()))
-    return {address: PlacedSolid(solid, frame) for address, (solid, frame) in found.items()}
+    return pierce(dict(solid for item in drawn for solid in item.solids()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -644,7 +632,7 @@ def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: s
     elif isinstance(place, LinkProbe):
         gauge = mechanism.sensors[place.gauge]
         for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
-            yield PlacedGauge(name, gauge, (sight_of_link(link.joins, link.frame, link.part, gauge),))
+            yield PlacedGauge(name, gauge, (sight_of_link(*link.joins, link.frame, link.part, gauge),))
 
 
 def _stops(mechanism: Mechanism) -> Iterator[tuple[str, PlacedStop]]:

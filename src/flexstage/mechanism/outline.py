@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, stack
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSolid
-from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, Sphere
+from flexstage.mechanism.expand import Assembly, PlacedLink
+from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, PlacedSolid, Sphere
 from flexstage.parts.part import inner
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame

@@ -74,12 +74,12 @@ def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
     return Sight(probe.body, probe.base or GROUND, frame, frame, gauge.freedom.index, sign)
 
 
-def sight_of_link(joins: tuple[str, str], frame: Frame, part: Part, gauge: Instrument) -> Sight:
+def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Instrument) -> Sight:
     """What a gauge on a link sees: the second body where it meets the link against the first where that does."""
     half = 0.5 * np.asarray(span(part))[..., None] * frame.rotation[..., :, 0]
     return Sight(
-        joins[1],
-        joins[0],
+        second,
+        first,
         Frame(frame.rotation, frame.position + half),
         Frame(frame.rotation, frame.position - half),
         gauge.freedom.index,

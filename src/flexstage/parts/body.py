@@ -387,32 +387,45 @@ def _holds(hole: Solid, points: Array, slack: float) -> Array:
     return hole.contains((points - place) @ turn, slack)
 
 
-def pierce(solids: Mapping[str, tuple[Solid, Frame]]) -> dict[str, tuple[Solid, Frame]]:
-    """Solids of one body by name, each with the frame of its centre: those that remove material as holes in the others.
+@dataclass(frozen=True, eq=False)
+class PlacedSolid:
+    """A solid and its own frame in the frame of the body, or of the stage, that it belongs to.
+
+    The frame's origin is the solid's centre, its axes a block's edges (z along its hole), or x a cylinder's axis.
+    """
+
+    solid: Solid
+    frame: Frame
+
+
+def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
+    """Solids of one body by name: those that remove material as holes in the others.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, removes=True)
-    >>> [type(solid).__name__ for solid, _ in pierce({"plate": (plate, plate.frame), "bolt": (bolt, bolt.frame)}).values()]
+    >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
+    >>> [type(each.solid).__name__ for each in pierce(placed).values()]
     ['Pierced']
     """
-    holes = [item for item in solids.values() if item[0].removes]
-    return {name: (_pierced(item, holes), item[1]) for name, item in solids.items() if not item[0].removes}
+    holes = [item for item in solids.values() if item.solid.removes]
+    return {name: _pierced(item, holes) for name, item in solids.items() if not item.solid.removes}
 
 
-def _pierced(item: tuple[Solid, Frame], holes: list[tuple[Solid, Frame]]) -> Solid:
-    solid, frame = item
-    own = [_seen_from(hole, place, frame) for hole, place in holes if hole.material == solid.material and _meet(item, (hole, place))]
-    return Pierced(solid, tuple(own)) if own and not isinstance(solid, Imported) else solid
+def _pierced(item: PlacedSolid, holes: list[PlacedSolid]) -> PlacedSolid:
+    solid, frame = item.solid, item.frame
+    own = [_seen_from(hole, frame) for hole in holes if hole.solid.material == solid.material and _meet(item, hole)]
+    return PlacedSolid(Pierced(solid, tuple(own)), frame) if own and not isinstance(solid, Imported) else item
 
 
-def _meet(one: tuple[Solid, Frame], other: tuple[Solid, Frame]) -> bool:
+def _meet(one: PlacedSolid, other: PlacedSolid) -> bool:
     """Whether the balls around the boxes of two solids meet in a design."""
-    apart = np.linalg.norm(np.real(one[1].position - other[1].position), axis=-1)
-    reach = sum(0.5 * np.linalg.norm(np.real(solid.sides), axis=-1) for solid, _ in (one, other))
+    apart = np.linalg.norm(np.real(one.frame.position - other.frame.position), axis=-1)
+    reach = sum(0.5 * np.linalg.norm(np.real(each.solid.sides), axis=-1) for each in (one, other))
     return bool(np.any(apart < reach))
 
 
-def _seen_from(hole: Solid, place: Frame, frame: Frame) -> Solid:
-    """A hole whose centre has a frame `place`, drawn anew in another frame."""
+def _seen_from(placed: PlacedSolid, frame: Frame) -> Solid:
+    """A hole drawn anew in another frame."""
+    hole, place = placed.solid, placed.frame
     turn, own = np.swapaxes(frame.rotation, -1, -2), hole.frame
     moved = place.rotation @ np.swapaxes(own.rotation, -1, -2)
     origin = place.position + (moved @ (stack(hole.at) - own.position)[..., None])[..., 0]

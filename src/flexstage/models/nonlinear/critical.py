@@ -92,7 +92,7 @@ def critical(
     while high <= most:
         found = search.at(high, last)
         if search.motions(found) != 0:
-            return _close(search, (low, high), last, tolerance)
+            return _close(search, low, high, last, tolerance)
         last, low, high = found, high, _GROWTH * high
     raise refuse("load", f"nothing gives way up to {most:g} times the load", "Name a larger load, or another one")
 
@@ -117,9 +117,9 @@ class _Search:
         return int(unstable_motions(state))
 
 
-def _close(search: _Search, between: tuple[float, float], last: State, tolerance: float) -> Critical:
+def _close(search: _Search, low: float, high: float, last: State, tolerance: float) -> Critical:
     """Bisect the count; once both sides are near, the stage's lowest stiffness is taken to zero instead."""
-    (low, high), close = between, 1e-2
+    close = 1e-2
     while high - low > max(_ROUGH, tolerance) * high:
         middle = 0.5 * (low + high)
         found = search.at(middle, last)
@@ -128,7 +128,7 @@ def _close(search: _Search, between: tuple[float, float], last: State, tolerance
         elif not bool(found.converged) or high - low > close * high:
             high = middle
         else:
-            sharp = _zero(search, (low, middle), last, tolerance)
+            sharp = _zero(search, low, middle, last, tolerance)
             if sharp is None:
                 high, close = middle, 0.03 * close
             else:
@@ -136,18 +136,18 @@ def _close(search: _Search, between: tuple[float, float], last: State, tolerance
     return _told(search, 0.5 * (low + high), last)
 
 
-def _zero(search: _Search, between: tuple[float, float], start: State, tolerance: float) -> float | None:
+def _zero(search: _Search, low: float, high: float, start: State, tolerance: float) -> float | None:
     """Where the stage's lowest stiffness is zero; `None` where it is not what changes sign."""
 
     def lowest(factor: float) -> float:
         found = search.at(factor, start)
         return float(_lowest(found)[0]) if bool(found.converged) else np.nan
 
-    ends = [lowest(factor) for factor in between]
+    ends = [lowest(factor) for factor in (low, high)]
     if not np.all(np.isfinite(ends)) or ends[0] * ends[1] >= 0.0:
         return None
     try:
-        return float(scipy.optimize.brentq(lowest, *between, xtol=tolerance * between[1], rtol=1e-14))
+        return float(scipy.optimize.brentq(lowest, low, high, xtol=tolerance * high, rtol=1e-14))
     except ValueError:  # some state between them was not found
         return None
 

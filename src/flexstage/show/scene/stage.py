@@ -10,9 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSolid, PlacedSuperelement, expand
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
+from flexstage.parts.body import PlacedSolid
 from flexstage.parts.part import is_actuator
 from flexstage.show.scene.facet import SHARP, Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
 from flexstage.show.scene.inner import outer
@@ -69,7 +70,7 @@ def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
     facets = [facet for body in assembly.bodies.values() for facet in _body(body, joints.get(body.name, []), size)]
     facets += _solids(assembly.ground, Paint(Kind.GROUND, (GROUND, GROUND)))
     size = max(size, _span(np.concatenate([facet.points for facet in facets])) if facets else size)
-    facets += [facet for name, link in assembly.links.items() for facet in _link(link, ends[name], size, steps)]
+    facets += [facet for name, link in assembly.links.items() for facet in _link(link, *ends[name], size, steps)]
     facets += [facet for element in assembly.superelements.values() for facet in _superelement(element, size)]
     facets += [facet for name, sight in _sights(assembly) for facet in _gauge(name, sight, size)]
     references = {name: _first(body.reference) for name, body in assembly.bodies.items()}
@@ -237,15 +238,15 @@ def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iter
             yield line(np.stack([joint, nearest]), paint)
 
 
-def _link(link: PlacedLink, ends: tuple[Array, Array], size: float, steps: int) -> list[Facet]:
+def _link(link: PlacedLink, first: Array, second: Array, size: float, steps: int) -> list[Facet]:
     frame = _frame(link.frame)
-    forward = bool((ends[1] - ends[0]) @ frame.rotation[:, 0] >= 0.0)
+    forward = bool((second - first) @ frame.rotation[:, 0] >= 0.0)
     carriers = link.joins if forward else (link.joins[1], link.joins[0])
     kind, fineness = (Kind.DRIVE, 1) if is_actuator(link.part) else (Kind.HINGE, steps)
     paint = Paint(kind, carriers, link.name)
     facets = [_place(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size, steps=fineness)]
     if GROUND in link.joins:
-        facets += _foot(f"{link.name} foot", ends[link.joins.index(GROUND)], frame, (*part_section(link.part), _MARKER * size))
+        facets += _foot(link, first if link.joins[0] == GROUND else second, _MARKER * size)
     return facets
 
 
@@ -259,14 +260,14 @@ def _superelement(element: PlacedSuperelement, size: float) -> list[Facet]:
     ]
 
 
-def _foot(name: str, end: Array, frame: Frame, section: tuple[float, float, float]) -> list[Facet]:
-    """A block of ground behind the end of a link, somewhat larger than the link's section; `section` is height, width and depth."""
-    depth = section[2]
+def _foot(link: PlacedLink, end: Array, depth: float) -> list[Facet]:
+    """A block of ground behind the end of a link, somewhat larger than the link's section."""
+    frame = _frame(link.frame)
     outward = (end - frame.position) @ frame.rotation[:, 0]
     stations = (0.0, depth) if outward >= 0.0 else (-depth, 0.0)
-    height, width = (max(1.15 * extent, 1.6 * depth) for extent in section[:2])
+    height, width = (max(1.15 * extent, 1.6 * depth) for extent in part_section(link.part))
     rings = extrude(np.array(stations), [rectangle(height, width)] * 2)
-    return [_place(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), name))]
+    return [_place(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), f"{link.name} foot"))]
 
 
 def _gauge(name: str, sight: Sight, size: float) -> list[Facet]:

@@ -120,7 +120,7 @@ def stage_data(
     """
     still = still_data(mechanism, text=text)
     notes: list[str] = []
-    motions = tuple(_motions(mechanism, (model, kinematics, found), still.bones, count, notes))
+    motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, kinematics=kinematics, found=found))
     return replace(still, motions=motions, notes=tuple(notes))
 
 
@@ -130,7 +130,7 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     bodies, kinds = body_names(assembly.bodies), thing_kinds(seen.facets)
     describer = Describer(mechanism, assembly, line_numbers(text))
     numbers = {name: number for number, name in enumerate(bodies)}
-    things = tuple(describer.thing(name, kind, (numbers[ends[0]], numbers[ends[1]])) for name, (kind, ends) in kinds.items())
+    things = tuple(describer.thing(name, kind, numbers[first], numbers[second]) for name, (kind, (first, second)) in kinds.items())
     mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
     size, middle = _size(seen, low, high), 0.5 * (low + high)
@@ -150,16 +150,19 @@ def _bends(assembly: Assembly) -> Mapping[str, Bend]:
 
 def _motions(
     mechanism: Mechanism,
-    given: tuple[LinearModel | None, Kinematics | None, Modes | None],
     bones: Skeleton,
     count: int,
     notes: list[str],
+    *,
+    model: LinearModel | None,
+    kinematics: Kinematics | None,
+    found: Modes | None,
 ) -> Iterator[Motion]:
     """All motions that the stage has; what it has not goes to the notes."""
-    model = given[0] or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
-    kinematics = given[1] or _attempt("ideal motions", lambda: ideal(mechanism), notes)
+    model = model or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
+    kinematics = kinematics or _attempt("ideal motions", lambda: ideal(mechanism), notes)
     if model is not None:
-        found = given[2] or _attempt("modes", lambda: platform_modes(mechanism, model), notes)
+        found = found or _attempt("modes", lambda: platform_modes(mechanism, model), notes)
         yield from () if found is None else mode_motions(model, kinematics, found, bones, count)
         yield from _attempt("strokes", lambda: tuple(stroke_motions(model, kinematics, bones)), notes) or ()
     if kinematics is not None:

@@ -51,12 +51,12 @@ class Describer:
         self._links = {**assembly.links, **assembly.superelements}
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
-    def thing(self, name: str, kind: Kind, bodies: tuple[int, int]) -> Thing:
-        """The thing of that name, which scene and description share."""
+    def thing(self, name: str, kind: Kind, first: int, second: int) -> Thing:
+        """The thing of that name, which scene and description share, and the numbers of the bodies that it joins."""
         what, address, facts = self._said(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
-        return Thing(name, kind, bodies, what, unit if unit in self._copies else "", address, line, facts)
+        return Thing(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
 
     def _said(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
         """What it is, its address and its facts."""

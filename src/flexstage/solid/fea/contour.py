@@ -26,22 +26,22 @@ def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS
     [1.314214, 1.314214]
     """
     pieces = list(pairwise(contour.knots))
-    left = [_curve(contour, (-end, -start), rise, sign) for start, end in reversed(pieces)]
-    return [*left, *(_curve(contour, piece, rise, sign) for piece in pieces)]
+    left = [_curve(contour, -end, -start, rise, sign) for start, end in reversed(pieces)]
+    return [*left, *(_curve(contour, start, end, rise, sign) for start, end in pieces)]
 
 
-def _curve(contour: Contour, piece: tuple[float, float], rise: float, sign: float) -> occ.TopoDS_Shape:
+def _curve(contour: Contour, start: float, end: float, rise: float, sign: float) -> occ.TopoDS_Shape:
     """One smooth piece between two stations [m]."""
-    (start, end), share = piece, np.linspace(0.0, 1.0, 4)
+    share = np.linspace(0.0, 1.0, 4)
     corners = rise + MILLIMETRES * contour.height(start + (end - start) * share)
     dense = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, _STATIONS))
     heights = rise + MILLIMETRES * contour.height(start + (end - start) * dense)
     cubic = np.polynomial.polynomial.polyfit(share, corners, 3)
     if np.max(np.abs(np.polynomial.polynomial.polyval(dense, cubic) - heights)) > _SAME:
-        return occ.SplineInterpolation(_points(piece, dense, sign * heights))
+        return occ.SplineInterpolation(_points(start, end, dense, sign * heights))
     if max(abs(cubic[2]), abs(cubic[3])) < _SAME:
-        return occ.Segment(*_points(piece, share[::3], sign * corners[::3]))
-    return occ.BezierCurve(_points(piece, share, sign * _controls(corners)))
+        return occ.Segment(*_points(start, end, share[::3], sign * corners[::3]))
+    return occ.BezierCurve(_points(start, end, share, sign * _controls(corners)))
 
 
 def _controls(heights: Array) -> Array:
@@ -51,7 +51,6 @@ def _controls(heights: Array) -> Array:
     return np.array([first, inner[0] / 6.0, inner[1] / 6.0, last])
 
 
-def _points(piece: tuple[float, float], share: Array, heights: Array) -> list[occ.gp_Pnt]:
-    start, end = piece
+def _points(start: float, end: float, share: Array, heights: Array) -> list[occ.gp_Pnt]:
     places = MILLIMETRES * (start + (end - start) * share)
     return [occ.Pnt(float(x), float(y), 0) for x, y in zip(places, heights, strict=True)]
