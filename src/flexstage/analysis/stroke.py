@@ -15,7 +15,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.path import Path
@@ -83,7 +83,7 @@ def _columns(path: Path, about: LinearModel, strained: Strains) -> Iterator[tupl
     yield from (
         (f"platform.{name}", (twist[..., place], units[name])) for place, name in enumerate(COMPONENTS) if f"platform.{name}" != path.drive
     )
-    frequencies = np.sqrt(eigen(about).values) / (2.0 * np.pi)
+    frequencies = np.sqrt(eigenvalues(about)) / (2.0 * np.pi)
     yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
     yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
     yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
