@@ -9,6 +9,7 @@ import numpy as np
 
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
+from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.stability import Stability, stability
@@ -78,6 +79,20 @@ class Bench:
     def model(self) -> LinearModel:
         """The lumped model, of a stage that stands under its dead load."""
         return standing(self.mechanism)
+
+    @cached_property
+    def loaded(self) -> LoadEffect | None:
+        """What the dead load changes; `None` of a batch."""
+        return load_effect(self.mechanism)
+
+    @cached_property
+    def felt(self) -> Bench:
+        """The bench of stiffness and modes under the dead load: this one where that is not felt."""
+        if self.loaded is None or self.loaded.model is None:
+            return self
+        other = Bench(self.mechanism, self.command)
+        other.__dict__["model"] = self.loaded.model
+        return other
 
     @cached_property
     def stability(self) -> Stability:

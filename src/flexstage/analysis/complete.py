@@ -13,6 +13,7 @@ from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.judge import judge
+from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.measures import stroke
@@ -37,7 +38,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.mapped import mapped
 from flexstage.models.theory import Model
 
-__all__ = ["Analysis", "Model", "analyse", "platform_modes", "read", "required_command"]
+__all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
 
 _RIGID = "the ideal model has no elasticity"
 _UNLUMPED = "this needs the lumped model"
@@ -49,9 +50,11 @@ class Analysis:
 
     `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the
     ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
-    the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. The error budget is
-    that of the required strokes, or of all single-axis strokes at once, and of one kelvin. `freedoms` (stiffness along the motions left and
-    along what links hold; None where six are left) and `mass` of the platform belong to the statics.
+    the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. `loaded` says what
+    the dead load changes; where it is felt, statics, modes, responses and their verdicts are those of the loaded stage (`felt`), all else
+    and `linear` are of the drawn one. The error budget is that of the required strokes, or of all single-axis strokes at once, and of one
+    kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of the platform
+    belong to the statics.
     """
 
     mechanism: Mechanism
@@ -74,6 +77,24 @@ class Analysis:
     reach: ForceReach | None = None
     freedoms: FreedomStiffness | None = None
     mass: MassMatrix | None = None
+    loaded: LoadEffect | None = None
+
+    @property
+    def felt(self) -> LinearModel | None:
+        """The model of statics, modes and responses: `linear`, or small motions about the loaded stage."""
+        return self.linear if self.loaded is None or self.loaded.model is None else self.loaded.model
+
+
+def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
+    """The linear model of a stage; of the lumped one where its dead load is felt, small motions about the loaded stage.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> "geometric" in felt(double_triangle(), Model.LUMPED).stiffness
+    False
+    """
+    known = read(mechanism, model)
+    changed = load_effect(mechanism) if model is Model.LUMPED else None
+    return known if changed is None or changed.model is None else changed.model
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
@@ -105,7 +126,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     """
     verdicts = judge(mechanism)
     kinematics = ideal(mechanism)
-    linear = read(mechanism, model)
+    linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
+    weighed = linear if loading is None or loading.model is None else loading.model
     attempt = Attempts()
     lost = attempt.of_ground("lost_motion", linear, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)
@@ -113,7 +135,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
     hinged = linear if model is Model.LUMPED else None
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
-    stiff = attempt.of_ground("statics", linear, _RIGID, statics)
+    stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
     drifted = attempt.of_ground("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
@@ -124,9 +146,9 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         deflection=attempt.of_ground("deflection", hinged, _UNLUMPED, lambda known: deflection(mechanism, known)),
         buckling=attempt.of_ground("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
-        modes=attempt.of_ground("modes", linear, _RIGID, lambda known: platform_modes(mechanism, known)),
-        response=attempt.of_ground("response", linear, _RIGID, lambda known: response(known, seen, known.actuators)),
-        transmissibility=attempt.of_ground("transmissibility", linear, _RIGID, transmissibility),
+        modes=attempt.of_ground("modes", weighed, _RIGID, lambda known: platform_modes(mechanism, known)),
+        response=attempt.of_ground("response", weighed, _RIGID, lambda known: response(known, seen, known.actuators)),
+        transmissibility=attempt.of_ground("transmissibility", weighed, _RIGID, transmissibility),
         workspace=reach,
         drift=drifted,
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
@@ -134,7 +156,8 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         verdicts=verdicts,
         reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
-        mass=None if stiff is None or linear is None else mass_matrix(mechanism, linear),
+        mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
+        loaded=loading,
         missing=Table(attempt.missing),
     )
 

@@ -8,7 +8,7 @@ from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Annotated, TypeAlias, TypeVar
 
@@ -27,7 +27,7 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses
-from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, push_of
@@ -79,17 +79,19 @@ class Stability:
         if 1.0 <= dead < DOUBTFUL:
             what = (
                 f"weight, payloads and forces soften it: load factor {dead:.3g}, where {' and '.join(self.moving)} gives way. In that "
-                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than printed, its frequency {_lower(dead):.2g} % lower"
+                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
             )
-            yield Finding("stage", what, "Count on the lower values; stiffen what the load presses on, or let it hang")
+            advice = "analyse, stiffness, modes and response tell of the loaded stage; elsewhere count on the lower values"
+            yield Finding("stage", what, f"{advice}; stiffen what the load presses on, or let it hang")
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
             if worst >= 1.0:
                 what += f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, a frequency {_lower(worst):.2g} % lower"
             yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
-            what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion, more than is printed"
-            yield Finding("stage", what, "Count on higher frequencies in that motion, or unload it")
+            what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
+            advice = "analyse, stiffness, modes and response tell of the loaded stage; elsewhere count on higher frequencies in that motion"
+            yield Finding("stage", what, advice)
 
 
 def _lower(factor: float) -> float:
@@ -137,6 +139,26 @@ def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
     """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
     pieces = _Pieces.of(mechanism, model)
     return pieces, pieces.softening(*_dead(mechanism, pieces))
+
+
+def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
+    """The lumped model with what its dead load adds to its stiffness, `geometric`, in the drawn position; one design.
+
+    Inner bending of parts follows without mass.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> "geometric" in prestress(parallelogram(), lumped(parallelogram())).stiffness
+    True
+    """
+    require(_unknown_softening(expand(mechanism)))
+    pieces = _Pieces.of(mechanism, model)
+    added, own = pieces.softening(*_dead(mechanism, pieces)), pieces.stiffness
+    count = len(model.coordinates)
+    across = added[:count, count:]
+    inner = np.linalg.solve(own[count:, count:] + added[count:, count:], across.T)
+    felt = Contribution(np.eye(count), added[:count, :count] - across @ inner)
+    return replace(model, stiffness={**model.stiffness, "geometric": felt})
 
 
 def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:

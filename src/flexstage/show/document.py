@@ -95,7 +95,9 @@ def analysis_body(analysis: Analysis) -> Document:
     """
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
     documents = {name: None if found is None else plain(found) for name, found in analysis_results(analysis).items()}
-    return {"requirements": requirements_body(analysis.verdicts), **documents, **({"reasons": reasons} if reasons else {})}
+    loading = None if analysis.loaded is None else plain(analysis.loaded)
+    told = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, **documents}
+    return told | ({"reasons": reasons} if reasons else {})
 
 
 def stiffness_body(

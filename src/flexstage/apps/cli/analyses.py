@@ -36,6 +36,7 @@ from flexstage.show.command.displaced import (
     Held,
     Load,
     Warmth,
+    load_text,
     model_there,
     place,
     stance_at,
@@ -138,7 +139,7 @@ def stiffness(  # noqa: PLR0913 (its options)
         "stiffness",
         mechanism,
         lambda: with_stance(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing), there),
-        lambda: [*stance_tables(there), *_stiffness_tables(found, freedoms, mass, sagging)],
+        lambda: [load_text(mechanism, model, there), *stance_tables(there), *_stiffness_tables(found, freedoms, mass, sagging)],
         model=model,
         json=json,
         csv=csv,
@@ -188,7 +189,7 @@ def lost_motion(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
     there = stance_at(mechanism, place(at, load, hold, temperature), model)
-    found = losses.lost_motion(ideal(mechanism), model_there(mechanism, model, there))
+    found = losses.lost_motion(ideal(mechanism), model_there(mechanism, model, there, loaded=False))
     answer(
         "lost-motion",
         mechanism,
@@ -247,7 +248,7 @@ def modes(  # noqa: PLR0913 (its options)
         "modes",
         mechanism,
         lambda: with_stance(found, there),
-        lambda: [*stance_tables(there), mode_table(found)],
+        lambda: [load_text(mechanism, model, there), *stance_tables(there), mode_table(found)],
         model=model,
         json=json,
         csv=csv,
@@ -319,7 +320,12 @@ def response(  # noqa: PLR0913 (its options)
         "response",
         mechanism,
         lambda: with_stance(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})), there),
-        lambda: [*stance_tables(there), response_table(found), None if shaken is None else random_table(shaken)],
+        lambda: [
+            load_text(mechanism, model, there),
+            *stance_tables(there),
+            response_table(found),
+            None if shaken is None else random_table(shaken),
+        ],
         model=model,
         json=json,
         csv=csv,

@@ -34,7 +34,7 @@ def answer(  # noqa: PLR0913 (all that a command can ask for)
     kind: str,
     mechanism: Mechanism | None,
     body: Callable[[], Any],
-    tables: Callable[[], Iterable[Table | None]],
+    tables: Callable[[], Iterable[Table | str | None]],
     *,
     json: str | None,
     csv: Path | None = None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from flexstage.analysis.complete import read
+from flexstage.analysis.complete import felt, read
 from flexstage.base.expression import parse_expression
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.mechanism.address import assign
@@ -55,9 +55,9 @@ def _where(text: str, inner: str) -> str:
     return f"--set {text}" if inner in said else f"--set {text}: {inner}"
 
 
-def elastic_model(mechanism: Mechanism, model: Model) -> LinearModel:
-    """The linear model of a stage; the ideal model is refused."""
-    linear = read(mechanism, model)
+def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -> LinearModel:
+    """The linear model of a stage, or if `loaded` that of the stage under its dead load; the ideal model is refused."""
+    linear = felt(mechanism, model) if loaded else read(mechanism, model)
     if linear is None:
         raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
     return linear

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
+from flexstage.analysis.load_effect import load_effect
 from flexstage.analysis.stance import Stance, stance
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
@@ -84,9 +85,15 @@ def stance_at(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -
     return stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth)
 
 
-def model_there(mechanism: Mechanism, model: Model, found: Stance | None) -> LinearModel:
-    """Small motions about where the stage stands; of the drawn stage by the model that is asked for."""
-    return elastic_model(mechanism, model) if found is None else found.linear
+def model_there(mechanism: Mechanism, model: Model, found: Stance | None, *, loaded: bool = True) -> LinearModel:
+    """Small motions about where the stage stands; brought nowhere, by the model that is asked for, under its dead load if `loaded`."""
+    return elastic_model(mechanism, model, loaded=loaded) if found is None else found.linear
+
+
+def load_text(mechanism: Mechanism, model: Model, found: Stance | None) -> str | None:
+    """What the dead load changes of a stage that is brought nowhere."""
+    known = load_effect(mechanism) if found is None and model is Model.LUMPED else None
+    return known.text if known is not None and known.model is not None else None
 
 
 def with_stance(body: Any, found: Stance | None) -> Any:

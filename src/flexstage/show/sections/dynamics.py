@@ -40,13 +40,15 @@ def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
     >>> mode_section(analyse(double_triangle(), Model.IDEAL), scene(double_triangle())) is None
     True
     """
-    modes, model = analysis.modes, analysis.linear
+    modes, model = analysis.modes, analysis.felt
     if modes is None or model is None or not modes.names:
         return None
     text = (
         "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
         "units that lie near the platform's are listed as local neighbours."
     )
+    if analysis.loaded is not None and analysis.loaded.text:
+        text = f"{text} {analysis.loaded.text}"
     spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
     shapes = tuple(_shapes(modes, model, analysis.kinematics, seen))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []

@@ -39,6 +39,17 @@ def stage_text(analysis: Analysis) -> str:
     return f"{analysis.mechanism.name or 'stage'}, {analysis.model.value} model: {things}"
 
 
+def load_line(analysis: Analysis) -> str | None:
+    """What weight, payloads and forces change; `None` where nothing is known of it or nothing loads the stage.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> load_line(analyse(double_triangle(), Model.IDEAL)) is None
+    True
+    """
+    return None if analysis.loaded is None else analysis.loaded.text or None
+
+
 def _count(count: int, thing: str) -> str:
     return f"{count} {thing}{'' if count == 1 else 's'}"
 
@@ -46,6 +57,7 @@ def _count(count: int, thing: str) -> str:
 def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
     """Requirements, the platform's axes and modes, lost motion, and what its parts bear."""
     yield verdict_table(analysis.verdicts)
+    yield load_line(analysis)
     yield axis_table(analysis)
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
