@@ -77,6 +77,7 @@ HOMES = {
     "analysis.complete": "Model analyse",
     "analysis.budget": "budget",
     "show.report": "report",
+    "show.viewer.course": "play",
     "show.viewer.view": "View view",
     "show.matlab": "to_mat",
     "show.sheets": "to_csv to_pandas to_xarray",

@@ -26,7 +26,7 @@ export function view(element: HTMLElement, data: StageData, options: Options = {
 }
 
 const NOWHERE: Probe = {
-  webgl: false, frames: 0, camera: { position: [0, 0, 0], target: [0, 0, 0], zoom: 1 }, picked: null, motion: null, phase: 0, factor: 0,
+  webgl: false, frames: 0, camera: { position: [0, 0, 0], target: [0, 0, 0], zoom: 1 }, picked: null, motion: null, phase: 0, factor: 0, place: 0,
   partAt: () => null, partsAt: () => [], pixel: () => [0, 0, 0, 0], project: () => [0, 0],
 };
 
@@ -39,7 +39,7 @@ function still(element: HTMLElement, error: unknown): Controller {
   element.append(line);
   const nothing = (): void => undefined, ends = () => nothing;
   return {
-    element, alive: false, probe: NOWHERE, replace: nothing, replaceMotions: nothing, select: nothing, onPick: ends, onMotion: ends, setMotion: nothing,
+    element, alive: false, curves: document.createElement("div"), probe: NOWHERE, replace: nothing, replaceMotions: nothing, select: nothing, onPick: ends, onMotion: ends, setMotion: nothing,
     setPose: nothing, setPlaying: nothing, setPhase: nothing, setAmplitude: nothing, setColours: nothing, showEnergy: nothing, showGhost: nothing,
     ghostPlatform: nothing, isolate: nothing, showLabels: nothing, section: nothing, look: nothing, fit: nothing, picture: () => "",
     dispose: () => line.remove(),

@@ -9,6 +9,8 @@ import type { StageData } from "./types";
 import { floats, indices, numbers } from "./unpack";
 
 const WIDTH = 512;
+/** Places along what bends at which a pose tells where it lies; `NODES` in show/viewer/course.py, and in the shader. */
+const NODES = 12;
 
 /** A table of rows of four floats, laid out in lines of a texture. */
 class Table {
@@ -41,6 +43,9 @@ export class Model {
   readonly part: Uint16Array;
   private readonly carrier: Uint16Array;
   private readonly twists: Table;
+  private readonly poses: Table;
+  /** How many rows a pose of this stage has. */
+  readonly rows: number;
   private readonly paints: Table;
   private readonly surface = new BufferGeometry();
   private readonly lines = new BufferGeometry();
@@ -58,13 +63,17 @@ export class Model {
     this.carrier = numbers(mesh.carrier);
     this.carriers = numbers(mesh.carriers);
     this.twists = new Table(2 * data.bodies.length);
+    this.rows = data.bodies.length + NODES * this.bending;
+    this.poses = new Table(2 * this.rows);
     this.paints = new Table(data.parts.length);
     this.shared = {
       twists: { value: this.twists.texture },
+      poses: { value: this.poses.texture },
       paints: { value: this.paints.texture },
       carriers: { value: this.carrierTable(floats(mesh.ends)).texture },
       stations: { value: stationTable(floats(mesh.stations)).texture },
       factor: { value: 0 },
+      finite: { value: 0 },
       plane: { value: UNCUT.clone() },
     };
     const attributes: [string, Float32Array | Uint16Array, number][] = [
@@ -118,8 +127,11 @@ export class Model {
   private carrierTable(ends: Float32Array): Table {
     const count = this.carriers.length / 2;
     const table = new Table(3 * count);
+    let start = this.data.bodies.length;
     for (let at = 0; at < count; at++) {
-      table.set(3 * at, this.carriers.subarray(2 * at, 2 * at + 2));
+      const [first, second] = this.carriers.subarray(2 * at, 2 * at + 2) as unknown as [number, number];
+      table.set(3 * at, [first, second, start]);
+      if (first !== second) start += NODES;
       table.set(3 * at + 1, ends.subarray(6 * at, 6 * at + 3));
       table.set(3 * at + 2, ends.subarray(6 * at + 3, 6 * at + 6));
     }
@@ -134,6 +146,23 @@ export class Model {
       this.twists.set(2 * body + 1, values.subarray(6 * body + 3, 6 * body + 6));
     }
     this.twists.changed();
+  }
+
+  /** Carriers of two bodies. */
+  private get bending(): number {
+    return this.carriers.filter((body, at) => at % 2 === 0 && body !== this.carriers[at + 1]).length;
+  }
+
+  /** Large displacements in place of twists: rows of displacement and rotation vector, bodies about the origin; null: none. */
+  setPoses(values: Float32Array | null): void {
+    const fits = values !== null && values.length === 6 * this.rows;
+    this.shared["finite"]!.value = fits ? 1 : 0;
+    if (!fits) return;
+    for (let row = 0; row < this.rows; row++) {
+      this.poses.set(2 * row, values.subarray(6 * row, 6 * row + 3));
+      this.poses.set(2 * row + 1, values.subarray(6 * row + 3, 6 * row + 6));
+    }
+    this.poses.changed();
   }
 
   set factor(value: number) {

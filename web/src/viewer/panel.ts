@@ -4,7 +4,7 @@ import { AMPLITUDES, type Player } from "./player";
 import type { Motion, MotionGroup, StageData } from "./types";
 
 const HEADS: Readonly<Record<MotionGroup, string>> = {
-  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load",
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", path: "Along a path", state: "About a state",
 };
 
 /** What the buttons do; the viewer gives it. */
@@ -57,6 +57,7 @@ export class Panel {
   private readonly notes = document.createElement("div");
   private readonly play: HTMLButtonElement;
   private readonly phase: HTMLInputElement;
+  private readonly phaseName: HTMLLabelElement;
   private readonly amplitude: HTMLInputElement;
   private readonly cutRow: [HTMLLabelElement, HTMLInputElement];
   private readonly toggles = new Map<Toggle, HTMLButtonElement>();
@@ -71,7 +72,7 @@ export class Panel {
     tools.className = "tools";
     const [phaseName, phase] = slider("Phase", 1, "0.005", (value) => acts.scrub(value));
     const [amplitudeName, amplitude] = slider("Amplitude", AMPLITUDES.length - 1, "1", (value) => acts.amplify(value));
-    [this.phase, this.amplitude] = [phase, amplitude];
+    [this.phase, this.phaseName, this.amplitude] = [phase, phaseName, amplitude];
     this.cutRow = slider("Section", 1, "0.01", (value) => acts.cut(value));
     player.append(phaseName, phase, amplitudeName, amplitude, this.words, ...this.cutRow);
     this.showCut(null, 0.5);
@@ -131,9 +132,11 @@ export class Panel {
   update(player: Player): void {
     for (const [motion, each] of this.buttons) each.setAttribute("aria-pressed", String(motion === player.motion));
     this.play.textContent = player.playing ? "Pause" : "Play";
+    this.phaseName.textContent = player.travels ? "Stroke" : "Phase";
     this.phase.value = String(player.phase);
     const place = AMPLITUDES.findIndex((each) => each >= player.amplitude - 1e-9);
     this.amplitude.value = String(place < 0 ? AMPLITUDES.length - 1 : place);
+    this.words.classList.toggle("red", player.travels && (player.route!.course.said[Math.round(player.place)] ?? "") !== "");
     this.words.textContent = [player.words, player.motion?.remark].filter(Boolean).join("; ");
   }
 }

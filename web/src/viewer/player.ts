@@ -1,19 +1,24 @@
 // What moves, how far and when: a motion of the data, or a pose that a page sets.
 
+import { Route } from "./course";
 import type { Motion, MotionKey, StageData } from "./types";
 import { floats } from "./unpack";
 
 const SECONDS = 1.6;
+const ACROSS = 4; // seconds from one end of a path to the other
+const MOST_TURN = 0.4; // a path is not exaggerated beyond this rotation, or ends would gape [rad]
 export const AMPLITUDES = [0.01, 0.02, 0.03, 0.05, 0.08, 0.12, 0.2] as const;
 
 export class Player {
   motion: Motion | null = null;
   twists: Float32Array | null = null;
+  route: Route | null = null;
   playing = false;
   phase = 0;
   amplitude: number = AMPLITUDES[2];
   private poseFactor = 1;
   private last: number | null = null;
+  private back = false;
 
   constructor(private data: StageData) {}
 
@@ -31,12 +36,15 @@ export class Player {
 
   choose(motion: Motion | null): void {
     this.motion = motion;
-    this.twists = motion ? floats(motion.twists) : null;
+    this.route = motion?.course ? new Route(motion.course) : null;
+    this.twists = motion && !motion.course ? floats(motion.twists) : null;
+    if (this.travels && this.phase > 1) this.phase = 1;
     this.last = null;
   }
 
   pose(twists: Float32Array | null, factor: number): void {
     this.motion = null;
+    this.route = null;
     this.twists = twists;
     this.poseFactor = factor;
   }
@@ -44,12 +52,35 @@ export class Player {
   /** Displacement drawn at the largest over displacement stored. */
   get exaggeration(): number {
     if (!this.motion) return this.twists ? this.poseFactor : 0;
-    return this.motion.reach > 0 ? (this.amplitude * this.data.size) / this.motion.reach : 0;
+    const wanted = this.motion.reach > 0 ? (this.amplitude * this.data.size) / this.motion.reach : 0;
+    return this.travels ? Math.max(1, Math.min(wanted, MOST_TURN / Math.max(1e-9, this.route!.turn))) : wanted;
+  }
+
+  /** Whether it goes along a path. */
+  get travels(): boolean {
+    return this.route !== null && !this.route.shakes;
+  }
+
+  /** Where on its path it is: a point, or between two. */
+  get place(): number {
+    return this.travels ? this.phase * (this.route!.points - 1) : 0;
+  }
+
+  /** Where everything is, of large displacements. */
+  get rows(): Float32Array | null {
+    if (!this.route) return null;
+    return this.travels ? this.route.at(this.place, this.exaggeration) : this.route.shaken(this.factor);
+  }
+
+  /** Part numbers that are beyond a limit here. */
+  get beyond(): number[] {
+    return this.travels ? (this.route!.course.beyond[Math.round(this.place)] ?? []) : [];
   }
 
   /** From -1 to 1; deflections go one way. */
   get sense(): number {
     if (!this.motion) return this.twists ? 1 : 0;
+    if (this.travels) return 1;
     return this.motion.group === "deflection" ? 0.5 - 0.5 * Math.cos(2 * Math.PI * this.phase) : Math.sin(2 * Math.PI * this.phase);
   }
 
@@ -59,21 +90,36 @@ export class Player {
 
   /** Phase at which the motion is as far out as it goes. */
   get outmost(): number {
+    if (this.travels) return 1;
     return this.motion?.group === "deflection" ? 0.5 : 0.25;
   }
 
   /** The time goes on; whether anything moves. */
   step(now: number): boolean {
     const moves = this.playing && this.motion !== null;
-    if (moves && this.last !== null) this.phase = (this.phase + (now - this.last) / 1000 / SECONDS) % 1;
+    if (moves && this.last !== null && this.travels) this.travel((now - this.last) / 1000 / ACROSS);
+    else if (moves && this.last !== null) this.phase = (this.phase + (now - this.last) / 1000 / SECONDS) % 1;
     this.last = moves ? now : null;
     return moves;
+  }
+
+  private travel(share: number): void {
+    this.phase += this.back ? -share : share;
+    if (this.phase <= 0 || this.phase >= 1) this.back = this.phase >= 1;
+    this.phase = Math.max(0, Math.min(1, this.phase));
+  }
+
+  private get there(): string {
+    const { course } = this.route!, said = course.said[Math.round(this.place)];
+    const times = this.exaggeration, scale = times > 1.005 ? `drawn × ${written(times)}` : "true positions";
+    return [scale, said].filter(Boolean).join("; ");
   }
 
   /** The amplitude beside the slider: how much is exaggerated, or, where the stored size means nothing, how far what moves most is drawn. */
   get words(): string {
     if (!this.motion) return this.twists ? `× ${written(this.poseFactor)}` : "";
-    if (this.motion.scaled) return `exaggerated × ${written(this.exaggeration)}`;
+    if (this.travels) return this.there;
+    if (this.motion.scaled && !this.route) return `exaggerated × ${written(this.exaggeration)}`;
     return `shape only: largest motion drawn ${written(1e3 * this.amplitude * this.data.size)} mm`;
   }
 }

@@ -19,7 +19,9 @@ uniform sampler2D twists;    // 2 a body: translation, rotation
 uniform sampler2D carriers;  // 3 a carrier: its bodies, its first end, its second
 uniform sampler2D stations;  // 2 a station: share and deflections, slopes
 uniform sampler2D paints;    // 1 a part: colour, opacity; -1 where it is hidden
+uniform sampler2D poses;     // 2 a row: displacement, rotation vector; bodies first, then 12 nodes along each carrier of two bodies
 uniform float factor;
+uniform float finite;
 flat out float partNumber;
 flat out vec4 paint;
 out vec3 seen;
@@ -54,10 +56,31 @@ vec3 displacement() {
   return rigid + line + cross(cross(axis, slope) + spin * shares.x, position - centre);
 }
 
+vec3 rotated(vec3 w, vec3 v) {
+  float angle = length(w);
+  if (angle < 1e-6) return v + cross(w, v);
+  vec3 axis = w / angle;
+  return v * cos(angle) + cross(axis, v) * sin(angle) + axis * dot(axis, v) * (1.0 - cos(angle));
+}
+
+// Large displacements: bodies turn about the origin, what bends lies along its nodes.
+vec3 posed() {
+  int c = int(carrier);
+  vec3 link = row(carriers, 3 * c).xyz;
+  if (link.x == link.y) return row(poses, 2 * int(link.x)).xyz + rotated(row(poses, 2 * int(link.x) + 1).xyz, position);
+  float share = row(stations, 2 * int(station)).x;
+  float along = clamp(share, 0.0, 1.0) * 11.0, node = min(floor(along), 10.0);
+  int at = 2 * (int(link.z) + int(node));
+  vec3 shift = mix(row(poses, at).xyz, row(poses, at + 2).xyz, along - node);
+  vec3 turn = mix(row(poses, at + 1).xyz, row(poses, at + 3).xyz, along - node);
+  vec3 centre = mix(row(carriers, 3 * c + 1).xyz, row(carriers, 3 * c + 2).xyz, share);
+  return centre + shift + rotated(turn, position - centre);
+}
+
 vec4 seat() {
   partNumber = part;
   paint = row(paints, int(part));
-  place = position + factor * displacement();
+  place = finite > 0.5 ? posed() : position + factor * displacement();
   vec4 view = modelViewMatrix * vec4(place, 1.0);
   seen = view.xyz;
   return projectionMatrix * view;

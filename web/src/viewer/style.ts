@@ -44,6 +44,8 @@ canvas:active { cursor: grabbing; }
 .play { display: grid; grid-template-columns: auto 1fr; gap: 4px 8px; padding: 6px 12px; align-items: center; border-top: 1px solid var(--line); }
 .play label { color: var(--muted); font-size: 12px; } .play input { width: 100%; min-width: 0; accent-color: var(--accent); margin: 0; }
 .words { grid-column: 1 / -1; color: var(--muted); font-size: 12px; font-variant-numeric: tabular-nums; }
+.words.red { color: #d03b3b; } :host(.dark) .words.red { color: #ff8a80; }
+.viewer > .curves { grid-column: 1 / -1; border-top: 1px solid var(--line); }
 .note { margin: 0; padding: 4px 12px; color: var(--muted); font-size: 12px; }
 slot { display: none; }
 @container (min-width: 700px) {

@@ -57,7 +57,7 @@ export interface Label {
   bodies: [number, number];
 }
 
-export type MotionGroup = "mode" | "stroke" | "axis" | "deflection";
+export type MotionGroup = "mode" | "stroke" | "axis" | "deflection" | "path" | "state";
 
 /** Something that all bodies do together. */
 export interface Motion {
@@ -76,8 +76,35 @@ export interface Motion {
   reach: number;
   /** Whether the scale of `twists` is physical: then an exaggeration is said, else the drawn displacement. */
   scaled: boolean;
+  /** Of large displacements, along a path or about a state: where everything is; `twists` is empty then. */
+  course?: Course;
   /** Float32, one an entry of `StageData.links`: share of the strain energy in it, NaN where it is not known. */
   energy?: Packed;
+}
+
+/** Something that is told of every point of a path, in a display unit. */
+export interface Curve {
+  name: string;
+  unit: string;
+  /** Float32, one a point, NaN where unknown. */
+  values: Packed;
+}
+
+/** Large displacements through the points of a path, or a small motion about one state. */
+export interface Course {
+  points: number;
+  /** The points that poses are of. */
+  frames: number[];
+  /** Float32, a row of 6 for each of `StageData.bodies` and then for the nodes along each carrier of two bodies: displacement, rotation vector. */
+  poses: Packed;
+  /** Float32, as one pose: the small motion. */
+  shape?: Packed;
+  /** What is driven, then what that takes and does. */
+  curves: Curve[];
+  /** Of every point, the part numbers that are beyond a limit. */
+  beyond: number[][];
+  /** Why, in words; empty where nothing is. */
+  said: string[];
 }
 
 export interface StageData {
@@ -92,6 +119,8 @@ export interface StageData {
   platform: number;
   /** Point of the platform about which its twist is told [m]. */
   reference: [number, number, number];
+  /** Points of all bodies about which poses are told [m]. */
+  references: [number, number, number][];
   parts: Part[];
   labels: Label[];
   /** Part numbers of hinges and actuators: what strain energy is told of. */
@@ -135,6 +164,8 @@ export interface Picked {
 export interface Controller {
   readonly element: HTMLElement;
   readonly alive: boolean;
+  /** Curves over the path that is shown, with its cursor: a viewer with controls has them below the picture, else a page puts them where it likes. */
+  readonly curves: HTMLElement;
   /** Shows another design in place; camera, picked part (by name) and motion (by name) stay where they exist. */
   replace(data: StageData): void;
   /** Replaces motions alone: modes of another design on the same mesh. */
@@ -187,6 +218,8 @@ export interface Probe {
   readonly phase: number;
   /** Displacement drawn over displacement stored. */
   readonly factor: number;
+  /** Where on a path it is: a point, or between two. */
+  readonly place: number;
   /** Name of the part at a place of the element (CSS pixels from its upper left corner), as it is drawn now. */
   partAt(x: number, y: number): string | null;
   /** All parts at a place, from the nearest on. */

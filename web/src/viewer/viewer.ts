@@ -3,6 +3,8 @@
 import { ColorManagement, LinearSRGBColorSpace, Scene, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget } from "three";
 import { TwistArrows } from "./arrows";
 import { Camera } from "./camera";
+import { moved as movedPoint, Route } from "./course";
+import { Curves } from "./curves";
 import { Model, UNCUT } from "./model";
 import { Overlay } from "./overlay";
 import { Panel, type Acts, type Toggle } from "./panel";
@@ -27,6 +29,9 @@ export class Viewer implements Controller {
   private readonly camera: Camera;
   private readonly overlay = new Overlay();
   private readonly panel: Panel | null;
+  private readonly figures = new Curves((share) => this.drag(share));
+  readonly curves = this.figures.element;
+  private told = "";
   private readonly arrows = new TwistArrows();
   private readonly over = new Scene();
   private readonly target = new WebGLRenderTarget(1, 1);
@@ -68,7 +73,7 @@ export class Viewer implements Controller {
     this.stage.append(canvas, this.overlay.element);
     this.root.append(this.stage);
     this.panel = options.controls === false ? null : new Panel(this.acts());
-    if (this.panel) this.root.append(this.panel.element);
+    if (this.panel) this.root.append(this.panel.element, this.curves);
     this.mount();
     this.camera = new Camera(canvas, () => this.draw());
     this.model = this.build(data);
@@ -104,7 +109,7 @@ export class Viewer implements Controller {
     return {
       choose: (motion) => this.choose(motion),
       play: () => this.setPlaying(!this.player.playing),
-      scrub: (phase) => { this.player.playing = false; this.setPhase(phase); },
+      scrub: (phase) => this.drag(phase),
       amplify: (step) => this.setAmplitude(AMPLITUDES[step] ?? AMPLITUDES[0]),
       fit: () => this.fit(),
       toggle: (what) => this.toggle(what),
@@ -180,9 +185,16 @@ export class Viewer implements Controller {
     this.draw();
   }
 
+  /** A person takes hold of the phase. */
+  private drag(phase: number): void {
+    this.player.playing = false;
+    this.setPhase(phase);
+  }
+
   setPhase(phase: number): void {
     this.player.phase = phase;
     this.panel?.update(this.player);
+    this.travelled();
     this.draw();
   }
 
@@ -273,6 +285,7 @@ export class Viewer implements Controller {
   private choose(motion: Motion | null): void {
     this.player.choose(motion);
     if (motion) this.player.playing = true;
+    if (this.player.travels) this.player.phase = 0;
     this.moved();
     for (const each of this.watchers) each(motion);
   }
@@ -403,10 +416,12 @@ export class Viewer implements Controller {
     const colours = theme(this.dark.matches), { parts, links } = this.data;
     const shares = new Map(this.energies && this.energy ? links.map((part, at) => [part, this.energies![at]!]) : []);
     const most = Math.max(1e-9, ...[...shares.values()].filter(Number.isFinite));
+    const beyond = new Set(this.player.beyond);
     this.model.setPaints((number) => {
       const part = parts[number]!, share = shares.get(number);
       let colour = this.colours?.[part.name] ?? colours.kinds[part.kind];
       if (share !== undefined) colour = Number.isFinite(share) ? mixed(colours.cold, colours.hot, Math.sqrt(share / most)) : colours.cold;
+      if (beyond.has(number)) colour = colours.hot;
       if (part.name === this.picked) colour = colours.chosen;
       return [...colour, this.opacityOf(part.kind, part.unit, part.name)] as const;
     });
@@ -420,12 +435,23 @@ export class Viewer implements Controller {
 
   private moved(): void {
     const { motion, twists } = this.player;
+    this.figures.show(this.player.travels ? this.player.route!.course : null);
+    this.travelled();
     this.energies = motion?.energy ? floats(motion.energy) : null;
     this.model.setTwists(twists ?? new Float32Array(6 * this.data.bodies.length));
     this.panel?.update(this.player);
     if (this.energy) this.paint();
     this.card();
     this.draw();
+  }
+
+  /** Cursor and colours follow the place on a path. */
+  private travelled(): void {
+    this.figures.place(this.player.place);
+    const beyond = this.player.beyond.join();
+    if (beyond === this.told) return;
+    this.told = beyond;
+    this.paint();
   }
 
   private card(): void {
@@ -455,6 +481,7 @@ export class Viewer implements Controller {
     const moves = this.player.step(now);
     this.render();
     if (moves) this.panel?.update(this.player);
+    if (moves) this.travelled();
     if (moves && this.seen && this.element.isConnected) this.draw();
   }
 
@@ -469,7 +496,9 @@ export class Viewer implements Controller {
 
   private place(): void {
     const { platform, reference, size } = this.data, { twists, factor } = this.player;
+    const { rows } = this.player;
     this.model.factor = factor;
+    this.model.setPoses(rows && Route.aboutOrigin(rows, this.data));
     const own = twists && platform > 0 ? twists.subarray(6 * platform, 6 * platform + 6) : null;
     const point = new Vector3(...reference);
     this.arrows.show(own, point, size, this.player.sense);
@@ -487,8 +516,11 @@ export class Viewer implements Controller {
   private labelled(label: Label): Vector3 | null {
     if (this.unit !== null && label.text !== this.unit && !label.text.startsWith(`${this.unit}/`)) return null;
     const rest = new Vector3(...label.point), { twists, factor } = this.player;
-    const point = rest.clone();
-    for (const body of twists ? label.bodies : []) {
+    const point = rest.clone(), { rows } = this.player;
+    if (rows) {
+      const [one, other] = label.bodies.map((body) => new Vector3(...movedPoint(rows, body, this.data.references[body]!, label.point)));
+      point.addVectors(one!, other!).multiplyScalar(0.5);
+    } else for (const body of twists ? label.bodies : []) {
       const [x, y, z, a, b, c] = twists!.subarray(6 * body, 6 * body + 6) as unknown as [number, number, number, number, number, number];
       point.addScaledVector(new Vector3(a, b, c).cross(rest).add(new Vector3(x, y, z)), 0.5 * factor);
     }
@@ -542,7 +574,8 @@ export class Viewer implements Controller {
       get picked() { return viewer.picked; },
       get motion() { const now = viewer.player.motion; return now ? { group: now.group, name: now.name } : null; },
       get phase() { return viewer.player.phase; },
-      get factor() { return viewer.player.factor; },
+      get factor() { return viewer.player.travels ? viewer.player.exaggeration : viewer.player.factor; },
+      get place() { return viewer.player.place; },
       partAt: (x, y) => viewer.data.parts[viewer.partAt(x, y)]?.name ?? null,
       partsAt: (x, y) => viewer.partsAt(x, y),
       pixel: (x, y) => [...viewer.onePixel(x, y, () => viewer.paintPicture())] as [number, number, number, number],

@@ -56,6 +56,7 @@ from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.random_response import random_table
 from flexstage.show.tables.response import response_table
+from flexstage.show.viewer.course import modes_at_data
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.view import view_of
 from flexstage.solid.moving import glb_of
@@ -237,13 +238,13 @@ def modes(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
     ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)
-    if view is not None and asked:
-        raise refuse("--view", "it shows the stage as drawn", f"Leave out {asked.options}, or --view")
+    if ending == ".glb" and asked:
+        raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {asked.options}, or write a page (.html)")
     there = stance_at(mechanism, asked, model)
     linear = model_there(mechanism, model, there)
     found = platform_modes(mechanism, linear)
     if view is not None:
-        save(view, _moving(mechanism, linear, found, ending), "--view")
+        save(view, _moving(mechanism, linear, found, ending) if there is None else _moving_there(mechanism, there, found), "--view")
     answer(
         "modes",
         mechanism,
@@ -269,6 +270,11 @@ def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str
     """The stage with its modes, as a page or as a GLB file."""
     shown = stage_data(mechanism, model=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
+
+
+def _moving_there(mechanism: Mechanism, there: Stance, found: Modes) -> str:
+    """The stage with its modes about where it stands, as a page."""
+    return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
 
 
 def response(  # noqa: PLR0913 (its options)

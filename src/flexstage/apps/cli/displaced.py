@@ -18,7 +18,9 @@ from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import Load, loads_of, quantity_of
-from flexstage.show.command.options import Changes, Csv, Design, Json, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
+from flexstage.show.command.output import save
+from flexstage.show.displaced import buckling_report, stroke_report
 from flexstage.show.table import result_tables
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -36,6 +38,7 @@ def stroke(  # noqa: PLR0913 (its options)
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
     points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points of the stroke.")] = 11,
     load: Load = None,
+    report: Report = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -46,12 +49,15 @@ def stroke(  # noqa: PLR0913 (its options)
     At large displacements, under the stage's weight and the loads that are named: every point is an equilibrium, and its frequencies and
     stiffness are those of the stage there.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     model = nonlinear(mechanism)
     quantity = quantity_of(model, drive)
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
-    found = over_stroke(path(model, drive, np.linspace(low, high, points), loads=loads_of(model, load or ())))
+    along = path(model, drive, np.linspace(low, high, points), loads=loads_of(model, load or ()))
+    found = over_stroke(along)
+    if report is not None:
+        save(report, stroke_report(mechanism, along, found), "--report")
     answer(
         "stroke",
         mechanism,
@@ -61,6 +67,7 @@ def stroke(  # noqa: PLR0913 (its options)
         csv=csv,
         xlsx=xlsx,
         cautions=found.cautions,
+        beside=(report,),
     )
 
 
@@ -82,6 +89,7 @@ def buckle(
         list[str] | None,
         text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: the weight.'),
     ] = None,
+    report: Report = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -91,13 +99,15 @@ def buckle(
 
     At large displacements: a limit, which the load cannot pass, or a bifurcation into another motion. All else stays, the weight too.
     """
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     model = nonlinear(mechanism)
     found = (
         critical(model, loads_of(model, load), tolerance=_ENOUGH) if load else critical(model, {WEIGHT: 1.0}, weight=0.0, tolerance=_ENOUGH)
     )
     told = _buckling(", ".join(load or [WEIGHT]), found)
-    answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx)
+    if report is not None:
+        save(report, buckling_report(mechanism, found, told.load), "--report")
+    answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx, beside=(report,))
 
 
 def _buckling(load: str, found: Critical) -> Buckling:

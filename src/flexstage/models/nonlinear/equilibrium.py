@@ -71,6 +71,12 @@ class State:
         names = [name for group in self.model.flexures for name in group.names]
         raise refuse(link, "it is no flexure of this stage", suggest_nearest(link, names))
 
+    def case(self, number: int) -> State:
+        """One case, by its number in a row."""
+        cases = np.array([number])
+        status, iterations, residual = (each.ravel()[number] for each in (self.status, self.iterations, self.residual))
+        return State(self.model, self.loads.of(cases), self.hold.of(cases), self.pose.of(cases), (), status, iterations, residual, self.held)
+
     def place(self, name: str) -> tuple[int, Array]:
         """The number of a body, and the drawn arm of its reference or of a named point on it."""
         return place(self.model, name)

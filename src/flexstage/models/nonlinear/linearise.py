@@ -101,12 +101,16 @@ def linearise(state: State, *, locked: Sequence[str] = ()) -> LinearModel:
     links = {name: item for group, bent in zip(model.flexures, whole.bent, strict=True) for name, item in _flexures(group, bent).items()}
     own = {name: item.mass.shape[-1] - 12 for name, item in links.items()}
     order = _Coordinates(model, own)
-    joins = {
+    return _assembled(state, order, _joins(model), (links, [state.held.index(name) for name in locked]))
+
+
+def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:
+    """The bodies of all links by number."""
+    return {
         name: (int(one), int(other))
         for group in (*model.flexures, model.hinges)
         for name, one, other in zip(group.names, group.first, group.second, strict=True)
     }
-    return _assembled(state, order, joins, (links, [state.held.index(name) for name in locked]))
 
 
 def _assembled(
@@ -129,7 +133,7 @@ def _assembled(
     stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
     inertia, seen = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
-    basis, kept = _free(np.concatenate([_locked_rows(model, rows, order, joins), *_held_rows(state, order, locked)], axis=-2), order)
+    basis, kept = _free(_locked(state, order, rows, locked), order)
     known = np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
     imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
     rigid = np.zeros((len(state.pose.position), order.size, 6))
@@ -178,6 +182,35 @@ def _shaped(state: State, model: LinearModel) -> LinearModel:
 
 def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     """Every flexure of a group, by name."""
+    law, found, inside = group.law, bent.tangent, _inside(group, bent)
+    amplitudes, swayed = inside.amplitudes, inside.swayed
+    unit = (law.rigidity / law.length)[:, None, None, None]
+    elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(inside.gap) @ inside.hung
+    rest = _transpose(amplitudes) @ ((found.hessian - law.form[:, None]) @ amplitudes)
+    if found.hung is not None and found.swayed is not None:
+        mixed = _transpose(swayed) @ (found.hung @ amplitudes)
+        rest = rest - mixed - _transpose(mixed) - _transpose(swayed) @ (found.swayed[..., 1, :, :] @ swayed)
+    turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
+    rest = unit * rest
+    rest[..., :12, :12] += turned
+    masses = _mass(group, bent, inside)
+    return {
+        name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
+        for place, name in enumerate(group.names)
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class _Inside:
+    """What follows the coordinates of a flexure, the motions of its bodies and its own: amplitudes (l, b, q, 12 + m), gap, force, weight."""
+
+    amplitudes: Array
+    gap: Array
+    hung: Array
+    swayed: Array
+
+
+def _inside(group: Flexures, bent: Bent) -> _Inside:
     law, found = group.law, bent.tangent
     motion = end_motion(law, bent)
     sway = weight_motion(bent) if bent.weight is not None else np.zeros((*motion.shape[:-2], 3, 12))
@@ -188,21 +221,7 @@ def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     gap = found.reach @ amplitudes - ends[..., :3, :]
     if found.swayed is not None:
         gap = gap + found.swayed[..., 0, :, :] @ swayed
-    hung = np.linalg.solve(found.soft, gap)
-    unit = (law.rigidity / law.length)[:, None, None, None]
-    elastic = _transpose(amplitudes) @ (law.form[:, None] @ amplitudes) + _transpose(gap) @ hung
-    rest = _transpose(amplitudes) @ ((found.hessian - law.form[:, None]) @ amplitudes)
-    if found.hung is not None and found.swayed is not None:
-        mixed = _transpose(swayed) @ (found.hung @ amplitudes)
-        rest = rest - mixed - _transpose(mixed) - _transpose(swayed) @ (found.swayed[..., 1, :, :] @ swayed)
-    turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])
-    rest = unit * rest
-    rest[..., :12, :12] += turned
-    masses = _mass(group, bent, amplitudes, hung, swayed)
-    return {
-        name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
-        for place, name in enumerate(group.names)
-    }
+    return _Inside(amplitudes, gap, np.linalg.solve(found.soft, gap), swayed)
 
 
 def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array]:
@@ -214,25 +233,82 @@ def _constrain(form: Array, turning: Array, turned: Array) -> tuple[Array, Array
     return follow, root[..., None] * _transpose(vectors[..., 3:, :])
 
 
-def _mass(group: Flexures, bent: Bent, amplitudes: Array, hung: Array, swayed: Array) -> Array:
+def _mass(group: Flexures, bent: Bent, inside: _Inside) -> Array:
     """Mass (l, b, 12 + m, 12 + m) of flexures: every point moves with its start, bends and stretches with its amplitudes."""
     law, lies = group.law, bent.lies
-    paths, turned, soft = mode_paths(law, lies)
-    length = law.length[:, None, None, None, None]
-    frame = bent.frame[..., None, :, :]
-    count = amplitudes.shape[-1]
-    inside = paths @ amplitudes[..., None, : paths.shape[-1], :] - soft[..., 0, :, :, :] @ hung[..., None, :, :]
-    inside = inside + soft[..., 1, :, :, :] @ swayed[..., None, :, :]
-    place = length * (frame @ inside)
-    turn = frame @ (turned @ amplitudes[..., None, : paths.shape[-1], :])
-    arm = bent.onset[..., None, :] + length[..., 0] * (frame @ lies.place[..., None])[..., 0]
-    place = place + _pad(np.concatenate([np.broadcast_to(np.eye(3), (*arm.shape, 3)), -cross_matrix(arm)], axis=-1), count)
-    turn = turn + _pad(np.concatenate([np.zeros((*arm.shape, 3)), np.broadcast_to(np.eye(3), (*arm.shape, 3))], axis=-1), count)
-    local = _transpose(lies.turn) @ (_transpose(frame) @ turn)
+    place, turn = _points(group, bent, inside)
+    local = _transpose(lies.turn) @ (_transpose(bent.frame[..., None, :, :]) @ turn)
     weights = law.length[:, None, None] * lies.rule.weights
     along, about = (weights[..., None] * law.inertia[:, None, :, part] for part in (slice(0, 1), slice(1, 4)))
     moved = np.einsum("lbnci,lbncj->lbij", place, along[..., None] * place)
     return moved + np.einsum("lbnci,lbncj->lbij", local, about[..., None] * local)
+
+
+def _points(group: Flexures, bent: Bent, inside: _Inside) -> tuple[Array, Array]:
+    """How the points of a flexure move and turn (l, b, n, 3, 12 + m) in the stage's axes by its coordinates."""
+    law, lies, amplitudes = group.law, bent.lies, inside.amplitudes
+    paths, turned, soft = mode_paths(law, lies)
+    frame = bent.frame[..., None, :, :]
+    count = amplitudes.shape[-1]
+    moved = paths @ amplitudes[..., None, : paths.shape[-1], :] - soft[..., 0, :, :, :] @ inside.hung[..., None, :, :]
+    moved = moved + soft[..., 1, :, :, :] @ inside.swayed[..., None, :, :]
+    place = law.length[:, None, None, None, None] * (frame @ moved)
+    turn = frame @ (turned @ amplitudes[..., None, : paths.shape[-1], :])
+    arm = _arms(group, bent)
+    place = place + _pad(np.concatenate([np.broadcast_to(np.eye(3), (*arm.shape, 3)), -cross_matrix(arm)], axis=-1), count)
+    return place, turn + _pad(np.concatenate([np.zeros((*arm.shape, 3)), np.broadcast_to(np.eye(3), (*arm.shape, 3))], axis=-1), count)
+
+
+def _arms(group: Flexures, bent: Bent) -> Array:
+    """Arms (l, b, n, 3) from the first bodies' references to the points of flexures."""
+    reach = group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
+    return bent.onset[..., None, :] + reach
+
+
+def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tuple[Array, dict[str, Array]]:
+    """What shapes (n, k) of the coordinates of `linearise(state, locked=locked)` do in its first case.
+
+    Twists of bodies about their references (k, bodies, 6), and of flexures' centre lines by name (k, points + 2, 6), ends included.
+    """
+    model = state.model
+    whole = assemble(model, state.pose, state.loads, state.hold)
+    inside = [_inside(group, bent) for group, bent in zip(model.flexures, whole.bent, strict=True)]
+    own = {name: each.amplitudes.shape[-1] - 12 for group, each in zip(model.flexures, inside, strict=True) for name in group.names}
+    order, joins, (rows, _) = _Coordinates(model, own), _joins(model), _hinges(state)
+    basis, _ = _free(_locked(state, order, rows, [state.held.index(name) for name in locked]), order)
+    full = basis.reshape(-1, *basis.shape[-2:])[0] @ shapes
+    lines: dict[str, Array] = {}
+    for group, bent, each in zip(model.flexures, whole.bent, inside, strict=True):
+        place, turn = _points(group, bent, each)
+        for number, name in enumerate(group.names):
+            moved = order.link(name, joins[name]) @ full
+            points = np.concatenate([place[number, 0], turn[number, 0]], axis=-2) @ moved
+            lines[name] = np.moveaxis(np.concatenate(_with_ends(bent, number, points, moved)), -1, 0)
+    return np.moveaxis(full[: model.freedoms].reshape(-1, 6, full.shape[-1]), -1, 0), lines
+
+
+def _with_ends(bent: Bent, number: int, points: Array, moved: Array) -> tuple[Array, Array, Array]:
+    """Twists of the start, the points and the end of a flexure, (..., 6, k), by motions (12 + m, k) of its coordinates."""
+    start, end = (transport(arm[number, 0]) @ moved[part] for arm, part in ((bent.onset, slice(0, 6)), (bent.arm, slice(6, 12))))
+    return start[None], points, end[None]
+
+
+def flexure_motions(group: Flexures, bent: Bent, moved: Array, inner: Array) -> dict[str, Array]:
+    """Twists (points + 2, 6) of centre lines in the first case, by bodies' (n + 1, 6) and amplitudes and forces (l, q + 6) within."""
+    law = group.law
+    paths, turned, soft = (each[:, 0] for each in mode_paths(law, bent.lies))
+    frame, arms = bent.frame[:, 0, None], _arms(group, bent)[:, 0]
+    size, count = paths.shape[-1], law.form.shape[-1]
+    bent_by, force = inner[:, None, :size, None], inner[:, None, count : count + 3, None]
+    place = law.length[:, None, None] * (frame @ (paths @ bent_by + soft[:, 0] @ force))[..., 0]
+    turn = (frame @ (turned @ bent_by))[..., 0]
+    found: dict[str, Array] = {}
+    for number, name in enumerate(group.names):
+        both = np.concatenate([moved[group.first[number]], moved[group.second[number]]])[:, None]
+        carried = transport(arms[number]) @ both[:6]
+        points = carried + np.concatenate([place[number], turn[number]], axis=-1)[..., None]
+        found[name] = np.concatenate(_with_ends(bent, number, points, both))[..., 0]
+    return found
 
 
 def _pad(matrix: Array, count: int) -> Array:
@@ -370,6 +446,11 @@ def _locked_rows(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapp
 def _held_rows(state: State, order: _Coordinates, locked: list[int]) -> list[Array]:
     """Held coordinates that stay held, by all coordinates (b, 1, n) each."""
     return [gradients(state.hold, place, state.pose)[1][:, None] @ order.body(int(state.hold.body[place])) for place in locked]
+
+
+def _locked(state: State, order: _Coordinates, rows: Array, locked: list[int]) -> Array:
+    """What may not move (b, c, n): locked freedoms of links, and held coordinates, by number, that stay so."""
+    return np.concatenate([_locked_rows(state.model, rows, order, _joins(state.model)), *_held_rows(state, order, locked)], axis=-2)
 
 
 def _free(locked: Array, order: _Coordinates) -> tuple[Array, tuple[int, ...]]:

@@ -25,7 +25,7 @@ from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.stage import Label, Scene, scene
 from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
-from flexstage.show.viewer.motions import Motion, Skeleton, axis_motions, deflections, mode_motions, stroke_motions
+from flexstage.show.viewer.motions import Course, Motion, Skeleton, axis_motions, deflections, mode_motions, stroke_motions
 from flexstage.show.viewer.parts import Describer, Thing
 
 FORMAT = 1
@@ -60,7 +60,9 @@ class StageData:
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Largest displacement [m] of any vertex in a motion."""
+        """Largest displacement [m] of any vertex in a motion; of large displacements of any body's reference and any node."""
+        if motion.course is not None:
+            return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
         return float(np.sqrt(np.max(np.sum(moved**2, axis=1), initial=0.0)))
 
@@ -74,6 +76,7 @@ class StageData:
             "bodies": list(self.bodies),
             "platform": self.bodies.index(PLATFORM) if PLATFORM in self.bodies else 0,
             "reference": self.bones.references.get(PLATFORM, np.zeros(3)).tolist(),
+            "references": [self.bones.references.get(name, np.zeros(3)).tolist() for name in self.bodies],
             "parts": [_part(thing) for thing in self.things],
             "labels": [self._label(each) for each in self.labels],
             "links": list(self.links),
@@ -100,6 +103,8 @@ class StageData:
         if motion.energy is not None:
             shares = [motion.energy.get(self.things[number].name, np.nan) for number in self.links]
             said["energy"] = packed(np.array(shares), "<f4")
+        if motion.course is not None:
+            said["course"] = _course(motion.course)
         return said
 
 
@@ -203,6 +208,14 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
         "triangles": packed(mesh.triangles, wide),
         "edges": packed(mesh.edges, wide),
     }
+
+
+def _course(course: Course) -> dict[str, Any]:
+    said: dict[str, Any] = {"points": len(course.said), "frames": course.frames.tolist(), "poses": packed(course.poses, "<f4")}
+    if course.shape is not None:
+        said["shape"] = packed(course.shape, "<f4")
+    curves = [{"name": each.name, "unit": each.unit, "values": packed(each.values, "<f4")} for each in course.curves]
+    return said | {"curves": curves, "beyond": [list(each) for each in course.beyond], "said": list(course.said)}
 
 
 def packed(values: Array | Sequence[float], form: str) -> str:

@@ -31,6 +31,46 @@ class Group(Enum):
     STROKE = "stroke"
     AXIS = "axis"
     DEFLECTION = "deflection"
+    PATH = "path"
+    STATE = "state"
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Something that is told of every point of a path: its `values` (p,) in its display `unit`, NaN where unknown."""
+
+    name: str
+    unit: str
+    values: Array
+
+    @property
+    def span(self) -> str:
+        """From the first value to the last."""
+        first, last = (to_typography(number(float(value), 4)) for value in (self.values[0], self.values[-1]))
+        return f"{first} … {last} {self.unit}".strip()
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Large displacements through the points of a path, or a small motion about one.
+
+    `poses` (f, rows, 6) are displacement and rotation vector of each body about its reference, the ground's first, then of the nodes along
+    what bends, piece by piece; `frames` (f,) the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
+    pose. `curves` begin with what is driven. `beyond` are the part numbers that are beyond a limit at every point, `said` why.
+    """
+
+    frames: Array
+    poses: Array
+    shape: Array | None
+    curves: tuple[Curve, ...]
+    beyond: tuple[tuple[int, ...], ...]
+    said: tuple[str, ...]
+
+    @property
+    def reach(self) -> float:
+        """Largest displacement [m] of a body's reference or a node."""
+        moved = self.poses if self.shape is None else self.shape
+        return float(np.sqrt(np.max(np.sum(moved[..., :3] ** 2, axis=-1), initial=0.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +79,7 @@ class Motion:
 
     `name` is unique in its group, `remark` says more; `frequency` [Hz] is that of a mode. `energy` is the share of the strain energy by
     link, and of all else that is elastic by its name; empty where it is not known. The size of a motion means something but for modes.
+    Motions of large displacements, along a path or about a state, have a `course` instead of twists.
     """
 
     group: Group
@@ -48,6 +89,7 @@ class Motion:
     remark: str = ""
     frequency: float | None = None
     energy: Mapping[str, float] | None = None
+    course: Course | None = None
 
 
 @dataclass(frozen=True, eq=False)

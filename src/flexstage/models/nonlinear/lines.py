@@ -1,0 +1,95 @@
+"""Where the centre lines of flexures lie at a state, and how they move in its modes and as it gives way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.condense import system
+from flexstage.models.nonlinear.critical import Critical
+from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.graph import Bent, assemble, follow
+from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
+from flexstage.models.nonlinear.stage import Flexures
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A flexure's centre line at `shares` (s,) of its length, from 0 to 1, in b cases.
+
+    `place` (b, s, 3) [m] in the stage's frame, `turn` (b, s, 3, 3) is how its sections have turned since they were drawn.
+    """
+
+    shares: Array
+    place: Array
+    turn: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """Small motions about a state, k of them: twists of bodies about their references (k, n, 6), and of flexures' centre lines (k, s, 6)."""
+
+    bodies: Array
+    lines: dict[str, Array]
+
+
+def centre_lines(state: State) -> dict[str, Line]:
+    """The centre lines of all flexures by name, cases in a row: at the points of their rule, and at both ends, which lie on their bodies.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.equilibrium import equilibrium
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = centre_lines(equilibrium(nonlinear(parallelogram()), {"platform.fx": 100.0}))
+    >>> found["left"].place.shape
+    (1, 12, 3)
+    """
+    return dict(_lines(state))
+
+
+def _lines(state: State) -> Iterator[tuple[str, Line]]:
+    whole = assemble(state.model, state.pose, state.loads, state.hold)
+    for group, bent in zip(state.model.flexures, whole.bent, strict=True):
+        shares = np.concatenate([[0.0], bent.lies.rule.points, [1.0]])
+        start = np.moveaxis(state.pose.position[:, group.first], 1, 0) + bent.onset
+        end = start - bent.onset + bent.lever
+        inner = start[..., None, :] + group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
+        place = np.concatenate([start[..., None, :], inner, end[..., None, :]], axis=-2)
+        drawn = np.swapaxes(group.turn, -1, -2)[:, None, None]
+        turned = bent.frame[..., None, :, :] @ bent.lies.turn @ drawn
+        ends = (np.moveaxis(state.pose.turn[:, each], 1, 0)[..., None, :, :] for each in (group.first, group.second))
+        first, second = ends
+        turn = np.concatenate([first, turned, second], axis=-3)
+        for number, name in enumerate(group.names):
+            yield name, Line(shares, place[number], turn[number])
+
+
+def mode_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> Motions:
+    """What shapes (n, k) of the coordinates of `linearise(state, locked=locked)` do, in the first case; real parts."""
+    bodies, lines = modal_motions(state, np.real(shapes), locked)
+    return Motions(bodies, lines)
+
+
+def critical_motion(found: Critical) -> Motions:
+    """How a stage gives way, about its last stable state: bodies, and flexures as they follow them; one that gives way by itself bends so."""
+    state = found.state
+    whole = assemble(state.model, state.pose, state.loads, state.hold)
+    moved = np.zeros((1, len(state.model.bodies) + 1, 6))
+    own = found.link != ""
+    moved[0, :-1] = 0.0 if own else found.shape
+    lines: dict[str, Array] = {}
+    for group, bent in zip(state.model.flexures, whole.bent, strict=True):
+        inner = (follow(group, bent, moved) - bent.answer.still)[:, 0]
+        if found.link in group.names:
+            place = group.names.index(found.link)
+            inner[place] = _softest(bent, place)
+        lines |= flexure_motions(group, bent, moved[0], inner)
+    return Motions(moved[:, :-1], {name: each[None] for name, each in lines.items()})
+
+
+def _softest(bent: Bent, place: int) -> Array:
+    """Amplitudes, force and moment of the own system of one flexure that are nearest to no resistance."""
+    matrix = system(bent.tangent)[place, 0]
+    return np.linalg.svd(matrix)[2][-1]

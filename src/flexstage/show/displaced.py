@@ -1,0 +1,79 @@
+"""Reports of stages away from their drawn position: a stroke, and what gives way under a load; HTML files that stand alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import flexstage
+from flexstage.analysis.stroke import Stroke
+from flexstage.base.digest import digest
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.nonlinear.critical import Critical
+from flexstage.models.nonlinear.path import Path
+from flexstage.show.display import format_value, to_typography
+from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.stroke import stroke_figure
+from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, page, section
+from flexstage.show.scene.stage import scene
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import drawing_section, stage_section
+from flexstage.show.table import matrix_table, result_tables
+from flexstage.show.viewer.course import buckling_data, limits, stroke_data, units_of
+from flexstage.show.viewer.data import StageData
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+
+def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
+    """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
+    seen, data = scene(mechanism), stroke_data(mechanism, path, found)
+    said = limits(found)
+    beyond = [each for each in said if each]
+    columns = [place for place, name in enumerate(found.along.columns) if name != "unstable"]
+    names, units = (tuple(each[place] for place in columns) for each in (found.along.columns, units_of(found)))
+    figure = stroke_figure(names, units, found.along.values[:, columns], _flags(said))
+    words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
+    sections = (
+        stage_section(seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."),
+        section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
+        caveat_section(mechanism, found.cautions),
+        section("Point by point", list(result_tables(found))),
+        drawing_section(mechanism, seen),
+    )
+    good = not beyond
+    text = words if good else f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}"
+    return _page(mechanism, "A stroke at large displacements", found.provenance, (Headline(to_typography(text), good), sections), data)
+
+
+def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
+    """What gives way under a load, as a page of HTML in which it moves so, about its last stable state."""
+    seen, data = scene(mechanism), buckling_data(mechanism, found, to_typography(load))
+    facts = [
+        Fact("factor on the load", format_value(found.factor, "1"), to_typography(load)),
+        Fact("kind", found.kind.value, "the load cannot pass it" if found.kind.value == "limit" else "it leaves into another motion"),
+        *([Fact("by itself", found.link, "a flexure, its ends at rest")] if found.link else []),
+    ]
+    shape = Matrix(found.shape, found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
+    sections = (
+        stage_section(seen, motion="state buckling", said="The shape has no size of its own: it is drawn as large as the slider says."),
+        section("What gives way", [Facts(tuple(facts)), matrix_table("Shape", shape)]),
+        caveat_section(mechanism),
+        drawing_section(mechanism, seen),
+    )
+    good = found.factor > 1.0
+    headline = Headline(to_typography(f"{load}: gives way at {format_value(found.factor, '1', 4)} times the load"), good)
+    return _page(mechanism, "What gives way", found.state.model.provenance, (headline, sections), data)
+
+
+def _flags(said: tuple[str, ...]) -> Array:
+    return np.array([each != "" for each in said])
+
+
+def _page(
+    mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline, tuple[Section | None, ...]], data: StageData
+) -> str:
+    headline, sections = told
+    origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    head = Head(mechanism.name or "stage", kind, origin, headline)
+    return page(head, [each for each in sections if each is not None], {"stage": data})

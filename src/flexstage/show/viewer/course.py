@@ -1,0 +1,268 @@
+"""A stage away from its drawn position, as viewers play it: where everything is along a path, what shakes or gives way at a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from flexstage.analysis.modes import Modes
+from flexstage.analysis.stance import Stance
+from flexstage.analysis.stroke import Stroke
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.nonlinear.critical import Critical
+from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.lines import Line, Motions, centre_lines, critical_motion, mode_motions
+from flexstage.models.nonlinear.path import Path
+from flexstage.show.display import display_unit_of, format_value, to_typography
+from flexstage.show.viewer.data import StageData, still_data
+from flexstage.show.viewer.motions import Course, Curve, Group, Motion
+from flexstage.spatial.rotation import exponential, logarithm
+
+NODES = 12
+"""Places along a link at which it is told where it lies."""
+_BYTES = 400_000
+"""What the poses of a path may take in a page."""
+_MODES = 6
+_Label: TypeAlias = tuple[str, str, str, "float | None"]
+
+
+def stroke_data(mechanism: Mechanism, path: Path, found: Stroke, *, text: str = "") -> StageData:
+    """A stage along a path: one motion through its points, and the first modes at its last one that is stable.
+
+    Bodies lie where they are; flexures along their centre lines, what is only known by its 6x6 evenly between its ends. Points without an
+    equilibrium are skipped.
+    """
+    still = still_data(mechanism, text=text)
+    motions = [_along(still, path, found), *_modes_there(still, path)]
+    return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.cautions))
+
+
+def buckling_data(mechanism: Mechanism, found: Critical, said: str, *, text: str = "") -> StageData:
+    """A stage as it gives way under a load, `said`, drawn about its last stable state."""
+    still = still_data(mechanism, text=text)
+    label = f"{found.kind.value}  × {format_value(found.factor, '1', 4)}"
+    told = _about(still, found.state, critical_motion(found), [("buckling", to_typography(label), said, None)])
+    return replace(still, motions=tuple(told))
+
+
+def modes_at_data(mechanism: Mechanism, there: Stance, found: Modes, said: str, *, count: int = 12) -> StageData:
+    """A stage with its modes about where it stands; `said` is where that is."""
+    still = still_data(mechanism)
+    moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
+    return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
+
+
+def _along(still: StageData, path: Path, found: Stroke) -> Motion:
+    known = np.flatnonzero(path.state.converged)
+    poses = _poses(still, path.state)
+    most = max(2, _BYTES // (24 * poses.shape[1]))
+    frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
+    columns, values = found.along.columns, found.along.values
+    units = units_of(found)
+    curves = tuple(_curve(name, values[:, place], units[place]) for place, name in enumerate(columns) if name != "unstable")
+    numbers = {thing.name: number for number, thing in enumerate(still.things)}
+    course = Course(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
+    return Motion(Group.PATH, path.drive, f"{path.drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
+
+
+def units_of(found: Stroke) -> tuple[str, ...]:
+    """Units of a stroke's columns."""
+    unit = found.along.unit
+    return (unit,) * len(found.along.columns) if isinstance(unit, str) else unit[0]
+
+
+def _curve(name: str, values: Array, unit: str) -> Curve:
+    known = np.abs(values[np.isfinite(values)])
+    form = display_unit_of(unit, float(np.max(known, initial=0.0)))
+    return Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
+
+
+def limits(found: Stroke) -> tuple[str, ...]:
+    """What is beyond a limit at each point, in words; empty where nothing is."""
+    return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
+
+
+def _over(found: Stroke, point: int) -> list[int]:
+    """The flexures whose stress is above their material's limit."""
+    strained = found.strained
+    return [place for place, limit in enumerate(strained.limit) if strained.stress[point, place] > limit]
+
+
+def _words(found: Stroke, point: int) -> Iterator[str]:
+    strained = found.strained
+    for place in _over(found, point):
+        stress, limit = (format_value(float(each), "Pa", 4) for each in (strained.stress[point, place], strained.limit[place]))
+        yield f"{strained.names[place]}: {stress} of {limit}"
+    loose = found.along.values[point, found.along.columns.index("unstable")]
+    if np.isnan(loose):
+        yield "no equilibrium was found"
+    elif loose > 0:
+        yield "the free stage is not stable here"
+
+
+def _parts_beyond(found: Stroke, numbers: Mapping[str, int]) -> tuple[tuple[int, ...], ...]:
+    names = found.strained.names
+    return tuple(
+        tuple(sorted(numbers[names[place]] for place in _over(found, point) if names[place] in numbers))
+        for point in range(len(found.along.values))
+    )
+
+
+def _modes_there(still: StageData, path: Path) -> Iterator[Motion]:
+    """The first modes at the last point that is stable without what holds it."""
+    from flexstage.models.linear.eigen import eigen
+    from flexstage.models.nonlinear.linearise import linearise
+
+    stable = np.flatnonzero(path.state.converged & (path.motions == 0))
+    if not len(stable):
+        return
+    last = path.state.case(int(stable[-1]))
+    found = eigen(linearise(last))
+    kept = np.flatnonzero(np.nan_to_num(found.values) > 0.0)[:_MODES]
+    frequencies = np.sqrt(found.values[kept]) / (2.0 * np.pi)
+    moved = mode_motions(last, found.shapes[:, kept])
+    yield from _about(still, last, moved, _labels(frequencies, _told(path, int(stable[-1]))))
+
+
+def _told(path: Path, point: int) -> str:
+    """Where a point of a path is, in words."""
+    channel = next((each.unit for each in path.state.model.inputs if each.name == path.drive), None)
+    unit = channel or ("rad" if path.drive.rpartition(".")[2].startswith("r") else "m")
+    return to_typography(f"at {path.drive} = {format_value(float(path.values[point]), unit, 4)}")
+
+
+def _labels(frequencies: Array, said: str) -> list[_Label]:
+    return [
+        (str(number + 1), to_typography(f"{number + 1}  {format_value(float(each), 'Hz', 4)}"), said, float(each))
+        for number, each in enumerate(frequencies)
+    ]
+
+
+def _about(
+    still: StageData, state: State, moved: Motions, labels: Sequence[_Label]
+) -> Iterator[Motion]:
+    """Small motions about a state, with their names, labels, remarks and frequencies."""
+    poses = _poses(still, state)[:1]
+    lines = {name: Line(line.shares, line.place[:1], line.turn[:1]) for name, line in centre_lines(state).items()}
+    order = [still.bodies.index(name) for name in state.model.bodies]
+    for number, (name, label, remark, frequency) in enumerate(labels):
+        bodies = np.zeros((len(still.bodies), 6))
+        bodies[order] = moved.bodies[number]
+        inside = {each: rows[number] for each, rows in moved.lines.items()}
+        shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, (lines, inside)) for carrier in _bending(still))])
+        course = Course(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
+        yield Motion(Group.STATE, name, label, np.zeros((0, 6)), remark, frequency, course=course)
+
+
+@dataclass(frozen=True, eq=False)
+class _Carrier:
+    """A piece between two bodies: what it is part of, its bodies, and its drawn ends (2, 3)."""
+
+    name: str
+    bodies: tuple[int, int]
+    ends: Array
+
+
+def _bending(still: StageData) -> list[_Carrier]:
+    """The pieces of the mesh that bend, in its order."""
+    mesh = still.mesh
+    first = {int(carrier): int(part) for carrier, part in zip(mesh.carrier[::-1], mesh.part[::-1], strict=True)}
+    return [
+        _Carrier(still.things[first[number]].name, (int(one), int(other)), mesh.ends[number])
+        for number, (one, other) in enumerate(mesh.bodies)
+        if one != other
+    ]
+
+
+def _poses(still: StageData, state: State) -> Array:
+    """Where everything is (b, rows, 6): displacement and rotation vector of each body, the ground's first, and of the nodes of what bends."""
+    count = len(state.pose.position)
+    position, turn = np.zeros((count, len(still.bodies), 3)), np.broadcast_to(np.eye(3), (count, len(still.bodies), 3, 3)).copy()
+    model = state.model
+    for name in model.bodies:
+        place, number = still.bodies.index(name), model.body(name)
+        position[:, place] = state.pose.position[:, number] - model.reference[number]
+        turn[:, place] = state.pose.turn[:, number]
+    references = _references(still)
+    lines = centre_lines(state)
+    rows = [np.concatenate([position, _vectors(turn)], axis=-1)]
+    at = _moved_point(references, position, turn)
+    rows += [_piece(carrier, lines.get(carrier.name), at, turn) for carrier in _bending(still)]
+    return np.nan_to_num(np.concatenate(rows, axis=1))
+
+
+def _references(still: StageData) -> Array:
+    return np.stack([np.zeros(3) if name == GROUND else still.bones.references[name] for name in still.bodies])
+
+
+_At = Callable[[int, Array], Array]
+
+
+def _moved_point(references: Array, position: Array, turn: Array) -> _At:
+    def at(body: int, point: Array) -> Array:
+        return references[body] + position[:, body] + turn[:, body] @ (point - references[body])
+
+    return at
+
+
+def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
+    """Displacements and rotation vectors (b, NODES, 6) along a piece: of a flexure its centre line, else evenly between its ends."""
+    shares = np.linspace(0.0, 1.0, NODES)
+    drawn = carrier.ends[0] + shares[:, None] * (carrier.ends[1] - carrier.ends[0])
+    if line is not None:
+        place, vectors = _resampled(line, shares)
+    else:
+        first, second = (at(body, end) for body, end in zip(carrier.bodies, carrier.ends, strict=True))
+        place = first[:, None] + shares[:, None] * (second - first)[:, None]
+        one, other = (turn[:, body] for body in carrier.bodies)
+        half = logarithm(np.swapaxes(one, -1, -2) @ other)
+        vectors = _vectors(one[:, None] @ exponential(shares[:, None] * half[:, None]))
+    return np.concatenate([place - drawn, vectors], axis=-1)
+
+
+def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
+    """Places and rotation vectors (b, NODES, 3) of a centre line, whose slope is that of its sections."""
+    vectors = _vectors(line.turn)
+    cut = [np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each]) for each in (line.place, vectors)]
+    return cut[0], cut[1]
+
+
+def _vectors(turn: Array) -> Array:
+    return logarithm(turn)
+
+
+def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: tuple[Mapping[str, Line], Mapping[str, Array]]) -> Array:
+    """Small motions (NODES, 6) along a piece, by those of bodies and of centre lines."""
+    shares = np.linspace(0.0, 1.0, NODES)
+    known = lines[1].get(carrier.name)
+    if known is not None:
+        where = lines[0][carrier.name].shares
+        return np.stack([np.interp(shares, where, row) for row in known.T], axis=-1)
+    references = _references(still)
+    ends = [
+        np.concatenate([bodies[body, :3] + np.cross(bodies[body, 3:], end - references[body]), bodies[body, 3:]])
+        for body, end in zip(carrier.bodies, carrier.ends, strict=True)
+    ]
+    return ends[0] + shares[:, None] * (ends[1] - ends[0])
+
+
+def play(mechanism: Mechanism, path: Path) -> Any:
+    """The stage as it moves along a path at large displacements, to turn and to play: notebooks show it, `save` writes it as a page.
+
+    Curves of force, stiffness, parasitic motion and frequencies stand below, with a cursor; what is beyond a limit is red. Small paths are
+    drawn larger, and the factor stands beside them.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> fs.play(stage, fs.path(fs.nonlinear(stage), "platform.x", [0.0, 1e-4])).html[:15]
+    '<!doctype html>'
+    """
+    from flexstage.analysis.stroke import stroke
+    from flexstage.show.viewer.view import view_of
+
+    data = stroke_data(mechanism, path, stroke(path))
+    return view_of(mechanism, data, f"path {path.drive}")
