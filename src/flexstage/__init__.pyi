@@ -271,6 +271,9 @@ from flexstage.show.sheets import (
     to_pandas as to_pandas,
     to_xarray as to_xarray,
 )
+from flexstage.show.viewer.course import (
+    play as play,
+)
 from flexstage.show.viewer.view import (
     View as View,
     view as view,

@@ -263,3 +263,24 @@ def test_many_links_are_drawn_picked_and_turned(sheet: Page, count: int) -> None
     assert moved == 8.0
     there = middle(data, "platform.plate", twists.astype(float), 8.0)
     assert "platform.plate" in asked(page, "viewer.look('top'); return probe.partsAt(...probe.project(given[0]));", there)
+
+
+def test_a_path_plays_and_its_cursor_follows(opened: Open, tmp_path: Path) -> None:
+    stage = fs.case("parallelogram")
+    path = fs.path(fs.nonlinear(stage), "platform.x", np.linspace(0.0, 3e-3, 3), weight=0.0)
+    page = shown(opened(fs.play(stage, path).save(tmp_path / "path.html"), reduced_motion="reduce"))
+    viewer = f"{PLACE}.flexstage"
+    figures = f"{viewer}.curves.shadowRoot"
+    seen = []
+    for phase in (0.0, 0.5, 1.0):
+        page.evaluate(f"{viewer}.setPhase({phase})")
+        assert float(page.evaluate(f"{figures}.querySelector('.cursor').getAttribute('x1')")) == pytest.approx(100.0 * phase)
+        seen.append((page.evaluate(f"{viewer}.picture()"), page.evaluate(f"{figures}.querySelector('output').textContent")))
+    assert len({picture for picture, _ in seen}) == 3
+    assert [value for _, value in seen] == ["0 mm", "1.5 mm", "3 mm"]
+    assert page.evaluate(f"{viewer}.setPhase(0.2), {viewer}.setPlaying(true)") is None
+    for _ in range(100):
+        if page.evaluate(f"{viewer}.probe.phase > 0.21"):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail("it does not play")

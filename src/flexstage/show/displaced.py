@@ -20,7 +20,7 @@ from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import matrix_table, result_tables
-from flexstage.show.viewer.course import buckling_data, limits, stroke_data, units_of
+from flexstage.show.viewer.course import buckling_data, curves_of, limits, stroke_data
 from flexstage.show.viewer.data import StageData
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -30,15 +30,15 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
     seen, data = scene(mechanism), stroke_data(mechanism, path, found)
     said = limits(found)
     beyond = [each for each in said if each]
-    columns = [place for place, name in enumerate(found.along.columns) if name != "unstable"]
-    names, units = (tuple(each[place] for place in columns) for each in (found.along.columns, units_of(found)))
-    figure = stroke_figure(names, units, found.along.values[:, columns], _flags(said))
+    figure = stroke_figure(curves_of(found), _flags(said))
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
     sections = (
-        stage_section(seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."),
+        stage_section(
+            seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
+        ),
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
         caveat_section(mechanism, found.cautions),
-        section("Point by point", list(result_tables(found))),
+        section("Point by point", [*result_tables(found)]),
         drawing_section(mechanism, seen),
     )
     good = not beyond
@@ -70,9 +70,7 @@ def _flags(said: tuple[str, ...]) -> Array:
     return np.array([each != "" for each in said])
 
 
-def _page(
-    mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline, tuple[Section | None, ...]], data: StageData
-) -> str:
+def _page(mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline, tuple[Section | None, ...]], data: StageData) -> str:
     headline, sections = told
     origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", flexstage.__version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)

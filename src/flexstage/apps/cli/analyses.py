@@ -17,6 +17,7 @@ from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.random_response import random_response
+from flexstage.analysis.stance import Stance
 from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY

@@ -75,7 +75,9 @@ class State:
         """One case, by its number in a row."""
         cases = np.array([number])
         status, iterations, residual = (each.ravel()[number] for each in (self.status, self.iterations, self.residual))
-        return State(self.model, self.loads.of(cases), self.hold.of(cases), self.pose.of(cases), (), status, iterations, residual, self.held)
+        return State(
+            self.model, self.loads.of(cases), self.hold.of(cases), self.pose.of(cases), (), status, iterations, residual, self.held
+        )
 
     def place(self, name: str) -> tuple[int, Array]:
         """The number of a body, and the drawn arm of its reference or of a named point on it."""

@@ -202,7 +202,7 @@ def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
 
 @dataclass(frozen=True, eq=False)
 class _Inside:
-    """What follows the coordinates of a flexure, the motions of its bodies and its own: amplitudes (l, b, q, 12 + m), gap, force, weight."""
+    """What follows the coordinates of a flexure, its bodies' and its own: amplitudes (l, b, q, 12 + m), gap, force, weight."""
 
     amplitudes: Array
     gap: Array

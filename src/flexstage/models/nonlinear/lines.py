@@ -13,7 +13,6 @@ from flexstage.models.nonlinear.critical import Critical
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, follow
 from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
-from flexstage.models.nonlinear.stage import Flexures
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +29,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Small motions about a state, k of them: twists of bodies about their references (k, n, 6), and of flexures' centre lines (k, s, 6)."""
+    """Small motions about a state: twists of bodies about their references (k, n, 6), and of flexures' centre lines (k, s, 6)."""
 
     bodies: Array
     lines: dict[str, Array]
@@ -55,7 +54,9 @@ def _lines(state: State) -> Iterator[tuple[str, Line]]:
         shares = np.concatenate([[0.0], bent.lies.rule.points, [1.0]])
         start = np.moveaxis(state.pose.position[:, group.first], 1, 0) + bent.onset
         end = start - bent.onset + bent.lever
-        inner = start[..., None, :] + group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
+        inner = (
+            start[..., None, :] + group.law.length[:, None, None, None] * (bent.frame[..., None, :, :] @ bent.lies.place[..., None])[..., 0]
+        )
         place = np.concatenate([start[..., None, :], inner, end[..., None, :]], axis=-2)
         drawn = np.swapaxes(group.turn, -1, -2)[:, None, None]
         turned = bent.frame[..., None, :, :] @ bent.lies.turn @ drawn
@@ -73,7 +74,7 @@ def mode_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> Mot
 
 
 def critical_motion(found: Critical) -> Motions:
-    """How a stage gives way, about its last stable state: bodies, and flexures as they follow them; one that gives way by itself bends so."""
+    """How a stage gives way, about its last stable state: bodies, and flexures as they follow; or one flexure by itself."""
     state = found.state
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     moved = np.zeros((1, len(state.model.bodies) + 1, 6))

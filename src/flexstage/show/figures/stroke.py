@@ -2,43 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FAIL, FULL, SERIES, Margins, canvas, panels, style_context
+from flexstage.show.viewer.motions import Curve
 
 _ACROSS = 3
 _HEIGHT = 1.35
 
 
-def stroke_figure(columns: tuple[str, ...], units: tuple[str, ...], values: Array, beyond: Array) -> Any:
-    """Columns of `values` (p, c) over the first one, as a matplotlib Figure; points that are `beyond` (p,) a limit are shaded.
+def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
+    """Curves over the first one, as a matplotlib Figure; points that are `beyond` (p,) a limit are shaded.
 
-    >>> len(stroke_figure(("platform.x", "force"), ("m", "N"), np.array([[0.0, 0.0], [1e-3, 2.0]]), np.array([False, True])).axes)
+    >>> curves = (Curve("platform.x", "mm", np.array([0.0, 1.0])), Curve("force", "N", np.array([0.0, 2.0])))
+    >>> len(stroke_figure(curves, np.array([False, True])).axes)
     3
     """
-    count = len(columns) - 1
-    rows = -(-count // _ACROSS)
+    along, shown = curves[0], curves[1:]
+    rows = -(-len(shown) // _ACROSS)
     with style_context():
         figure = canvas(FULL, _HEIGHT * rows + 0.3)
         axes = panels(figure, rows, _ACROSS, Margins(left=0.62, across=0.62, down=0.34, bottom=0.42)).ravel()
-        along = display_unit_of(units[0], float(np.nanmax(np.abs(values[:, 0]))))
-        place = values[:, 0] * along.factor
-        for number, each in enumerate(axes):
-            if number >= count:
-                each.set_visible(False)
-                continue
-            known = values[:, number + 1]
-            form = display_unit_of(units[number + 1], float(np.nanmax(np.abs(known))) if np.isfinite(known).any() else 0.0)
-            each.plot(place, known * form.factor, color=SERIES[0])
+        for each in axes[len(shown) :]:
+            each.set_visible(False)
+        for each, curve in zip(axes, shown, strict=False):
+            each.plot(along.values, curve.values, color=SERIES[0])
             for point in np.flatnonzero(beyond):
-                each.axvspan(*_around(place, int(point)), color=FAIL, alpha=0.15, linewidth=0.0)
-            unit = "" if form.unit == "1" else f" [{to_typography(form.unit)}]"
-            each.set_ylabel(f"{columns[number + 1]}{unit}", fontsize=7)
-            each.set_xlabel(f"{columns[0]} [{to_typography(along.unit)}]", fontsize=7)
+                each.axvspan(*_around(along.values, int(point)), color=FAIL, alpha=0.15, linewidth=0.0)
+            each.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name, fontsize=7)
+            each.set_xlabel(f"{along.name} [{along.unit}]", fontsize=7)
             each.tick_params(labelbottom=True)
     return figure
 

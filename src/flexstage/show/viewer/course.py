@@ -17,7 +17,7 @@ from flexstage.models.nonlinear.critical import Critical
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.lines import Line, Motions, centre_lines, critical_motion, mode_motions
 from flexstage.models.nonlinear.path import Path
-from flexstage.show.display import display_unit_of, format_value, to_typography
+from flexstage.show.display import DisplayUnit, display_unit_of, format_value, to_typography
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.show.viewer.motions import Course, Curve, Group, Motion
 from flexstage.spatial.rotation import exponential, logarithm
@@ -27,6 +27,7 @@ NODES = 12
 _BYTES = 400_000
 """What the poses of a path may take in a page."""
 _MODES = 6
+_MILLIMETRES = DisplayUnit("mm", 1e3)
 _Label: TypeAlias = tuple[str, str, str, "float | None"]
 
 
@@ -61,23 +62,23 @@ def _along(still: StageData, path: Path, found: Stroke) -> Motion:
     poses = _poses(still, path.state)
     most = max(2, _BYTES // (24 * poses.shape[1]))
     frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
-    columns, values = found.along.columns, found.along.values
-    units = units_of(found)
-    curves = tuple(_curve(name, values[:, place], units[place]) for place, name in enumerate(columns) if name != "unstable")
+    curves = curves_of(found)
     numbers = {thing.name: number for number, thing in enumerate(still.things)}
     course = Course(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
     return Motion(Group.PATH, path.drive, f"{path.drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
 
 
-def units_of(found: Stroke) -> tuple[str, ...]:
-    """Units of a stroke's columns."""
-    unit = found.along.unit
-    return (unit,) * len(found.along.columns) if isinstance(unit, str) else unit[0]
+def curves_of(found: Stroke) -> tuple[Curve, ...]:
+    """What is told of every point, in display units: the drive first."""
+    unit, columns = found.along.unit, found.along.columns
+    units = (unit,) * len(columns) if isinstance(unit, str) else unit[0]
+    values = np.moveaxis(found.along.values, -1, 0)
+    return tuple(_curve(*each) for each in zip(columns, values, units, strict=True) if each[0] != "unstable")
 
 
 def _curve(name: str, values: Array, unit: str) -> Curve:
-    known = np.abs(values[np.isfinite(values)])
-    form = display_unit_of(unit, float(np.max(known, initial=0.0)))
+    largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
+    form = _MILLIMETRES if unit == "m" and largest >= 1e-3 else display_unit_of(unit, largest)
     return Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
 
 
@@ -142,9 +143,7 @@ def _labels(frequencies: Array, said: str) -> list[_Label]:
     ]
 
 
-def _about(
-    still: StageData, state: State, moved: Motions, labels: Sequence[_Label]
-) -> Iterator[Motion]:
+def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Label]) -> Iterator[Motion]:
     """Small motions about a state, with their names, labels, remarks and frequencies."""
     poses = _poses(still, state)[:1]
     lines = {name: Line(line.shares, line.place[:1], line.turn[:1]) for name, line in centre_lines(state).items()}
@@ -179,7 +178,7 @@ def _bending(still: StageData) -> list[_Carrier]:
 
 
 def _poses(still: StageData, state: State) -> Array:
-    """Where everything is (b, rows, 6): displacement and rotation vector of each body, the ground's first, and of the nodes of what bends."""
+    """Displacements and rotation vectors (b, rows, 6) of all bodies, the ground first, and of the nodes of what bends."""
     count = len(state.pose.position)
     position, turn = np.zeros((count, len(still.bodies), 3)), np.broadcast_to(np.eye(3), (count, len(still.bodies), 3, 3)).copy()
     model = state.model
@@ -227,7 +226,10 @@ def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
 def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
     """Places and rotation vectors (b, NODES, 3) of a centre line, whose slope is that of its sections."""
     vectors = _vectors(line.turn)
-    cut = [np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each]) for each in (line.place, vectors)]
+    cut = [
+        np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each])
+        for each in (line.place, vectors)
+    ]
     return cut[0], cut[1]
 
 
