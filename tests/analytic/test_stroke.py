@@ -30,6 +30,17 @@ def test_at_rest_its_stiffness_and_frequencies_are_those_of_the_drawn_stage():
     assert found.at("1", "stiffness") == pytest.approx(1.0 / compliance.at("platform.x", "platform.fx"), rel=1e-4)
 
 
+def test_what_the_drawn_stage_cannot_tell_of_long_travel():
+    """Weight W on four leaves: 6 W / (5 L) softer; 3 u^2 / (5 L) lower after u; and stiffer there, as its wide leaves curve across."""
+    stage = fs.case("long-travel-xy")
+    found = fs.stroke(fs.path(fs.nonlinear(stage), "platform.x", np.array([0.0, 5e-3]))).along
+    drawn = 1.0 / fs.statics(fs.lumped(stage)).compliance.at("platform.x", "platform.fx")
+    weight = 9.80665 * (1.0 + 2810.0 * (0.08 * 0.114 + 2.0 * (0.156 + 0.124) * 0.014) * 0.012 + 0.37)  # load, table, frame, coils
+    assert found.at("1", "stiffness") == pytest.approx(drawn - 1.2 * weight / 0.08, rel=0.02)
+    assert found.at("2", "stiffness") > 1.04 * found.at("1", "stiffness")
+    assert found.at("2", "platform.z") == pytest.approx(-0.6 * 5e-3**2 / 0.08, rel=0.03)
+
+
 def test_what_is_beyond_theory_is_told():
     told = fs.stroke(fs.path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).cautions
     assert told[0].where == "left"

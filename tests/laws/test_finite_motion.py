@@ -15,7 +15,16 @@ from tests.laws.strategies import actuated_platforms, moved, turns
 
 seeds = st.integers(0, 2**32 - 1)
 STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
-STROKELESS |= {"leaf-guide", "resonator", "quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "steering-mirror"}
+STROKELESS |= {
+    "leaf-guide",
+    "resonator",
+    "quad-suspension",
+    "voice-coil-xy",
+    "z-stage",
+    "spiral-stage",
+    "steering-mirror",
+    "long-travel-xy",
+}
 ACTUATED = [name for name in CASES if name not in STROKELESS]
 
 

@@ -42,6 +42,7 @@ EXPECTED = {
     "resonator": (1, 0),
     "quad-suspension": (1, 0),
     "voice-coil-xy": (2, 0),
+    "long-travel-xy": (2, 0),
     "three-rrr": (3, 3),
     "stewart": (6, 6),
     "scott-russell": (1, 1),

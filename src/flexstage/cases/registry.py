@@ -54,6 +54,7 @@ CASES: Mapping[str, Shipped] = {
             FileCase("resonator", "one axis: a plate of polysilicon on four straight legs, as published with formulas"),
             FileCase("quad-suspension", "one axis: four masses on blade springs and silica fibres, as published for a detector"),
             FileCase("voice-coil-xy", "two axes of long travel: carriages on double parallelograms, pushed by voice coils"),
+            FileCase("long-travel-xy", "two axes of +-5 mm on plain leaves, which weight presses and pulls: for large displacements"),
             FileCase("three-rrr", "x, y and rz: a plate on three legs of notches, levers and stacks (3-RRR)"),
             FileCase("stewart", "six axes: a Stewart platform on six amplified actuators"),
             FileCase("scott-russell", "one axis: a stack amplified by a Scott Russell linkage of notches"),
