@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import os
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,13 +15,18 @@ from flexstage.analysis.judge import judge
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
+from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.statics import statics
 from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
+from flexstage.apps.studio import solids
 from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
+from flexstage.apps.studio.writing import _in_its_line, write
+from flexstage.base.quantity import LENGTH
+from flexstage.base.unit import show
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import set_value
@@ -362,6 +368,40 @@ async def test_designs_are_pinned_and_compared(page, studio):
     assert amount(page).text == "0.4 mm"
     await page.ask(say.Pin, name="A", keep=False)
     assert isinstance(await page.ask(say.Recall, name="A"), say.Refusal)
+
+
+def test_modes_of_finite_elements_stand_beside_those_that_move_like_them(monkeypatch):
+    """The stage itself, ten per cent slower, in place of what a verification has left."""
+    stage = loads(TEXT)
+    model = lumped(stage)
+    found = modes(model, limit=_limit())
+    slower = replace(found, frequencies=found.frequencies / 1.1)
+    monkeypatch.setattr(solids, "fea_modes_from_cache", lambda *_: FeaModes(slower, model, 3, (0.001,)))
+    told = solids.solid_modes(TEXT, "guide.toml", 5, 1)
+    assert [each.number for each in told.modes] == [index + 1 for index in found.platform]
+    assert [each.theory for each in told.modes] == [each.number for each in told.modes]
+    assert [each.difference for each in told.modes] == pytest.approx([0.1] * len(told.modes), rel=1e-9)
+    assert [each.assurance for each in told.modes] == pytest.approx([1.0] * len(told.modes), rel=1e-9)
+    assert [each.error for each in told.modes][:2] == [0.001, None]
+    assert {each.motion["group"] for each in told.modes} == {"mode"}
+    monkeypatch.setattr(solids, "fea_modes_from_cache", lambda *_: None)
+    assert "Verify computes them" in solids.solid_modes(TEXT, "guide.toml", 5, 1).missing
+
+
+def test_a_number_written_into_its_line_is_what_patch_writes():
+    """Comments and spaces stay; a value whose tag is lost is left to `patch`."""
+    text = TEXT.replace('thickness = "', 'thickness =   "', 1).replace("# thin", '# thin; thickness = "9 mm"')
+    for value in (0.8125e-3, 1.23456789e-3):
+        stated = show(value, LENGTH, digits=6)
+        assert (
+            _in_its_line(text, "guide.toml", THICKNESS, stated)
+            == patch(text, {THICKNESS: stated})
+            == write(text, "guide.toml", THICKNESS, value)
+        )
+    assert 'thickness =   "1.23457 mm"' in write(text, "guide.toml", THICKNESS, value)
+    tagged = dumps(double_triangle())
+    assert _in_its_line(tagged, "stage.toml", "parts.neck.thickness", "1.6 mm") == ""
+    assert write(tagged, "stage.toml", "parts.neck.thickness", 1.6e-3) == patch(tagged, {"parts.neck.thickness": "1.6 mm"})
 
 
 @on_page

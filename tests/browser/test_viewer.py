@@ -64,7 +64,7 @@ def put(page: Page, data: StageData, motion: str = "") -> Page:
     group, _, name = motion.partition(" ")
     begin = """
         viewer.replace(JSON.parse(given[0])); viewer.select(null); viewer.setColours(null); viewer.isolate(null); viewer.section(null);
-        viewer.showEnergy(false); viewer.showGhost(null); viewer.ghostPlatform(false); viewer.setAmplitude(0.05);
+        viewer.showStress(false); viewer.showGhost(null); viewer.ghostPlatform(false); viewer.setAmplitude(0.05);
         viewer.setMotion(given[1]); viewer.setPlaying(false); viewer.setPhase(0.25); viewer.look('iso'); scrollTo(0, 0);
         viewer.element.shadowRoot.activeElement?.blur();
     """
@@ -179,6 +179,20 @@ def test_links_take_the_colour_of_their_energy_and_units_stand_alone(sheet: Page
         )
         == []
     )
+
+
+def test_links_take_the_colour_of_their_stress_where_a_motion_has_one(sheet: Page) -> None:
+    data = parallelogram()
+    page = put(sheet, data)
+    there = middle(data, "left")
+    look = "viewer.setMotion(given[1]); viewer.setPhase(0); viewer.look('top'); const at = probe.project(given[0]);"
+    colours = {}
+    for name in ("stroke B", "mode 1"):
+        group, _, own = name.partition(" ")
+        key = {"group": group, "name": own}
+        plain = asked(page, f"{look} viewer.showStress(false); return probe.pixel(...at);", there, key)
+        colours[name] = plain != asked(page, f"{look} viewer.showStress(true); return probe.pixel(...at);", there, key)
+    assert colours == {"stroke B": True, "mode 1": False}
 
 
 def test_another_design_keeps_the_camera_the_part_and_the_motion(sheet: Page) -> None:

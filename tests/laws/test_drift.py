@@ -63,6 +63,8 @@ def test_one_material_scales_without_stress(mechanism, coefficient, datum):
     moved_ = found.of("platform").values
     np.testing.assert_allclose(moved_[:3, 0], coefficient * (reference - np.array(datum)), rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(moved_[3:, 0], 0.0, atol=1e-12)
+    for name, body in expand(alike).bodies.items():
+        np.testing.assert_allclose(found.bodies[name][:3, 0], coefficient * (body.reference - np.array(datum)), rtol=0.0, atol=1e-13)
     assert scaled_stress(found, model) < 1e-7
     arm = reference - np.array(datum)
     for axis in range(3):

@@ -12,6 +12,8 @@ import pytest
 from hypothesis import given
 
 import flexstage as fs
+from flexstage.analysis.workspace.strength import hinge_stress
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -98,7 +100,9 @@ def test_every_link_outline_and_gauge_is_a_part_that_is_drawn(name: str) -> None
 @given(mechanisms.fresh())
 def test_random_stages_move_as_one_and_follow_their_bodies(mechanism: Mechanism) -> None:
     shown = stage_data(mechanism, count=3)
-    assert all(note.startswith("no ideal motions: ") for note in shown.notes)  # what the lumped model takes, the ideal one may refuse
+    assert all(
+        note.startswith(("no ideal motions: ", "no drift: ")) for note in shown.notes
+    )  # what the lumped model takes, others may refuse
     assert any(motion.group is Group.MODE for motion in shown.motions)
     assert json.loads(shown.text())["bodies"] == ["ground", *expand(mechanism).bodies]
     twists = np.tile(RANDOM.uniform(-1.0, 1.0, 6), (len(shown.bodies), 1))
@@ -207,6 +211,31 @@ def test_strokes_and_axes_are_those_of_the_models() -> None:
         pushed = kinematics.actuation @ at_bone[Group.STROKE, name]
         own = pushed[list(kinematics.actuators).index(name)]
         assert own == pytest.approx(1e-6 * float(gain.actuators[name].gain), rel=1e-6)
+
+
+def test_stress_is_that_of_the_whole_stroke_alone_and_of_the_load_alone() -> None:
+    """Against the analysis of all corners, of which a stage without weight has one if its only actuator has one end."""
+    mechanism = replace(fs.case("parallelogram"), gravity=(0.0, 0.0, 0.0))
+    limits = stroke_limits(mechanism)
+    only = StrokeLimits(limits.actuators, limits.high, limits.high)
+    found = hinge_stress(mechanism, fs.lumped(mechanism), only)
+    stroke = next(each for each in stage_data(mechanism).motions if each.group is Group.STROKE)
+    assert stroke.stress == pytest.approx(dict(zip(found.links, (found.peak / found.allowed).tolist(), strict=True)), rel=1e-9)
+    heavy = fs.case("parallelogram")
+    weight = next(each for each in moving("parallelogram").motions if each.name == "own weight")
+    none = StrokeLimits((), np.zeros(0), np.zeros(0))
+    hung = hinge_stress(heavy, fs.lumped(heavy), none)
+    assert weight.stress == pytest.approx(dict(zip(hung.links, (hung.peak / hung.allowed).tolist(), strict=True)), rel=1e-9)
+    assert next(each.stress for each in moving("parallelogram").motions if each.group is Group.MODE) is None
+
+
+def test_a_stage_that_warms_moves_as_its_drift_says() -> None:
+    shown, mechanism = moving("parallelogram"), stage("parallelogram")
+    warm = next(each for each in shown.motions if each.group is Group.DRIFT and each.name == "uniform")
+    place, bone = shown.bodies.index("platform"), shown.bones.references["platform"]
+    told = fs.drift(mechanism, fs.lumped(mechanism)).of("platform").values[:, 0]
+    assert np.allclose(warm.twists[place, :3] + np.cross(warm.twists[place, 3:], bone), told[:3], rtol=0.0, atol=1e-18)
+    assert np.allclose(warm.twists[place, 3:], told[3:], rtol=0.0, atol=1e-18)
 
 
 def test_the_data_is_the_same_each_time_and_holds_what_the_page_reads() -> None:

@@ -94,6 +94,24 @@ export interface ModeShape {
   strain: Record<string, number>;
 }
 
+/**
+ * A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` what a viewer plays of it.
+ *
+ * `theory` is the number of the mode of theory that moves most like it, absent where none is alike enough: its `theory_frequency` [Hz],
+ * what it is over that of finite elements less one, and the modal assurance of the two.
+ */
+export interface SolidMode {
+  number: number;
+  frequency: number;
+  error: number | null;
+  name: string;
+  theory: number | null;
+  theory_frequency: number | null;
+  difference: number | null;
+  assurance: number | null;
+  motion: unknown;
+}
+
 /** Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the frequencies beside it. */
 export interface Curve {
   input: string;
@@ -290,6 +308,12 @@ export interface Free {
 /** Clashes and gaps. */
 export interface Gaps {
   kind: "gaps";
+  id: number;
+}
+
+/** The platform's modes by finite elements, as far as a verification has left them in the cache. */
+export interface Solid {
+  kind: "solid";
   id: number;
 }
 
@@ -578,6 +602,15 @@ export interface Clearances {
   problems: Problem[];
 }
 
+/** The platform's modes by finite elements; without any, `missing` says why. */
+export interface SolidModes {
+  kind: "solidmodes";
+  to: number;
+  revision: number;
+  modes: SolidMode[];
+  missing: string;
+}
+
 /** Figures of designs: a row a figure, a column a design; null where a design has none. */
 export interface Comparison {
   kind: "comparison";
@@ -631,6 +664,7 @@ export type Request =
   | Derive
   | Free
   | Gaps
+  | Solid
   | Pin
   | Compare
   | Recall
@@ -660,6 +694,7 @@ export type Said =
   | Slopes
   | Freedoms
   | Clearances
+  | SolidModes
   | Comparison
   | Snippets
   | Jobs

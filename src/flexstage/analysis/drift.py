@@ -7,7 +7,7 @@ u = alpha [T r + (g . r) r - g r^2 / 2] and the rotation alpha g x r at r from i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -17,6 +17,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Vector, stack
 from flexstage.base.quantity import LENGTH
+from flexstage.base.record import INNER
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.expansion import Expansion, Ground, expansion
@@ -41,7 +42,8 @@ class Drift(InNotebook):
 
     `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the
     material the ground was taken to be of (`None`: it does not grow) and from where that is known, `datum` (..., 3) [m] the point of the
-    ground that stays and where gradients are zero, `taken` each body's material.
+    ground that stays and where gradients are zero, `taken` each body's material. `bodies` are the twists (..., 6, 4) of all bodies at
+    their references.
     """
 
     motion: Matrix
@@ -51,6 +53,7 @@ class Drift(InNotebook):
     datum: Annotated[Array, LENGTH]
     taken: Mapping[str, str]
     provenance: str
+    bodies: Annotated[Mapping[str, Array], INNER] = field(default_factory=dict[str, Array])
 
     def of(self, point: str = PLATFORM) -> Matrix:
         """The six rows of one point."""
@@ -118,6 +121,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
         datum=thermal.datum,
         taken=thermal.expansion.taken,
         provenance=f"{model.provenance}, ground {thermal.expansion.taken[GROUND]}",
+        bodies=twists,
     )
 
 

@@ -186,7 +186,12 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     if not found:
         raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
     solved = compute(turned_forms(found))
-    return {name: SolidHinge(each.shared, each.form, each.links, _turn_back(solved[name], each.form)) for name, each in found.items()}
+    return {name: as_drawn(each, solved[name]) for name, each in found.items()}
+
+
+def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
+    """A hinge with what was computed of its form as `turned_forms` gives it, turned back to how it is drawn."""
+    return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:

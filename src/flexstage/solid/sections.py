@@ -130,14 +130,18 @@ def verification_headline(found: Verification) -> Headline:
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
     """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
-    bones, read = Skeleton(scene(mechanism).references), stage.read.model
+    return fea_motions(Skeleton(scene(mechanism).references), Moving(stage.modes, stage.read.model), theory)
+
+
+def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
+    """The same of any model of finite elements, on the bodies of a viewer."""
     found: list[Motion] = []
-    for index in stage.modes.platform:
-        twists = body_twists(read, None, stage.modes.shapes[:, index], tuple(bones.references))
-        frequency = float(stage.modes.frequencies[index])
+    for index in moving.modes.platform:
+        twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
+        frequency = float(moving.modes.frequencies[index])
         pair = theory.get(index)
         told = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
-        label = f"FEA {index + 1}  {number(frequency)} Hz  {stage.modes.names[index]}"
+        label = f"FEA {index + 1}  {number(frequency)} Hz  {moving.modes.names[index]}"
         found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{told}", frequency))
     return tuple(found)
 

@@ -43,6 +43,8 @@ export class JobsPane {
   private readonly form = h("div", {});
   private readonly studies = new Map<Command, string>();
   private live = new Set<number>();
+  /** Reports that this page asked for, which are shown as soon as they are there. */
+  private readonly wanted = new Set<number>();
 
   constructor(private readonly studio: Studio) {
     fill(this.root, this.form, this.list);
@@ -74,6 +76,7 @@ export class JobsPane {
 
   private async run(question: Omit<Run, "id">): Promise<void> {
     const said = await this.studio.ask(question);
+    if (said.kind === "done" && said.job !== null && question.command === "analyse") this.wanted.add(said.job);
     if (said.kind === "done") fill(this.form);
     else if (said.kind === "refusal") fill(this.form, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)));
   }
@@ -81,6 +84,7 @@ export class JobsPane {
   private show(said: Jobs): void {
     fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each)));
     for (const each of said.jobs) if (this.live.has(each.job) && isOver(each)) this.studio.tell(`${each.command}: ${each.state}.`, each.state === "failed");
+    for (const each of said.jobs) if (isOver(each) && this.wanted.delete(each.job) && each.report) showReport(each.report, "Report");
     this.live = new Set(said.jobs.filter((each) => !isOver(each)).map((each) => each.job));
   }
 
@@ -88,17 +92,29 @@ export class JobsPane {
     const isLive = !isOver(each);
     const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
     const cancel = h("button", { type: "button", click: () => this.studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
-    const open = each.report && h("a", { href: each.report, target: "_blank", rel: "noopener" }, "open the report");
+    const address = each.report;
+    const show = address && h("button", { type: "button", click: () => showReport(address, `Report of ${each.command}`) }, "show the report");
     const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
     return h(
       "article",
       { className: `job ${each.state}` },
-      h("h3", {}, `${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, open),
+      h("h3", {}, `${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, show),
       isLive && bar,
       h("p", {}, each.text),
       each.said.length > 0 && h("pre", {}, each.said.join("\n")),
     );
   }
+}
+
+/** A report over the page, in a frame of its own that reaches nothing of the studio. */
+function showReport(address: string, title: string): void {
+  const made = h("dialog", { className: "report", ariaLabel: title, close: () => made.remove() });
+  const frame = h("iframe", { title, src: address });
+  frame.setAttribute("sandbox", "allow-scripts allow-downloads allow-modals");
+  const away = h("a", { href: address, target: "_blank", rel: "noopener" }, "in a tab of its own");
+  fill(made, h("form", { method: "dialog" }, h("b", {}, title), away, h("button", {}, "close")), frame);
+  document.body.append(made);
+  made.showModal();
 }
 
 const isOver = (each: JobState): boolean => each.state !== "waits" && each.state !== "runs";

@@ -1,7 +1,7 @@
 // Jog: a slider for every actuator and every axis of the platform; the stage bends, gauges read, and what ends the motion is told.
 
 import type { Channel, Motion, Posed } from "../protocol";
-import type { Motion as Drawn, StageData } from "../viewer/types";
+import type { Colour, Motion as Drawn, StageData } from "../viewer/types";
 import { norm, plus } from "./arrows";
 import type { Point } from "./arrows";
 import { digits, fill, framewise, h, shown } from "./dom";
@@ -39,6 +39,8 @@ export class Jog {
     studio.scene.watch(() => this.isActive() && this.draw());
     studio.figures.watch(() => this.isShown() && this.load());
     studio.mode.watch((mode) => mode !== null && this.leave());
+    studio.other.watch((other) => other !== null && this.leave());
+    studio.painted.watch(() => this.isActive() && this.judge());
   }
 
   private isShown(): boolean {
@@ -128,6 +130,7 @@ export class Jog {
   private moved(): void {
     this.load();
     this.studio.mode.set(null);
+    this.studio.other.set(null);
     const names = [...this.rows.keys()];
     const inputs = Object.fromEntries(names.map((name, at) => [name, this.strokes[at] ?? 0]));
     this.update();
@@ -178,8 +181,17 @@ export class Jog {
   }
 
   private paint(told: Record<string, string>): void {
-    const links = Object.keys(told).filter((name) => name in (this.studio.state.value?.links ?? {}));
-    this.studio.viewer.value?.setColours(links.length ? Object.fromEntries(links.map((name) => [name, [0.82, 0.16, 0.16] as [number, number, number]])) : null);
+    const beyond = Object.keys(told).filter((name) => name in (this.studio.state.value?.links ?? {}));
+    const colours = { ...this.stresses(), ...Object.fromEntries(beyond.map((name) => [name, [0.82, 0.16, 0.16] as Colour])) };
+    this.studio.viewer.value?.setColours(Object.keys(colours).length ? colours : null);
+  }
+
+  /** Links by the share of what is allowed that they bear, where that is to be painted. */
+  private stresses(): Record<string, Colour> {
+    const allowed = this.studio.motion.value?.allowed ?? {};
+    if (!this.isActive() || this.studio.painted.value !== "stress" || !this.posed) return {};
+    const shares = Object.entries(this.posed.stress).map(([name, each]) => [name, each / (allowed[name] ?? NaN)] as const);
+    return Object.fromEntries(shares.filter(([, share]) => Number.isFinite(share)).map(([name, share]) => [name, warm(share)]));
   }
 
   private drawNow(): void {
@@ -224,6 +236,12 @@ export class Jog {
     const isSeen = norm(move) * factor > 0.01 * data.size;
     this.stage.arrows.set("jog", isSeen ? [{ from, to: plus(from, move, factor), look: "ideal", text: "ideal" }] : []);
   }
+}
+
+/** From grey at no stress to red at all that is allowed. */
+function warm(share: number): Colour {
+  const way = Math.sqrt(Math.min(1, share));
+  return [0.76 + 0.06 * way, 0.8 - 0.66 * way, 0.84 - 0.7 * way];
 }
 
 function half(channel: Channel | undefined): number {

@@ -1,15 +1,18 @@
 // The mode bar: which mode plays, its phase and amplitude, a second one beside it.
 
-import type { ModeShape } from "../protocol";
-import type { Controller, Motion } from "../viewer/types";
+import type { ModeShape, SolidMode } from "../protocol";
+import type { Controller, Motion, MotionGroup, MotionKey } from "../viewer/types";
 import { byId, digits, fill, h, percent } from "./dom";
+import { singles } from "./floats";
 import type { StageView } from "./stage";
 import type { Studio } from "./studio";
 
+const OTHERS: Partial<Record<MotionGroup, string>> = { deflection: "Under dead load", drift: "As it warms, strokes held" };
+
 export class ModeBar {
   readonly root = h("div", { className: "strip" });
-  private readonly list = h("select", { id: "modes", ariaLabel: "Mode", change: () => this.studio.mode.set(this.list.value ? Number(this.list.value) : null) });
-  private readonly beside = h("select", { ariaLabel: "Second mode", hidden: true, change: () => this.playSecond() });
+  private readonly list = h("select", { id: "modes", ariaLabel: "Mode", change: () => this.choose(this.list.value) });
+  private readonly beside = h("select", { ariaLabel: "Second mode", hidden: true, change: () => ((this.isOwn = true), this.playSecond()) });
   private readonly phase = h("input", { type: "range", min: 0, max: 1, step: 0.005, value: "0", ariaLabel: "Phase", input: () => this.scrub() });
   private readonly amplitude = h("input", { type: "range", min: 0.005, max: 0.2, step: 0.005, value: "0.06", ariaLabel: "Amplitude", input: () => this.scale() });
   private readonly factor = h("output", {});
@@ -17,33 +20,89 @@ export class ModeBar {
   private readonly about = h("p", { className: "quiet about" });
   private isPlaying = true;
   private second: Controller | null = null;
+  private solids: SolidMode[] = [];
+  private hadSolids = false;
+  private why = "";
+  /** Whether a person chose the second mode. */
+  private isOwn = false;
 
   constructor(
     private readonly studio: Studio,
     private readonly stage: StageView,
   ) {
-    const energy = h("label", {}, h("input", { type: "checkbox", change: (event: Event) => studio.viewer.value?.showEnergy((event.target as HTMLInputElement).checked) }), "strain energy");
+    const energy = this.paints("energy", "strain energy", "links by their share of the mode's strain energy");
+    const stress = this.paints("stress", "stress", "links by the share of what is allowed that they bear: under loads, and as they are jogged");
     const two = h("label", {}, h("input", { type: "checkbox", change: (event: Event) => this.two((event.target as HTMLInputElement).checked) }), "two side by side");
     fill(
       this.root,
-      h("div", { className: "bar" }, this.list, this.beside, this.button, energy, two),
+      h("div", { className: "bar" }, this.list, this.beside, this.button, energy, stress, two),
       h("div", { className: "bar" }, h("label", {}, "phase ", this.phase), h("label", {}, "amplitude ", this.amplitude), this.factor),
       this.about,
     );
-    studio.figures.watch((said) => said && this.offer(said.modes));
-    studio.mode.watch(() => this.play());
+    studio.figures.watch(() => this.offer());
+    studio.mode.watch((mode) => (mode !== null && studio.other.set(null), this.play()));
+    studio.other.watch(() => this.play());
     studio.viewer.watch(() => this.play());
-    studio.scene.watch(() => this.play());
+    studio.scene.watch((scene) => (this.offer(), this.play(), scene && this.fresh()));
+    studio.painted.watch((what) => this.paint(what));
+    studio.connection.on("jobs", (said) => said.jobs.some((each) => each.command === "verify" && each.state === "done" && !this.verified.has(each.job) && this.verified.add(each.job)) && this.ask());
   }
 
-  private offer(modes: ModeShape[]): void {
-    for (const select of [this.list, this.beside]) {
-      const held = select.value;
-      const still = new Option(select === this.list ? "at rest (0)" : "second mode", "");
-      select.replaceChildren(still, ...modes.map((each) => new Option(`${each.number}   ${digits(each.frequency)} Hz   ${each.name}`, String(each.number))));
-      select.value = modes.some((each) => String(each.number) === held) ? held : "";
-    }
+  private readonly verified = new Set<number>();
+
+  private paints(what: "energy" | "stress", text: string, title: string): HTMLElement {
+    const made = h("input", { type: "checkbox", change: () => this.studio.painted.set(made.checked ? what : null) });
+    this.studio.painted.watch((now) => (made.checked = now === what));
+    return h("label", { title }, made, text);
+  }
+
+  private paint(what: "energy" | "stress" | null): void {
+    if (what === "stress") this.studio.viewer.value?.showStress(true);
+    else this.studio.viewer.value?.showEnergy(what === "energy");
     this.tell();
+  }
+
+  /** Asks for modes by finite elements: once, and as long as there are any for some text. */
+  private fresh(): void {
+    if (this.hadSolids || this.why === "") this.ask();
+  }
+
+  private ask(): void {
+    this.studio.connection.newest("solid", { kind: "solid" }, (said) => {
+      if (said.kind !== "solidmodes") return;
+      this.solids = said.modes;
+      this.why = said.missing;
+      this.hadSolids ||= said.modes.length > 0;
+      this.offer();
+      if (this.partner && !this.isOwn) this.beside.value = `fea ${this.partner.number}`;
+      this.playSecond();
+    });
+  }
+
+  private offer(): void {
+    const modes = (this.studio.figures.value?.modes ?? []).map((each) => new Option(`${each.number}   ${digits(each.frequency)} Hz   ${each.name}`, String(each.number)));
+    const others = Object.entries(OTHERS).map(([group, title]) => this.group(title, (this.studio.scene.value?.motions ?? []).filter((each) => each.group === group).map((each) => new Option(each.label, `${group} ${each.name}`))));
+    const solids = this.group("Finite elements", this.solids.map((each) => new Option(`FEA ${each.number}   ${digits(each.frequency)} Hz   ${each.name}`, `fea ${each.number}`)));
+    this.fill(this.list, new Option("at rest (0)", ""), [...modes, ...others]);
+    this.fill(this.beside, new Option("second mode", ""), [...modes.map((each) => new Option(each.text, each.value)), solids]);
+    this.tell();
+  }
+
+  private group(label: string, options: HTMLOptionElement[]): HTMLOptGroupElement | null {
+    return options.length ? h("optgroup", { label }, ...options) : null;
+  }
+
+  private fill(select: HTMLSelectElement, still: HTMLOptionElement, rest: (HTMLElement | null)[]): void {
+    const held = select.value;
+    fill(select, still, ...rest);
+    select.value = [...select.options].some((each) => each.value === held) ? held : "";
+  }
+
+  private choose(value: string): void {
+    const [group, ...name] = value.split(" ");
+    const isMode = name.length === 0;
+    this.studio.mode.set(isMode && value ? Number(value) : null);
+    this.studio.other.set(isMode ? null : { group: group as MotionGroup, name: name.join(" ") });
   }
 
   private chosen(): ModeShape | null {
@@ -51,16 +110,29 @@ export class ModeBar {
     return this.studio.figures.value?.modes.find((each) => each.number === number) ?? null;
   }
 
-  private motion(number: number | null): Motion | null {
-    return this.studio.scene.value?.motions.find((each) => each.group === "mode" && each.name === String(number)) ?? null;
+  private motion(key: MotionKey | null): Motion | null {
+    return this.studio.scene.value?.motions.find((each) => each.group === key?.group && each.name === key.name) ?? null;
+  }
+
+  /** What plays: a mode, a load or a change of temperature. */
+  private get now(): MotionKey | null {
+    const { mode, other } = this.studio;
+    return mode.value === null ? other.value : { group: "mode", name: String(mode.value) };
+  }
+
+  /** The mode of finite elements that moves like the one that plays. */
+  private get partner(): SolidMode | null {
+    return this.solids.find((each) => each.theory !== null && each.theory === this.studio.mode.value) ?? null;
   }
 
   private play(): void {
-    const number = this.studio.mode.value;
-    this.list.value = number === null ? "" : String(number);
-    const motion = this.motion(number);
+    const key = this.now;
+    this.list.value = key === null ? "" : key.group === "mode" ? key.name : `${key.group} ${key.name}`;
+    const motion = this.motion(key);
     const { value: viewer } = this.studio.viewer;
-    viewer?.setMotion(motion ? { group: "mode", name: motion.name } : null);
+    viewer?.setMotion(motion ? key : null);
+    if (this.partner && this.beside.value.startsWith("fea ")) this.beside.value = `fea ${this.partner.number}`;
+    if (this.second) this.playSecond();
     if (motion) viewer?.setPlaying(this.isPlaying);
     if (motion) viewer?.setAmplitude(Number(this.amplitude.value));
     this.tell();
@@ -70,17 +142,36 @@ export class ModeBar {
     const mode = this.chosen();
     const parts = mode === null ? [] : Object.entries(mode.strain).slice(0, 4).map(([name, share]) => `${name} ${percent(share, 2).slice(1)}`);
     const role = mode?.platform ? "platform's mode" : mode?.local ? "local" : "";
-    fill(this.about, mode === null ? "1 to 9 play a mode, 0 stops; a click at a peak of the response plays its mode." : `${role ? `${role}, ` : ""}platform ${digits(100 * mode.share, 4)} % of kinetic energy${parts.length ? `; strain energy: ${parts.join(", ")}` : ""}`);
+    const other = this.motion(this.studio.other.value);
+    const still = other ? [other.remark, this.most(other)].filter(Boolean).join("; ") : "1 to 9 play a mode, 0 stops; a click at a peak of the response plays its mode.";
+    fill(this.about, mode === null ? still : [role, this.beyond(mode), `platform ${digits(100 * mode.share, 4)} % of kinetic energy`, parts.length ? `strain energy: ${parts.join(", ")}` : ""].filter(Boolean).join("; "));
     this.written();
+  }
+
+  /** What finite elements say of a mode. */
+  private beyond(mode: ModeShape): string {
+    const { partner } = this;
+    if (partner) return `finite elements ${digits(partner.frequency)} Hz, theory ${percent(partner.difference, 2) || "0 %"}, assurance ${digits(partner.assurance, 3)}`;
+    if (!mode.platform) return "";
+    return this.solids.length ? "no mode of finite elements is like it" : this.beside.hidden ? "" : this.why;
+  }
+
+  /** The link that bears most in a motion whose stress is known. */
+  private most(motion: Motion): string {
+    const { scene } = this.studio;
+    if (!motion.stress || !scene.value) return "";
+    const shares = [...singles(motion.stress)].map((share, at) => [share, scene.value!.parts[scene.value!.links[at] ?? -1]?.name ?? ""] as const).filter(([share]) => Number.isFinite(share));
+    const [share, name] = shares.reduce((best, each) => (each[0] > best[0] ? each : best), [0, ""] as const);
+    return name ? `stress: most in ${name}, ${digits(100 * share, 3)} % of what is allowed, ${motion.stressed ?? ""}` : "";
   }
 
   private written(): void {
     const probe = this.studio.viewer.value?.probe;
-    const motion = this.motion(this.studio.mode.value);
+    const motion = this.motion(this.now);
     const size = this.studio.scene.value?.size ?? 0;
     const drawn = Number(this.amplitude.value) * size;
     if (this.chosen() && this.studio.scene.value && !motion) return fill(this.factor, "the picture does not hold this mode");
-    const text = motion?.scaled ? `drawn × ${digits(probe?.factor ?? null, 3)}` : `largest motion drawn as ${digits(1000 * drawn, 3)} mm`;
+    const text = motion?.scaled ? `drawn × ${digits(motion.reach > 0 ? drawn / motion.reach : null, 3)}` : `largest motion drawn as ${digits(1000 * drawn, 3)} mm`;
     fill(this.factor, motion && probe ? text : "");
   }
 
@@ -118,15 +209,20 @@ export class ModeBar {
   private two(on: boolean): void {
     this.beside.hidden = !on;
     this.second = this.stage.beside(on);
-    if (on && !this.beside.value) this.beside.value = String((this.studio.mode.value ?? 0) + 1);
+    if (on && !this.beside.value) this.beside.value = this.partner ? `fea ${this.partner.number}` : String((this.studio.mode.value ?? 0) + 1);
+    if (on) this.ask();
     this.playSecond();
   }
 
   private playSecond(): void {
-    const motion = this.motion(Number(this.beside.value));
-    this.second?.setMotion(motion ? { group: "mode", name: motion.name } : null);
-    this.second?.setAmplitude(Number(this.amplitude.value));
-    this.second?.setPlaying(this.isPlaying);
+    const solids = this.solids.map((each) => each.motion as Motion), scene = this.studio.scene.value;
+    if (!this.second || !scene) return this.tell();
+    const name = this.beside.value;
+    if (name.startsWith("fea ")) this.second.replaceMotions([...scene.motions, ...solids]);
+    this.second.setMotion(name ? { group: "mode", name } : null);
+    this.second.setAmplitude(Number(this.amplitude.value));
+    this.second.setPlaying(this.isPlaying);
+    this.tell();
   }
 }
 

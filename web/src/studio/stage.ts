@@ -158,7 +158,7 @@ export class StageView {
     place.hidden = !on;
     const data = this.studio.scene.value;
     if (on && !this.second && data && this.viewer?.alive) this.second = flexstage?.view(place, data, { controls: false }) ?? null;
-    requestAnimationFrame(() => this.viewer?.fit());
+    setTimeout(() => [this.viewer, this.second].forEach((each) => each?.fit()), 100); // when both have their new size
     return on ? this.second : null;
   }
 }

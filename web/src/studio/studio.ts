@@ -1,7 +1,7 @@
 // What all panes share: the connection, the newest of every kind of result, and what is selected.
 
 import type { Figures, Motion, Reach, Said, Slopes, State, Verdicts } from "../protocol";
-import type { Controller, StageData } from "../viewer/types";
+import type { Controller, MotionKey, StageData } from "../viewer/types";
 import { Cell } from "./cell";
 import type { Connection, Question } from "./connection";
 import { sentence } from "./dom";
@@ -18,6 +18,10 @@ export class Studio {
   readonly link = new Cell<string | null>(null);
   /** The number of the mode that plays; null: the stage is still, or jogged. */
   readonly mode = new Cell<number | null>(null);
+  /** A load or a change of temperature that plays instead. */
+  readonly other = new Cell<MotionKey | null>(null);
+  /** What the links are painted by. */
+  readonly painted = new Cell<"energy" | "stress" | null>(null);
   /** The pane of the right column. */
   readonly tab = new Cell<string>("figures");
   /** A line of the text to go to, with a count so that the same line can be asked for twice. */

@@ -4,7 +4,8 @@ import { AMPLITUDES, type Player } from "./player";
 import type { Motion, MotionGroup, StageData } from "./types";
 
 const HEADS: Readonly<Record<MotionGroup, string>> = {
-  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", path: "Along a path", state: "About a state",
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", drift: "As it warms", path: "Along a path",
+  state: "About a state",
 };
 
 /** What the buttons do; the viewer gives it. */
@@ -19,11 +20,12 @@ export interface Acts {
   cut(place: number): void;
 }
 
-export type Toggle = "platform" | "names" | "energy" | "section" | "unit" | "keys";
+export type Toggle = "platform" | "names" | "energy" | "stress" | "section" | "unit" | "keys";
 const TOGGLES: readonly [Toggle, string, string][] = [
   ["platform", "Platform", "Draw the platform translucent, or not (G)"],
   ["names", "Names", "Names of actuators and gauges (L)"],
   ["energy", "Energy", "Paint links by their share of the strain energy (E)"],
+  ["stress", "Stress", "Paint links by the share of their allowed stress: strokes and loads (T)"],
   ["section", "Section", "Cut the stage open (S); again: another plane"],
   ["unit", "Unit", "Show the unit of the picked part alone (I)"],
   ["keys", "?", "What the keys do (?)"],
@@ -91,6 +93,11 @@ export class Panel {
     this.toggles.get(what)?.setAttribute("aria-pressed", String(this.acts.toggle(what)));
   }
 
+  /** Shows a button as pressed, or not. */
+  hold(what: Toggle, held: boolean): void {
+    this.toggles.get(what)?.setAttribute("aria-pressed", String(held));
+  }
+
   /** The slider of the plane, which stands there while there is one. */
   showCut(axis: "x" | "y" | "z" | null, place: number): void {
     for (const each of this.cutRow) each.hidden = axis === null;
@@ -129,7 +136,8 @@ export class Panel {
     return made;
   }
 
-  update(player: Player): void {
+  /** `painted` says what the links' colours mean. */
+  update(player: Player, painted: string): void {
     for (const [motion, each] of this.buttons) each.setAttribute("aria-pressed", String(motion === player.motion));
     this.play.textContent = player.playing ? "Pause" : "Play";
     this.phaseName.textContent = player.travels ? "Stroke" : "Phase";
@@ -137,6 +145,6 @@ export class Panel {
     const place = AMPLITUDES.findIndex((each) => each >= player.amplitude - 1e-9);
     this.amplitude.value = String(place < 0 ? AMPLITUDES.length - 1 : place);
     this.words.classList.toggle("red", player.travels && (player.route!.course.said[Math.round(player.place)] ?? "") !== "");
-    this.words.textContent = [player.words, player.motion?.remark].filter(Boolean).join("; ");
+    this.words.textContent = [player.words, player.motion?.remark, painted].filter(Boolean).join("; ");
   }
 }

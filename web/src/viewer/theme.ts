@@ -13,6 +13,8 @@ export interface Theme {
   /** Links without and with all of the strain energy. */
   cold: Colour;
   hot: Colour;
+  /** Links beyond what is allowed. */
+  beyond: Colour;
 }
 
 const colour = (hex: string): Colour => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255) as Colour;
@@ -29,6 +31,7 @@ const LIGHT: Theme = {
   rotation: colour("b3261e"),
   cold: colour("d5dce3"),
   hot: colour("c81e1e"),
+  beyond: colour("5b0a63"),
 };
 
 const DARK: Theme = {
@@ -43,6 +46,7 @@ const DARK: Theme = {
   rotation: colour("ff8a80"),
   cold: colour("56616d"),
   hot: colour("ff5a4d"),
+  beyond: colour("e58bff"),
 };
 
 export const theme = (dark: boolean): Theme => (dark ? DARK : LIGHT);

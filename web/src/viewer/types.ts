@@ -57,7 +57,7 @@ export interface Label {
   bodies: [number, number];
 }
 
-export type MotionGroup = "mode" | "stroke" | "axis" | "deflection" | "path" | "state";
+export type MotionGroup = "mode" | "stroke" | "axis" | "deflection" | "drift" | "path" | "state";
 
 /** Something that all bodies do together. */
 export interface Motion {
@@ -80,6 +80,10 @@ export interface Motion {
   course?: Course;
   /** Float32, one an entry of `StageData.links`: share of the strain energy in it, NaN where it is not known. */
   energy?: Packed;
+  /** Float32, one an entry of `StageData.links`: share of the allowed stress that it bears, NaN where it is not known. */
+  stress?: Packed;
+  /** Where that stress is: "at 40 µm of B1 alone". */
+  stressed?: string;
 }
 
 /** Something that is told of every point of a path, in a display unit. */
@@ -189,6 +193,8 @@ export interface Controller {
   setColours(colours: Readonly<Record<string, Colour>> | null): void;
   /** Paints links by their share of the strain energy of the motion. */
   showEnergy(shown: boolean): void;
+  /** Paints links by the share of their allowed stress in the motion, from none to all of it. */
+  showStress(shown: boolean): void;
   /** Another stage as a pale outline (before | after); null takes it away. */
   showGhost(data: StageData | null): void;
   /** Draws the platform translucent, or not. */

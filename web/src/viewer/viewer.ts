@@ -45,7 +45,7 @@ export class Viewer implements Controller {
   private ghost: Model | null = null;
   private picked: string | null = null;
   private colours: Readonly<Record<string, Colour>> | null = null;
-  private energy = false;
+  private painted: "energy" | "stress" | null = null;
   private platformGhost = true;
   private unit: string | null = null;
   private cutAxis = -1;
@@ -53,7 +53,8 @@ export class Viewer implements Controller {
   private frames = 0;
   private due = 0;
   private seen = true;
-  private energies: Float32Array | null = null;
+  private shares: Float32Array | null = null;
+  private rest: Model | null = null;
   private readonly pickers = new Set<(picked: Picked | null) => void>();
   private readonly watchers = new Set<(motion: Motion | null) => void>();
 
@@ -181,7 +182,7 @@ export class Viewer implements Controller {
   setPlaying(playing: boolean): void {
     this.player.playing = playing;
     this.player.step(performance.now());
-    this.panel?.update(this.player);
+    this.panel?.update(this.player, this.meaning);
     this.draw();
   }
 
@@ -193,14 +194,14 @@ export class Viewer implements Controller {
 
   setPhase(phase: number): void {
     this.player.phase = phase;
-    this.panel?.update(this.player);
+    this.panel?.update(this.player, this.meaning);
     this.travelled();
     this.draw();
   }
 
   setAmplitude(share: number): void {
     this.player.amplitude = share;
-    this.panel?.update(this.player);
+    this.panel?.update(this.player, this.meaning);
     this.draw();
   }
 
@@ -210,7 +211,19 @@ export class Viewer implements Controller {
   }
 
   showEnergy(shown: boolean): void {
-    this.energy = shown;
+    this.paintLinks(shown ? "energy" : null);
+  }
+
+  showStress(shown: boolean): void {
+    this.paintLinks(shown ? "stress" : null);
+  }
+
+  /** Links in colours of something that is known of each in the motion; null: in their own. */
+  private paintLinks(what: "energy" | "stress" | null): void {
+    this.painted = what;
+    this.panel?.hold("energy", what === "energy");
+    this.panel?.hold("stress", what === "stress");
+    this.moved();
     this.paint();
   }
 
@@ -219,6 +232,14 @@ export class Viewer implements Controller {
     this.ghost = data ? new Model(data, this.ghostInk, true) : null;
     this.ghost?.setPaints(() => [1, 1, 1, 1]);
     this.draw();
+  }
+
+  /** The drawn shape as a pale outline, beside what goes away from it to one side. */
+  private showRest(shown: boolean): void {
+    if (shown === (this.rest?.data === this.data)) return;
+    this.rest?.dispose();
+    this.rest = shown ? new Model(this.data, this.ghostInk, true) : null;
+    this.rest?.setPaints(() => [1, 1, 1, 1]);
   }
 
   ghostPlatform(shown: boolean): void {
@@ -273,6 +294,7 @@ export class Viewer implements Controller {
     for (const end of this.ends) end();
     this.model.dispose();
     this.ghost?.dispose();
+    this.rest?.dispose();
     this.arrows.dispose();
     this.target.dispose();
     this.camera.dispose();
@@ -294,7 +316,8 @@ export class Viewer implements Controller {
     switch (what) {
       case "platform": this.ghostPlatform(!this.platformGhost); return this.platformGhost;
       case "names": this.overlay.showNames(!this.named); this.draw(); return this.named;
-      case "energy": this.showEnergy(!this.energy); return this.energy;
+      case "energy": this.showEnergy(this.painted !== "energy"); return this.painted === "energy";
+      case "stress": this.showStress(this.painted !== "stress"); return this.painted === "stress";
       case "section": return this.cut();
       case "unit": this.isolate(this.unit === null ? (this.part(this.picked)?.unit ?? null) : null); return this.unit !== null;
       case "keys": return this.overlay.toggleKeys();
@@ -333,7 +356,7 @@ export class Viewer implements Controller {
     const choices = Object.fromEntries(modes.slice(0, 9).map((motion, at) => [String(at + 1), () => this.choose(motion)]));
     return {
       ...choices, "0": () => this.choose(null), " ": () => this.setPlaying(!this.player.playing), "[": amplify(-1), "]": amplify(1),
-      "?": press("keys"), f: () => this.fit(), v: () => this.turn(), g: press("platform"), l: press("names"), e: press("energy"), s: press("section"), i: press("unit"),
+      "?": press("keys"), f: () => this.fit(), v: () => this.turn(), g: press("platform"), l: press("names"), e: press("energy"), t: press("stress"), s: press("section"), i: press("unit"),
       escape: () => this.pick([]),
     };
   }
@@ -414,18 +437,28 @@ export class Viewer implements Controller {
 
   private paint(): void {
     const colours = theme(this.dark.matches), { parts, links } = this.data;
-    const shares = new Map(this.energies && this.energy ? links.map((part, at) => [part, this.energies![at]!]) : []);
-    const most = Math.max(1e-9, ...[...shares.values()].filter(Number.isFinite));
+    const shares = new Map(this.shares ? links.map((part, at) => [part, this.shares![at]!]) : []);
+    const most = this.painted === "stress" ? 1 : Math.max(1e-9, ...[...shares.values()].filter(Number.isFinite));
     const beyond = new Set(this.player.beyond);
     this.model.setPaints((number) => {
       const part = parts[number]!, share = shares.get(number);
       let colour = this.colours?.[part.name] ?? colours.kinds[part.kind];
-      if (share !== undefined) colour = Number.isFinite(share) ? mixed(colours.cold, colours.hot, Math.sqrt(share / most)) : colours.cold;
+      if (share !== undefined && !Number.isNaN(share)) colour = share > most ? colours.beyond : mixed(colours.cold, colours.hot, Math.sqrt(share / most));
       if (beyond.has(number)) colour = colours.hot;
       if (part.name === this.picked) colour = colours.chosen;
       return [...colour, this.opacityOf(part.kind, part.unit, part.name)] as const;
     });
     this.draw();
+  }
+
+  /** What the colours of the links mean. */
+  private get meaning(): string {
+    const { motion } = this.player;
+    if (this.painted !== "stress" || !motion) return "";
+    if (!this.shares) return "stress is told of strokes and loads";
+    const [most, at] = [...this.shares].reduce<[number, number]>((best, share, link) => (share > best[0] ? [share, link] : best), [0, 0]);
+    const name = this.data.parts[this.data.links[at] ?? -1]?.name ?? "";
+    return `stress: from none to all that is allowed; most in ${name}, ${written(100 * most)} %, ${motion.stressed ?? ""}`;
   }
 
   private opacityOf(kind: Kind, unit: string | undefined, name: string): number {
@@ -437,10 +470,12 @@ export class Viewer implements Controller {
     const { motion, twists } = this.player;
     this.figures.show(this.player.travels ? this.player.route!.course : null);
     this.travelled();
-    this.energies = motion?.energy ? floats(motion.energy) : null;
+    const known = this.painted && motion?.[this.painted];
+    this.shares = known ? floats(known) : null;
+    this.showRest(motion?.group === "deflection" || motion?.group === "drift");
     this.model.setTwists(twists ?? new Float32Array(6 * this.data.bodies.length));
-    this.panel?.update(this.player);
-    if (this.energy) this.paint();
+    this.panel?.update(this.player, this.meaning);
+    if (this.painted) this.paint();
     this.card();
     this.draw();
   }
@@ -457,8 +492,10 @@ export class Viewer implements Controller {
   private card(): void {
     const part = this.part(this.picked) ?? null, more: [string, string][] = [];
     const link = part ? this.data.links.indexOf(this.data.parts.indexOf(part)) : -1;
-    const share = link >= 0 ? this.energies?.[link] : undefined;
-    if (share !== undefined && Number.isFinite(share)) more.push(["strain energy", `${written(100 * share)} %`]);
+    const { motion } = this.player, of = (packed: string | undefined): number => (packed && link >= 0 ? floats(packed)[link]! : NaN);
+    const energy = of(motion?.energy), stress = of(motion?.stress);
+    if (Number.isFinite(energy)) more.push(["strain energy", `${written(100 * energy)} %`]);
+    if (Number.isFinite(stress)) more.push(["stress", `${written(100 * stress)} % of what is allowed, ${motion?.stressed ?? ""}`]);
     this.overlay.showCard(this.options.controls === false ? null : part, more); // a page with controls of its own has a card too
     this.draw();
   }
@@ -480,7 +517,7 @@ export class Viewer implements Controller {
     this.due = 0;
     const moves = this.player.step(now);
     this.render();
-    if (moves) this.panel?.update(this.player);
+    if (moves) this.panel?.update(this.player, this.meaning);
     if (moves) this.travelled();
     if (moves && this.seen && this.element.isConnected) this.draw();
   }
@@ -508,7 +545,7 @@ export class Viewer implements Controller {
     this.renderer.setClearColor(0, 0);
     this.renderer.clear();
     this.renderer.render(this.model.scene, this.camera.eye);
-    if (this.ghost) this.renderer.render(this.ghost.scene, this.camera.eye);
+    for (const each of [this.ghost, this.rest]) if (each) this.renderer.render(each.scene, this.camera.eye);
     this.renderer.render(this.over, this.camera.eye);
   }
 

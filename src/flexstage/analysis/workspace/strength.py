@@ -127,8 +127,13 @@ def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
 
 def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
     """Largest share of its limit of stress (...) that a link bears under wrenches (..., L, 6); NaN where a limit is not stated."""
+    return np.max(stress_shares(links, wrenches), axis=-1)
+
+
+def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
+    """Shares of their limits of stress (..., L) that links bear under wrenches (..., L, 6); NaN where a limit is not stated."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
-    return np.max(np.stack(np.broadcast_arrays(*(row[1] / row[4] for row in rows)), axis=-1), axis=-1)
+    return np.stack(np.broadcast_arrays(*(row[1] / row[4] for row in rows)), axis=-1)
 
 
 def _governing(material: Material | None) -> str:

@@ -34,6 +34,7 @@ TASKS: Mapping[str, str] = {
     "slopes": "questions:slopes",
     "freedoms": "questions:freedoms",
     "clearances": "questions:clearances",
+    "solid_modes": "solids:solid_modes",
     "compared": "results:all_figures",
 }
 """Tasks by name: module and function, imported when first asked for."""

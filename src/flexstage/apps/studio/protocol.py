@@ -114,6 +114,25 @@ class ModeShape:
 
 
 @dataclass(frozen=True)
+class SolidMode:
+    """A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` what a viewer plays of it.
+
+    `theory` is the number of the mode of theory that moves most like it, absent where none is alike enough: its `theory_frequency` [Hz],
+    what it is over that of finite elements less one, and the modal assurance of the two.
+    """
+
+    number: int
+    frequency: float
+    error: float | None
+    name: str
+    theory: int | None
+    theory_frequency: float | None
+    difference: float | None
+    assurance: float | None
+    motion: Any
+
+
+@dataclass(frozen=True)
 class Curve:
     """Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the frequencies beside it."""
 
@@ -345,6 +364,13 @@ class Free:
 @dataclass(frozen=True)
 class Gaps:
     """Clashes and gaps."""
+
+    id: int
+
+
+@dataclass(frozen=True)
+class Solid:
+    """The platform's modes by finite elements, as far as a verification has left them in the cache."""
 
     id: int
 
@@ -662,6 +688,16 @@ class Clearances:
 
 
 @dataclass(frozen=True)
+class SolidModes:
+    """The platform's modes by finite elements; without any, `missing` says why."""
+
+    to: int
+    revision: int
+    modes: tuple[SolidMode, ...]
+    missing: str
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Figures of designs: a row a figure, a column a design; null where a design has none."""
 
@@ -719,6 +755,7 @@ Request: TypeAlias = (
     | Derive
     | Free
     | Gaps
+    | Solid
     | Pin
     | Compare
     | Recall
@@ -748,6 +785,7 @@ Said: TypeAlias = (
     | Slopes
     | Freedoms
     | Clearances
+    | SolidModes
     | Comparison
     | Snippets
     | Jobs

@@ -72,6 +72,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
     shares = attempt.of("shares", lambda: _shares(known, name)) or {}
     drawn, part = address_of(known.mechanism, link), f"parts.{link.link.part}"
     where = [line for line in (line_of(drawn, lines), line_of(part, lines)) if line]
+    verified = () if own is None else _verified(known.mechanism, own)
     told = (each for each in part_cautions(known.mechanism) if each.where.partition(".")[0] in (name, link.drawn, part, link.link.part))
     return Card(
         to,
@@ -87,10 +88,16 @@ def card(text: str, file: str, to: int, name: str) -> Card:
         *borne,
         shares,
         tuple(_facts(link)),
-        (),
+        verified,
         problems_of(told, text, file),
-        {**attempt.missing, "verified": "no finite elements are stored of it: verify the design"},
+        attempt.missing | ({} if verified else {"verified": "no finite elements are stored of it: verify the design"}),
     )
+
+
+def _verified(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
+    from flexstage.apps.studio.solids import hinge_facts  # takes long to import
+
+    return hinge_facts(mechanism, link)
 
 
 def place(text: str, file: str, to: int, line: int) -> Place:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -50,6 +50,9 @@ from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import part_deformation
 from flexstage.show.display import field_unit, preferred_unit
+
+if TYPE_CHECKING:
+    from flexstage.show.viewer.data import StageData
 
 _SHOWN = 0.01
 """Least share that is listed."""
@@ -131,14 +134,19 @@ def _doubts(text: str, file: str) -> tuple[Problem, ...]:
     return problems_of((*told.cautions, *told.defaults), text, file)
 
 
-@lru_cache(maxsize=4)
 def scene(text: str, file: str) -> Mapping[str, Any]:
     """What a viewer shows of a design."""
+    return drawn(text, file).document()
+
+
+@lru_cache(maxsize=4)
+def drawn(text: str, file: str) -> StageData:
+    """The stage of a design for a viewer."""
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
     model, kinematics, found = (_known(known, each) for each in ("model", "kinematics", "modes"))
-    return stage_data(known.mechanism, model=model, kinematics=kinematics, found=found, text=text).document()
+    return stage_data(known.mechanism, model=model, kinematics=kinematics, found=found, text=text)
 
 
 def matrix(found: Labelled) -> Matrix:

@@ -247,6 +247,9 @@ class Session:
     async def _gaps(self, request: say.Gaps, _: int, tell: Tell) -> None:
         tell(await self._question("clearances", request.id, self._computed))
 
+    async def _solid(self, request: say.Solid, _: int, tell: Tell) -> None:
+        tell(await self._question("solid_modes", request.id, self._computed))
+
     async def _palette(self, request: say.Palette, _: int, tell: Tell) -> None:
         tell(say.Snippets(request.id, snippets()))
 
@@ -271,6 +274,7 @@ class Session:
         say.Derive: _derive,
         say.Free: _free,
         say.Gaps: _gaps,
+        say.Solid: _solid,
         say.Pin: _pin,
         say.Compare: _compare,
         say.Recall: _recall,

@@ -24,7 +24,8 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
     Raises `DesignError` in the checks' words where that is no such number, or where the design would not be one any more.
     """
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
-    written = _in_its_line(text, file, address, stated) or patch(text, {address: stated}, where=file)
+    quick = "" if isinstance(value, str) else _in_its_line(text, file, address, stated)
+    written = quick or patch(text, {address: stated}, where=file)
     require_valid(design(written, file))
     return written
 
@@ -32,7 +33,7 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
 def _in_its_line(text: str, file: str, address: str, stated: str) -> str:
     """The text with another value between the quotes behind its key; nothing where that is not the design with this number set.
 
-    It is much sooner done than `patch`, which finds its way in any layout and takes out tags.
+    It is what `patch` writes of a value in its shown unit, sooner; that finds its way in any layout and takes out tags.
     """
     found = design(text, file)
     line = line_of(address, line_numbers(text))

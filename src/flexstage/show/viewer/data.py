@@ -25,7 +25,16 @@ from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.stage import Label, Scene, scene
 from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
-from flexstage.show.viewer.motions import Course, Motion, Skeleton, axis_motions, deflections, mode_motions, stroke_motions
+from flexstage.show.viewer.motions import (
+    Course,
+    Motion,
+    Skeleton,
+    axis_motions,
+    deflections,
+    drift_motions,
+    mode_motions,
+    stroke_motions,
+)
 from flexstage.show.viewer.parts import Describer, Thing
 
 FORMAT = 1
@@ -81,7 +90,7 @@ class StageData:
             "labels": [self._label(each) for each in self.labels],
             "links": list(self.links),
             "mesh": _mesh(self.mesh),
-            "motions": [self._motion(each) for each in self.motions],
+            "motions": [self.motion_document(each) for each in self.motions],
             "notes": list(self.notes),
         }
 
@@ -93,16 +102,19 @@ class StageData:
         bodies = [self.bodies.index(name) for name in label.bodies]
         return {"text": label.text, "kind": label.kind.value, "point": list(label.point), "bodies": bodies}
 
-    def _motion(self, motion: Motion) -> dict[str, Any]:
+    def motion_document(self, motion: Motion) -> dict[str, Any]:
+        """The plain values of a motion of this stage, as those of the document."""
         said: dict[str, Any] = {"group": motion.group.value, "name": motion.name, "label": motion.label}
         if motion.frequency is not None:
             said["frequency"] = motion.frequency
         if motion.remark:
             said["remark"] = motion.remark
         said |= {"twists": packed(motion.twists, "<f4"), "reach": float(f"{self.reach(motion):.6g}"), "scaled": motion.frequency is None}
-        if motion.energy is not None:
-            shares = [motion.energy.get(self.things[number].name, np.nan) for number in self.links]
-            said["energy"] = packed(np.array(shares), "<f4")
+        for name, known in (("energy", motion.energy), ("stress", motion.stress)):
+            if known is not None:
+                said[name] = packed(np.array([known.get(self.things[number].name, np.nan) for number in self.links]), "<f4")
+        if motion.stress is not None:
+            said["stressed"] = motion.stressed
         if motion.course is not None:
             said["course"] = _course(motion.course)
         return said
@@ -169,11 +181,12 @@ def _motions(
     if model is not None:
         found = found or _attempt("modes", lambda: platform_modes(mechanism, model), notes)
         yield from () if found is None else mode_motions(model, kinematics, found, bones, count)
-        yield from _attempt("strokes", lambda: tuple(stroke_motions(model, kinematics, bones)), notes) or ()
+        yield from _attempt("strokes", lambda: tuple(stroke_motions(mechanism, model, kinematics, bones)), notes) or ()
     if kinematics is not None:
         yield from axis_motions(kinematics, bones)
     if model is not None:
         yield from _attempt("deflections", lambda: tuple(deflections(mechanism, model, kinematics, bones)), notes) or ()
+        yield from _attempt("drift", lambda: tuple(drift_motions(mechanism, model, bones)), notes) or ()
 
 
 def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found | None:

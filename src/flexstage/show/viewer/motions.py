@@ -1,4 +1,4 @@
-"""What a stage can be seen to do: its modes, the stroke of each actuator, ideal motions of its platform, deflections under dead load."""
+"""What a stage is seen to do: its modes, strokes of actuators, ideal motions of its platform, deflections under dead load, drift."""
 
 from __future__ import annotations
 
@@ -8,20 +8,25 @@ from enum import Enum
 
 import numpy as np
 
+from flexstage.analysis.drift import FIELDS, drift
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.strength import sized_links, stress_shares
+from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.number import Array, first_design
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, part_deformation
 from flexstage.show.display import format_value, number, to_typography
-from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.frame import COMPONENTS, FORCES
 
 PLATFORM_MODE = "a mode of the platform"
 """What the remark of such a mode says."""
 _UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
 _UNIT_MOTION = 1e-6
+_WARMER = ("1 K warmer", "1 K/m along x", "1 K/m along y", "1 K/m along z")
 
 
 class Group(Enum):
@@ -31,6 +36,7 @@ class Group(Enum):
     STROKE = "stroke"
     AXIS = "axis"
     DEFLECTION = "deflection"
+    DRIFT = "drift"
     PATH = "path"
     STATE = "state"
 
@@ -78,7 +84,8 @@ class Motion:
     """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground's first.
 
     `name` is unique in its group, `remark` says more; `frequency` [Hz] is that of a mode. `energy` is the share of the strain energy by
-    link, and of all else that is elastic by its name; empty where it is not known. The size of a motion means something but for modes.
+    link, and of all else that is elastic by its name; empty where it is not known. `stress` is the share of what is allowed that links
+    bear, by name, `stressed` says in words where: at the full stroke, under that load. The size of a motion means something but for modes.
     Motions of large displacements, along a path or about a state, have a `course` instead of twists.
     """
 
@@ -89,6 +96,8 @@ class Motion:
     remark: str = ""
     frequency: float | None = None
     energy: Mapping[str, float] | None = None
+    stress: Mapping[str, float] | None = None
+    stressed: str = ""
     course: Course | None = None
 
 
@@ -160,9 +169,39 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
     return {name: each / total for name, each in parts.items()} if total > 0.0 else None
 
 
-def stroke_motions(model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """What a micrometre of each actuator's stroke, a newton of its force or an ampere of its current does at rest, all others held."""
-    names = model.actuators
+class Bearing:
+    """Shares of what is allowed that links of a stage bear, where their sections, their limits and the model's forces in them are known."""
+
+    def __init__(self, mechanism: Mechanism, model: LinearModel) -> None:
+        known = {channel.name for channel in model.outputs}
+        self._links = {name: link for name, link in sized_links(expand(mechanism)).items() if f"{name}.{FORCES[0]}" in known}
+        self._limits = stroke_limits(mechanism) if model.strokes else None
+        self._model = model
+
+    def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
+        """Shares by link in a shape (n,) of the model's coordinates under `inputs` (m,), of that alone; `None` where none is known."""
+        if not self._links:
+            return None
+        rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
+        wrenches = first_design(self._model.output, 2)[rows] @ shape
+        wrenches = wrenches if inputs is None else wrenches + first_design(self._model.feedthrough, 2)[rows] @ inputs
+        shares = first_design(stress_shares(self._links, wrenches.reshape(-1, 6)), 1)
+        return dict(zip(self._links, shares.tolist(), strict=True))
+
+    def most(self, actuator: str) -> float | None:
+        """The stroke [m] from rest to its farther end, if it is known."""
+        if self._limits is None or actuator not in self._limits.actuators:
+            return None
+        place = self._limits.actuators.index(actuator)
+        return max((float(np.ravel(np.real(side))[place]) for side in (self._limits.high, self._limits.low)), key=abs)
+
+
+def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
+    """What a micrometre of each actuator's stroke, a newton of its force or an ampere of its current does at rest, all others held.
+
+    Their stress is that of the whole stroke from its middle or bias.
+    """
+    names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)
     moved = first_design(displacement(model, model.input_matrix[..., columns]), 2)
     for place, name in enumerate(names):
@@ -173,7 +212,11 @@ def stroke_motions(model: LinearModel, kinematics: Kinematics | None, bones: Ske
         shape = amount * moved[:, place]
         twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references), inputs))
         text = to_typography(format_value(amount, unit))
-        yield Motion(Group.STROKE, name, f"{name}  {text}", twists, energy=_energy(model, shape, inputs))
+        most = bearing.most(name)
+        times = None if most is None else most / amount
+        stress = None if times is None else bearing.at(times * shape, times * inputs)
+        stressed = "" if most is None else to_typography(f"at {format_value(most, unit)} of {name} alone")
+        yield Motion(Group.STROKE, name, f"{name}  {text}", twists, "", None, _energy(model, shape, inputs), stress, stressed)
 
 
 def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
@@ -199,8 +242,22 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
 
     Raises `DesignError` where what is not held would fall.
     """
+    bearing = Bearing(mechanism, model)
     for name, load in dead_loads(mechanism, model).items():
         shape = first_design(displacement(model, load[..., None]), 2)[:, 0]
         if np.any(shape):
             twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references)))
-            yield Motion(Group.DEFLECTION, name, name, twists, "strokes held", energy=_energy(model, shape))
+            energy, stress = _energy(model, shape), bearing.at(shape)
+            yield Motion(Group.DEFLECTION, name, name, twists, "strokes held", None, energy, stress, f"under {name} alone")
+
+
+def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> Iterator[Motion]:
+    """Where bodies go as the stage warms by a kelvin, or by a kelvin a metre along an axis, strokes held; their growth is not drawn.
+
+    Raises `DesignError` where it is not known what expands how.
+    """
+    found = drift(mechanism, model)
+    for place, (name, label) in enumerate(zip(FIELDS, _WARMER, strict=True)):
+        twists = bones.at_origin({body: first_design(each, 2)[:, place] for body, each in found.bodies.items()})
+        if np.any(twists):
+            yield Motion(Group.DRIFT, name, label, twists, f"strokes held, ground of {found.taken[GROUND]}")

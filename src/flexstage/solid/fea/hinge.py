@@ -37,6 +37,8 @@ _LATTICE, _INSIDE = 6, 0.015
 """Steps of the lattice in an element, and how far inside its faces it ends: as far as the points of the rules that integrate there."""
 _BLUNT = 5e-4
 """What the blunted wedges of arcs at rigid faces change of the compliance at the hinge's end, relatively: twice what was found."""
+_COARSER = 1.3
+"""By how much larger elements are where the usual ones are too many."""
 _ATTEMPTS = (
     (1.0, 0.5, 1.2),
     (1.0, 0.5, 1.6),
@@ -162,12 +164,17 @@ def _label(part: Shaped) -> str:
 
 
 def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
-    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms."""
+    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms.
+
+    Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two.
+    """
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
         told.report(Stage.MESHING, 0.0)
         mesh = _mesh(part, stubs, asked.shrink**refinement, highest)
         if refinement == 0:
+            if _space(mesh, own, lowest).size > asked.freedoms:
+                lowest, mesh = 2, _mesh(part, stubs, _COARSER, highest)
             told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
             space = _space(mesh, own, order)

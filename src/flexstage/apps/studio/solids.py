@@ -1,0 +1,81 @@
+"""Finite elements beside theory in the studio, as far as a verification has left them in the cache: nothing is computed for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from flexstage.analysis.pairing import Moving, Pair, pair_modes
+from flexstage.analysis.solid_modes import FeaModes
+from flexstage.apps.studio.protocol import Fact, SolidMode, SolidModes
+from flexstage.apps.studio.results import bench, drawn
+from flexstage.base.finding import DesignError
+from flexstage.beams.compliance import compliance
+from flexstage.mechanism.expand import PlacedLink
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.display import number, percent
+from flexstage.solid.fea.cache import HINGES, Cache, find
+from flexstage.solid.fea.hinge_cache import hinge_jobs
+from flexstage.solid.hinges import accuracy_of, as_drawn, distinct_hinges, turned_forms
+from flexstage.solid.modes import fea_modes_from_cache
+from flexstage.solid.sections import fea_motions
+from flexstage.spatial.frame import COMPONENTS
+
+_ABSENT = "The cache holds no finite elements of this stage as it is: Verify computes them"
+_VERIFIED = 0.01
+"""The accuracy that `verify` asks for unless it is told another one."""
+
+
+def solid_modes(text: str, file: str, to: int, revision: int) -> SolidModes:
+    """The platform's modes by finite elements with those of theory they are paired with."""
+    known = bench(text, file)
+    found = fea_modes_from_cache(known.mechanism, Cache())
+    if found is None:
+        return SolidModes(to, revision, (), _ABSENT)
+    pairs = pair_modes(Moving(found.modes, found.model), Moving(known.modes, known.model))
+    return SolidModes(to, revision, tuple(_modes(text, file, found, pairs)), "")
+
+
+def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Iterator[SolidMode]:
+    shown = drawn(text, file)
+    motions = fea_motions(shown.bones, Moving(found.modes, found.model), pairs)
+    errors = (*found.errors, *[None] * len(motions))
+    for index, motion, error in zip(found.modes.platform, motions, errors, strict=False):
+        frequency, pair = float(found.modes.frequencies[index]), pairs.get(index)
+        alike = pair if pair is not None and pair.reliable else None
+        yield SolidMode(
+            index + 1,
+            frequency,
+            None if error is None or not np.isfinite(error) else float(error),
+            found.modes.names[index],
+            None if alike is None else alike.index + 1,
+            None if alike is None else alike.frequency,
+            None if alike is None else alike.frequency / frequency - 1.0,
+            None if pair is None else pair.assurance,
+            shown.motion_document(motion),
+        )
+
+
+def hinge_facts(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
+    """The direct compliances of a link by beam theory over those by finite elements, where `verify` has left these; else nothing."""
+    try:
+        known = {name: each for name, each in distinct_hinges(mechanism).items() if link.drawn in each.links}
+        jobs = hinge_jobs(turned_forms(known), accuracy_of(_VERIFIED, None))
+        stored = {job.name: find(Cache(), job.key, job.name, HINGES).element for job in jobs}
+        return tuple(fact for name, each in known.items() for fact in _facts(link, stored[name], each))
+    except DesignError:  # a part without a shape, or one whose compliance theory does not give
+        return ()
+
+
+def _facts(link: PlacedLink, stored: Any, hinge: Any) -> Iterator[Fact]:
+    if stored is None:
+        return
+    solid = as_drawn(hinge, stored)
+    theory = np.real(np.diag(compliance(link.part, link.material)))  # pyright: ignore[reportArgumentType]
+    for index, axis in enumerate(COMPONENTS):
+        if solid.separable[index]:
+            unit, own = "m/N" if index < 3 else "rad/(N m)", float(solid.found.compliance[index, index])
+            off = percent(float(theory[index]) / own - 1.0, 2)
+            yield Fact(f"compliance {axis}", f"theory {number(float(theory[index]))}, finite elements {number(own)} {unit}: {off}")
