@@ -296,3 +296,25 @@ def test_a_stage_of_a_thousand_links_is_drawn_picked_and_turned_and_the_wait_is_
     made.mouse.up()
     until(made, f"studio.viewer.value.probe.camera.position[0] !== {before[0]}")
     made.close()
+
+
+def test_a_stroke_is_computed_plays_and_is_left_with_the_design(page: Page) -> None:
+    page.get_by_role("tab", name="Stroke").click()
+    page.get_by_label("to", exact=True).fill("2 mm")
+    page.get_by_label("points", exact=True).fill("3")
+    page.get_by_role("button", name="compute").click()
+    until(page, "studio.viewer.value.probe.motion?.group === 'path'")
+    page.get_by_role("button", name="pause", exact=True).last.click()
+    seen = []
+    for phase in (0.0, 1.0):
+        page.evaluate(f"studio.viewer.value.setPhase({phase})")
+        seen.append(
+            page.evaluate("[studio.viewer.value.picture(), studio.viewer.value.curves.shadowRoot.querySelector('output').textContent]")
+        )
+    assert [told for _, told in seen] == ["0 mm", "2 mm"]
+    assert seen[0][0] != seen[1][0]
+    assert "B/" in page.locator("#travel > .beyond").inner_text()  # its stack's hinges are beyond what they bear
+    page.get_by_label("to", exact=True).fill("2 Hz")
+    page.get_by_role("button", name="compute").click()
+    until(page, "document.querySelector('#travel .poor')?.textContent.includes('Hz')")
+    page.get_by_role("tab", name="Modes").click()

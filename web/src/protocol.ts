@@ -299,6 +299,23 @@ export interface Derive {
   id: number;
 }
 
+/** Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE. */
+export interface Travel {
+  kind: "travel";
+  id: number;
+  drive: string;
+  start: string;
+  end: string;
+  points: number;
+  loads: string[];
+}
+
+/** Give up the path that is computed. */
+export interface Halt {
+  kind: "halt";
+  id: number;
+}
+
 /** The platform's free motions, redundant constraints, and what locks it. */
 export interface Free {
   kind: "free";
@@ -580,6 +597,15 @@ export interface Slopes {
   missing: Record<string, string>;
 }
 
+/** A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point. */
+export interface Travelled {
+  kind: "travelled";
+  to: number;
+  revision: number;
+  motions: unknown;
+  cautions: Problem[];
+}
+
 /** Free motions, constraints of which some are superfluous with what they hold, motions that nothing feels, and what locks it. */
 export interface Freedoms {
   kind: "freedoms";
@@ -662,6 +688,8 @@ export type Request =
   | Jog
   | Pose
   | Derive
+  | Travel
+  | Halt
   | Free
   | Gaps
   | Solid
@@ -692,6 +720,7 @@ export type Said =
   | Motion
   | Posed
   | Slopes
+  | Travelled
   | Freedoms
   | Clearances
   | SolidModes

@@ -21,6 +21,7 @@ import { PartCard } from "./part";
 import { Responses } from "./response";
 import { StageView } from "./stage";
 import { Studio } from "./studio";
+import { Travel } from "./travel";
 
 const studio = new Studio(new Connection());
 tabs(studio);
@@ -33,7 +34,7 @@ const card = new PartCard(studio, belongs);
 const modes = new ModeBar(studio, stage);
 const jog = new Jog(studio, stage);
 const jobs = new JobsPane(studio);
-const strip = motionStrip(modes, jog);
+const strip = motionStrip(modes, jog, new Travel(studio));
 new VerdictTable(studio);
 new FigureTable(studio);
 new FreedomPane(studio, stage);

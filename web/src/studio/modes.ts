@@ -226,16 +226,20 @@ export class ModeBar {
   }
 }
 
-/** The strip below the stage: modes or jog. */
-export function motionStrip(modes: ModeBar, jog: { root: HTMLElement; load(): void }): (name: "modes" | "jog") => void {
-  const strips = { modes: modes.root, jog: jog.root };
-  const buttons = Object.keys(strips).map((name) => h("button", { type: "button", role: "tab", click: () => show(name as "modes" | "jog") }, name === "modes" ? "Modes" : "Jog"));
-  const show = (name: "modes" | "jog"): void => {
+type Strip = "modes" | "jog" | "travel";
+const TITLES: Readonly<Record<Strip, string>> = { modes: "Modes", jog: "Jog", travel: "Stroke" };
+
+/** The strip below the stage: modes, jog or a stroke at large displacements. */
+export function motionStrip(modes: ModeBar, jog: { root: HTMLElement; load(): void }, travel: { root: HTMLElement }): (name: Strip) => void {
+  const strips: Record<Strip, HTMLElement> = { modes: modes.root, jog: jog.root, travel: travel.root };
+  const names = Object.keys(strips) as Strip[];
+  const buttons = names.map((name) => h("button", { type: "button", role: "tab", click: () => show(name) }, TITLES[name]));
+  const show = (name: Strip): void => {
     for (const [each, strip] of Object.entries(strips)) strip.hidden = each !== name;
     for (const [at, each] of Object.keys(strips).entries()) buttons[at]?.setAttribute("aria-selected", String(each === name));
     if (name === "jog") jog.load();
   };
-  fill(byId("motion"), h("div", { className: "bar tabs", role: "tablist" }, ...buttons), modes.root, jog.root);
+  fill(byId("motion"), h("div", { className: "bar tabs", role: "tablist" }, ...buttons), modes.root, jog.root, travel.root);
   show("modes");
   return show;
 }

@@ -32,6 +32,7 @@ TASKS: Mapping[str, str] = {
     "motion": "questions:motion",
     "posed": "questions:posed",
     "slopes": "questions:slopes",
+    "travelled": "travel:travelled",
     "freedoms": "questions:freedoms",
     "clearances": "questions:clearances",
     "solid_modes": "solids:solid_modes",

@@ -355,6 +355,25 @@ class Derive:
 
 
 @dataclass(frozen=True)
+class Travel:
+    """Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE."""
+
+    id: int
+    drive: str
+    start: str
+    end: str
+    points: int
+    loads: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Halt:
+    """Give up the path that is computed."""
+
+    id: int
+
+
+@dataclass(frozen=True)
 class Free:
     """The platform's free motions, redundant constraints, and what locks it."""
 
@@ -664,6 +683,16 @@ class Slopes:
 
 
 @dataclass(frozen=True)
+class Travelled:
+    """A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point."""
+
+    to: int
+    revision: int
+    motions: Any
+    cautions: tuple[Problem, ...]
+
+
+@dataclass(frozen=True)
 class Freedoms:
     """Free motions, constraints of which some are superfluous with what they hold, motions that nothing feels, and what locks it."""
 
@@ -753,6 +782,8 @@ Request: TypeAlias = (
     | Jog
     | Pose
     | Derive
+    | Travel
+    | Halt
     | Free
     | Gaps
     | Solid
@@ -783,6 +814,7 @@ Said: TypeAlias = (
     | Motion
     | Posed
     | Slopes
+    | Travelled
     | Freedoms
     | Clearances
     | SolidModes

@@ -57,6 +57,7 @@ class Session:
         self._model = Helper(self._died)
         self._reader: Helper | None = None
         self._slow: Helper | None = None
+        self._far: Helper | None = None
         self._choice: tuple[Any, ...] = ((), (), None, None)
         self._plan: Fitted | None = None
         self._wanted: Fitted | None = None
@@ -96,7 +97,7 @@ class Session:
 
     @property
     def _helpers(self) -> tuple[Helper, ...]:
-        return tuple(each for each in (self._model, self._reader, self._slow) if each is not None)
+        return tuple(each for each in (self._model, self._reader, self._slow, self._far) if each is not None)
 
     # --- requests ---
 
@@ -241,6 +242,17 @@ class Session:
         else:
             tell(say.Refusal(request.id, outcome.problems) if outcome.problems else outcome.value)
 
+    async def _travel(self, request: say.Travel, _: int, tell: Tell) -> None:
+        """In a process of its own, as it takes long, and is ended with it when it is given up; a path that is computed gives way."""
+        self._far = self._far or Helper(self._died)
+        self._far.start_anew()
+        tell(await self._question("travelled", request.id, self._computed, request, helper=self._far))
+
+    async def _halt(self, request: say.Halt, _: int, tell: Tell) -> None:
+        if self._far is not None:
+            self._far.start_anew()
+        tell(say.Done(request.id, self.history.revision))
+
     async def _free(self, request: say.Free, _: int, tell: Tell) -> None:
         tell(await self._question("freedoms", request.id, self._computed))
 
@@ -272,6 +284,8 @@ class Session:
         say.Jog: _jog,
         say.Pose: _take_pose,
         say.Derive: _derive,
+        say.Travel: _travel,
+        say.Halt: _halt,
         say.Free: _free,
         say.Gaps: _gaps,
         say.Solid: _solid,

@@ -1,0 +1,110 @@
+// Strokes at large displacements: what is driven and how far; the stage then goes along its path, over curves with a cursor.
+
+import type { Travelled } from "../protocol";
+import type { Motion } from "../viewer/types";
+import { fill, framewise, h, sentence } from "./dom";
+import type { Studio } from "./studio";
+
+const COORDINATES = ["x", "y", "z", "rx", "ry", "rz"].map((each) => `platform.${each}`);
+
+export class Travel {
+  readonly root = h("div", { className: "strip", id: "travel" });
+  private readonly drive = h("select", { ariaLabel: "What is driven" });
+  private readonly start = h("input", { type: "text", size: 7, placeholder: "as drawn", ariaLabel: "from" });
+  private readonly end = h("input", { type: "text", size: 7, value: "1 mm", required: true, ariaLabel: "to" });
+  private readonly points = h("input", { type: "number", min: 2, max: 201, value: "21", ariaLabel: "points" });
+  private readonly load = h("input", { type: "text", size: 16, placeholder: "platform.fy=-20 N", ariaLabel: "loads" });
+  private readonly go = h("button", { type: "submit" }, "compute");
+  private readonly stop = h("button", { type: "button", hidden: true, click: () => void this.studio.ask({ kind: "halt" }) }, "cancel");
+  private readonly busy = h("progress", { ariaLabel: "path", hidden: true });
+  private readonly place = h("input", { type: "range", min: 0, max: 1, step: 0.002, value: "0", ariaLabel: "Stroke", input: () => this.scrub() });
+  private readonly playing = h("button", { type: "button", click: () => this.toggle() }, "pause");
+  private readonly shapes = h("select", { ariaLabel: "Path or mode", change: () => this.choose() });
+  private readonly player = h("div", { className: "bar", hidden: true }, this.shapes, this.playing, this.place);
+  private readonly about = h("p", { className: "beyond", role: "status" });
+  private readonly curves = h("div", {});
+  private motions: Motion[] = [];
+  private isPlaying = true;
+  private readonly follow = framewise(() => this.followNow());
+
+  constructor(private readonly studio: Studio) {
+    const form = h(
+      "form",
+      { className: "bar", submit: (event: Event) => { event.preventDefault(); void this.ask(); } },
+      this.drive, h("label", {}, "from ", this.start), h("label", {}, "to ", this.end), h("label", {}, this.points, " points"), h("label", {}, "under ", this.load), this.go, this.stop, this.busy,
+    );
+    fill(this.root, form, this.player, this.about, this.curves);
+    fill(this.about, h("span", { className: "quiet" }, "At large displacements and under its weight: bodies and leaves where they truly are."));
+    studio.state.watch(() => this.offer());
+    studio.scene.watch(() => this.leave("The design has changed: compute again."));
+    studio.mode.watch((mode) => mode !== null && this.leave(""));
+  }
+
+  private offer(): void {
+    const names = [...COORDINATES, ...(this.studio.state.value?.actuators.map((each) => each.name) ?? [])];
+    if (names.length === this.drive.options.length) return;
+    this.drive.replaceChildren(...names.map((each) => new Option(each)));
+  }
+
+  private async ask(): Promise<void> {
+    this.wait(true);
+    const loads = this.load.value.split(",").map((each) => each.trim()).filter(Boolean);
+    const said = await this.studio.ask({ kind: "travel", drive: this.drive.value, start: this.start.value.trim(), end: this.end.value.trim(), points: Number(this.points.value), loads });
+    this.wait(false);
+    if (said.kind === "travelled") this.show(said);
+    else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" ")) : "Cancelled.");
+  }
+
+  private wait(on: boolean): void {
+    this.go.disabled = on;
+    this.stop.hidden = this.busy.hidden = !on;
+  }
+
+  private show(said: Travelled): void {
+    const viewer = this.studio.viewer.value, scene = this.studio.scene.value;
+    this.studio.mode.set(null);
+    this.motions = said.motions as Motion[];
+    fill(this.about, ...said.cautions.map((each) => h("span", { className: "fair" }, `${each.where}: ${sentence(each)}`)));
+    this.shapes.replaceChildren(...this.motions.map((each) => new Option([each.label, each.remark].filter(Boolean).join("  "), `${each.group} ${each.name}`)));
+    if (!viewer?.alive || !scene) return;
+    fill(this.curves, viewer.curves);
+    viewer.replaceMotions([...scene.motions, ...this.motions]);
+    this.player.hidden = false;
+    this.choose();
+  }
+
+  private choose(): void {
+    const { value: viewer } = this.studio.viewer, chosen = this.motions[this.shapes.selectedIndex];
+    if (!viewer || !chosen) return;
+    viewer.setMotion({ group: chosen.group, name: chosen.name });
+    if (chosen.group === "path") viewer.setPhase(0);
+    viewer.setPlaying(this.isPlaying);
+    this.follow();
+  }
+
+  private followNow(): void {
+    const { value: viewer } = this.studio.viewer;
+    if (!viewer?.probe.motion || this.player.hidden || !["path", "state"].includes(viewer.probe.motion.group)) return;
+    if (document.activeElement !== this.place || this.isPlaying) this.place.value = String(viewer.probe.phase);
+    this.follow();
+  }
+
+  private toggle(): void {
+    this.isPlaying = !this.isPlaying;
+    this.playing.textContent = this.isPlaying ? "pause" : "play";
+    this.studio.viewer.value?.setPlaying(this.isPlaying);
+  }
+
+  private scrub(): void {
+    if (this.isPlaying) this.toggle();
+    this.studio.viewer.value?.setPhase(Number(this.place.value));
+  }
+
+  /** The path is of another design, or something else plays. */
+  private leave(words: string): void {
+    if (this.player.hidden) return;
+    if (words) fill(this.about, h("span", { className: "quiet" }, words));
+    if (words) this.motions = [];
+    this.player.hidden = words !== "";
+  }
+}
