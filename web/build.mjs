@@ -1,9 +1,9 @@
-// Builds what the package ships: viewer.js for reports, notebooks and pages, report.js for reports, and the studio's page.
+// Builds what the package ships: viewer.js for reports, notebooks and pages, report.js for reports, studio.js for the studio's page.
 // `node build.mjs` writes into src/flexstage; `node build.mjs FOLDER` writes all files into FOLDER, for a comparison.
 // The same packages give the same bytes: no dates, no paths.
 
 import { build } from "esbuild";
-import { copyFile, mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -56,4 +56,3 @@ async function bundle(entry, target, name, options = {}) {
 await bundle("src/viewer/index.ts", folder("show/static"), "viewer", { globalName: "flexstage", carries: true });
 await build({ ...common, entryPoints: [{ in: "src/report/index.ts", out: "report" }], outdir: folder("show/static") });
 await bundle("src/studio/main.ts", folder("apps/studio/static"), "studio");
-await copyFile(join(here, "src", "studio", "studio.html"), join(folder("apps/studio/static"), "studio.html"));

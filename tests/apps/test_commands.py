@@ -37,8 +37,8 @@ from tests.show.widths import broken
 
 PROCESS = [sys.executable, "-c", "from flexstage.apps.cli import main; main()"]
 NAMES = [each.name for each in COMMANDS]
-LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop", "buckle")
-"""Commands whose examples take minutes on the shipped stage, or whose reports have tests of their own: run in full only."""
+LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop", "buckle", "superelement")
+"""Commands whose examples take long on the shipped stage, and that have tests of their own on smaller ones: run in full only."""
 
 EXAMPLES = [
     pytest.param(each.example, marks=pytest.mark.full if each.name in LONG else ())

@@ -28,6 +28,11 @@ def record() -> Record:
     return stage_record(double_triangle())
 
 
+@pytest.fixture(scope="module")
+def short() -> Record:
+    return stage_record(double_triangle(), seconds=8.0)
+
+
 @pytest.fixture
 def recorded(flexstage: Command, tmp_path: Path, record: Record, monkeypatch: pytest.MonkeyPatch) -> Command:
     """The command line in a folder with stage.toml and record.uff, and an empty cache: other tests may have kept this stage's FEA."""
@@ -182,7 +187,7 @@ def renamed(record: Record) -> Record:
 
 
 FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
-    "gap": (changed("S2", with_gap), "S2: 100 of 20480 samples are not numbers", "gaps"),
+    "gap": (changed("S2", with_gap), "S2: 100 of 8192 samples are not numbers", "gaps"),
     "dead": (changed("S2", lambda values: 0.0 * values), "S2: it is zero throughout", "dead"),
     "clipped": (changed("S2", lambda values: np.clip(values, -0.5 * np.std(values), 0.5 * np.std(values))), "S2: it is clipped", "clipped"),
     "unit": (without_unit, "S3: no unit is stated", "units"),
@@ -192,9 +197,9 @@ FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_path: Path, record: Record, fault: str) -> None:
+def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_path: Path, short: Record, fault: str) -> None:
     change, told, allowed = FAULTS[fault]
-    write(tmp_path / "bad.h5", change(record))
+    write(tmp_path / "bad.h5", change(short))
     arguments = ("identify", "bad.h5", "--stage", "stage.toml", "--json", "-")
     ended = flexstage(*arguments)
     assert ended.code == 2
@@ -206,8 +211,8 @@ def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_pat
     assert cured.document["modes"]
 
 
-def test_units_can_be_stated(flexstage: Command, tmp_path: Path, record: Record) -> None:
-    write(tmp_path / "bare.h5", without_unit(record))
+def test_units_can_be_stated(flexstage: Command, tmp_path: Path, short: Record) -> None:
+    write(tmp_path / "bare.h5", without_unit(short))
     ended = flexstage("identify", "bare.h5", "--units", "S*=um", "--json", "-")
     assert ended.code == 0, ended.err
     assert {each["unit"] for each in ended.document["files"][0]["outputs"]} == {"um"}

@@ -128,7 +128,7 @@ def opened(path: Path, seconds: float) -> tuple[Record, Truth]:
 
 
 def test_never_more_than_a_block_is_read(tmp_path: Path, small_blocks: int) -> None:
-    whole, known = opened(tmp_path / "a.h5", 160.0)
+    whole, known = opened(tmp_path / "a.h5", 80.0)
     counted, shares = Counted(whole.samples, 12), [0.0]
     seen = identification(usable_measurement([replace(whole, samples=counted)]), told=lambda _, share: shares.append(share))
     modes_are_found(seen.found.frequencies, known)
@@ -139,7 +139,7 @@ def test_never_more_than_a_block_is_read(tmp_path: Path, small_blocks: int) -> N
 
 def test_memory_does_not_grow_with_the_record(tmp_path: Path, small_blocks: int) -> None:
     peaks: list[int] = []
-    for seconds in (40.0, 320.0):
+    for seconds in (40.0, 160.0):
         record = opened(tmp_path / f"{seconds:g}.h5", seconds)[0]
         tracemalloc.start()
         examine(record)
@@ -147,4 +147,4 @@ def test_memory_does_not_grow_with_the_record(tmp_path: Path, small_blocks: int)
         assert sum(len(block.frequencies) > 0 for block in record_lines(record, tuple(range(6)), 6)) == -(-12_000 * seconds // small_blocks)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    assert peaks[1] < 1.2 * peaks[0] < 12_000 * 320.0 * 8
+    assert peaks[1] < 1.2 * peaks[0] < 12_000 * 160.0 * 8

@@ -53,7 +53,7 @@ def test_every_processor_names_and_counts_alike(tmp_path: Path) -> None:
     others = processors()
     if not others:
         pytest.skip("OpenBLAS has no other kernels for this processor")
-    names = list(CASES) if FULL else ["double-triangle"]
+    names = list(CASES) if FULL else ["tip-tilt"]
     first = _analysed(tmp_path / "own", names, {})
     for number, environment in enumerate(others.values() if FULL else list(others.values())[:1]):
         second = _analysed(tmp_path / str(number), names, dict(environment))

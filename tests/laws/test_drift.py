@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import flexstage as fs
@@ -17,6 +17,7 @@ from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.expand import expand
 from flexstage.parts.given import Given, Joint
 from flexstage.spatial.frame import COMPONENTS
+from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, places, turns
 
@@ -52,7 +53,7 @@ def scaled_stress(found, model):
     return np.max(np.abs(found.forces.values)) / (1e-5 * 0.1 * stiffest)
 
 
-@settings(max_examples=100)
+@examples(40, 1000)
 @given(st.one_of(mechanisms(), actuated_platforms()), coefficients, places)
 def test_one_material_scales_without_stress(mechanism, coefficient, datum):
     """Uniform temperature: every body's reference moves by alpha (r - datum), nothing turns. Linear fields: no stress either."""
@@ -98,7 +99,7 @@ def different(mechanism, seed):
     return replace(with_solids(replace(mechanism, materials=materials, parts=parts)))
 
 
-@settings(max_examples=60)
+@examples(20, 600)
 @given(actuated_platforms(), st.integers(0, 2**32 - 1), turns())
 def test_moving_the_stage_turns_the_drift(mechanism, seed, move):
     turn, shift = move
@@ -116,7 +117,7 @@ def moved_solids(mechanism, turn, shift):
     return with_solids(moved(bare, turn, shift))
 
 
-@settings(max_examples=60)
+@examples(20, 600)
 @given(actuated_platforms(), st.integers(0, 2**32 - 1), places)
 def test_the_datum_only_shifts(mechanism, seed, datum):
     """Another datum of a growing ground: the platform's uniform drift moves by alpha times the shift, stresses and gauges do not."""
@@ -130,7 +131,7 @@ def test_the_datum_only_shifts(mechanism, seed, datum):
     np.testing.assert_allclose(second.gauges.values[:, 0], first.gauges.values[:, 0], rtol=0.0, atol=1e-13)
 
 
-@settings(max_examples=60)
+@examples(20, 600)
 @given(actuated_platforms(), st.integers(0, 2**32 - 1))
 def test_expansions_add(mechanism, seed):
     """Drift is linear in the coefficients: that of stacks alone and of all the rest alone add up."""

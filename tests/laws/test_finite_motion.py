@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.registry import CASES, case
 from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
+from tests.conftest import examples
 from tests.laws.shared import ideal
 from tests.laws.strategies import actuated_platforms, moved, turns
 
@@ -42,6 +43,7 @@ def compare(found, pose, kinematics, tolerance=1e-12):
     np.testing.assert_allclose(found.pose.vector[index], pose.vector[index], rtol=0.0, atol=tolerance)
 
 
+@examples(50, 1000)
 @given(actuated_platforms(), seeds)
 def test_forward_undoes_inverse(mechanism, seed):
     kinematics = ideal(mechanism)
@@ -75,6 +77,7 @@ def test_inverse_undoes_forward_over_the_corners(parameters):
     np.testing.assert_allclose(inverse_kinematics(mechanism, kinematics, there.pose).strokes, strokes, rtol=0.0, atol=1e-15)
 
 
+@examples(50, 1000)
 @given(actuated_platforms(), seeds)
 def test_error_of_the_linear_map_is_quadratic(mechanism, seed):
     kinematics = ideal(mechanism)
@@ -87,6 +90,7 @@ def test_error_of_the_linear_map_is_quadratic(mechanism, seed):
     np.testing.assert_allclose(4.0 * errors[1], errors[0], rtol=0.0, atol=0.02 * np.max(np.abs(errors[0])) + 1e-14)
 
 
+@examples(50, 1000)
 @given(actuated_platforms(), seeds)
 def test_first_derivative_is_the_linear_map(mechanism, seed):
     """By complex step: forward kinematics is analytic."""
@@ -97,6 +101,7 @@ def test_first_derivative_is_the_linear_map(mechanism, seed):
     np.testing.assert_allclose(found.imag / 1e-8, linear, rtol=0.0, atol=1e-6 * np.max(np.abs(linear)))
 
 
+@examples(50, 1000)
 @given(actuated_platforms(), turns(), seeds)
 def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     turn, shift = move
@@ -109,7 +114,7 @@ def test_moving_the_stage_only_turns_the_motion(mechanism, move, seed):
     np.testing.assert_allclose(there.pose.rotation_vector, turn @ here.pose.rotation_vector, rtol=0.0, atol=1e-11)
 
 
-@settings(max_examples=30)
+@examples(15, 300)
 @given(actuated_platforms(), seeds)
 def test_a_batch_of_strokes_is_the_loop(mechanism, seed):
     kinematics = ideal(mechanism)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.analysis.response import transmissibility
@@ -28,6 +28,7 @@ from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, is_actuator
 from flexstage.parts.piezo import Piezo
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, spatial_rotation, transport
+from tests.conftest import examples
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import actuated_platforms, mechanisms, moved, platforms, rosettes, turns
 
@@ -176,7 +177,7 @@ def test_moving_an_elastic_stage_changes_only_frames(mechanism, move):
     assert np.all(np.abs(difference) <= rounding_per_stroke(here, here.output[here.output_index(gauges)]))
 
 
-@settings(max_examples=20)
+@examples(20, 200)
 @given(mechanisms(), turns())
 def test_moving_a_loaded_stage_leaves_its_load_factors(mechanism, move):
     """Gravity turns with the stage; the shares of stiffness that its loads take or add, against the largest of them."""
@@ -300,6 +301,7 @@ def towards_ideal(mechanism, step):
     return replace(mechanism, parts=parts)
 
 
+@examples(60, 2000)
 @given(actuated_platforms())
 def test_ideal_is_the_limit_of_lumped(mechanism):
     """Stacks as they are, hinges stiffer and softer: the distance d = c s/(1 + c s) falls with the step s, ever more in proportion."""
@@ -314,6 +316,7 @@ def test_ideal_is_the_limit_of_lumped(mechanism):
     assert distances[1] < 0.1 * distances[0] * (1.0 + 4.0 * distances[0]) + 1e-8
 
 
+@examples(60, 2000)
 @given(rosettes())
 def test_threefold_symmetry_is_isotropic_in_plane(mechanism):
     """Three or more equal units around z: the in-plane stiffness has no direction, and x, y do not couple with z and yaw."""
@@ -362,6 +365,7 @@ any_stage = st.one_of(mechanisms(), platforms().map(lambda drawn: drawn[0]), ros
 picks = st.lists(st.integers(0, 10**6), min_size=1, max_size=12)
 
 
+@examples(60, 2000)
 @given(any_stage, picks, st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=3))
 def test_a_batch_is_a_loop(mechanism, picked, steps):
     """Arrays in place of numbers give, design by design, what single numbers give."""
@@ -376,6 +380,7 @@ def test_a_batch_is_a_loop(mechanism, picked, steps):
             near(found[design] if found.ndim == 3 else found, expected, 1e-12)
 
 
+@examples(60, 2000)
 @given(actuated_platforms(), picks, st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=3))
 def test_an_ideal_batch_is_a_loop(mechanism, picked, steps):
     """Where a small change of one number may break a closed loop's fit, only the platform's own numbers and poses are varied."""
@@ -389,6 +394,7 @@ def test_an_ideal_batch_is_a_loop(mechanism, picked, steps):
             near(found[design] if found.ndim == 3 else found, expected, 1e-9)
 
 
+@examples(60, 2000)
 @given(any_stage, st.integers(0, 10**6))
 def test_complex_step_is_the_finite_difference(mechanism, picked):
     """dK/dp and dM/dp by complex step against central differences of one part in ten thousand."""

@@ -33,7 +33,7 @@ from tests.models.wrong_models import (
 )
 from tests.models.wrong_models import blow as blow_once
 
-SEEDS = 200 if FULL else 5
+SEEDS = 200 if FULL else 3
 
 
 @cache
@@ -93,7 +93,7 @@ def test_errors_are_as_large_as_stated_where_unmeasured_forces_shake_the_stage()
     """Their noise is large at resonances, and one and the same at all outputs."""
     known = truth()
     scores = []
-    for seed in range(SEEDS if FULL else 3):
+    for seed in range(SEEDS if FULL else 2):
         made, shaken = record(known, seed), record(known, 20_000 + seed, noise=0.0)
         values = made.values.copy()
         values[:, 6:] += 0.1 * shaken.values[:, 6:]
@@ -102,7 +102,7 @@ def test_errors_are_as_large_as_stated_where_unmeasured_forces_shake_the_stage()
 
 
 def test_pure_noise_gives_no_mode_and_says_so():
-    for seed in range(SEEDS if FULL else 3):
+    for seed in range(SEEDS if FULL else 2):
         found = identify(_noise(seed))
         assert len(found.frequencies) == 0
         assert "no mode stands out of the noise" in found.warnings[0]

@@ -163,7 +163,7 @@ def test_identification_finds_the_modes_of_the_stage(name: str) -> None:
     mechanism, mapped = stage()
     model = mapped if name == "mapped" else lumped()
     setup = RigSetup(
-        seconds=60.0,
+        seconds=30.0,
         seed=3,
         drive=NoiseDrive(stroke=0.2e-6),
         amplifier=Amplifier(bandwidth=300.0),
@@ -185,7 +185,7 @@ def test_one_actuator_at_a_time_makes_the_same_test() -> None:
     drive = NoiseDrive(stroke=0.5e-6)
     names = [f"B{number}" for number in range(1, 7)]
     noisy = Sensing(density=5e-10)  # a gauge that sees nothing of one actuator still has noise
-    setups = [RigSetup(seconds=20.0, seed=seed, drive=replace(drive, actuators=(name,)), sensing=noisy) for seed, name in enumerate(names)]
+    setups = [RigSetup(seconds=10.0, seed=seed, drive=replace(drive, actuators=(name,)), sensing=noisy) for seed, name in enumerate(names)]
     records = [recorded(setup) for setup in setups]
     assert [[each.name for each in record.inputs] for record in records] == [[name] for name in names]
     found = identify(records, Search(band=(80.0, 200.0)))
@@ -201,7 +201,7 @@ def test_steps_are_noise_of_a_twelfth_of_their_square() -> None:
 
 
 def test_drift_is_a_random_walk_across_blocks() -> None:
-    setup = replace(BARE, seconds=200.0, drive=NoiseDrive(stroke=0.1e-6))
+    setup = replace(BARE, seconds=100.0, drive=NoiseDrive(stroke=0.1e-6))
     still, drifting = (outputs(recorded(replace(setup, sensing=sensing))) for sensing in (FINE, Sensing(resolution=0.0, drift=60e-9)))
     walked = 1e3 * (drifting - still)
     for lag in (1, 16, 2048, 10 * 2048):
@@ -213,7 +213,7 @@ def test_drift_is_a_random_walk_across_blocks() -> None:
 
 
 def test_gauge_noise_has_its_density_below_the_filter() -> None:
-    setup = replace(BARE, seconds=120.0, filter=AntiAlias(8, 800.0))
+    setup = replace(BARE, seconds=60.0, filter=AntiAlias(8, 800.0))
     quiet, noisy = (outputs(recorded(replace(setup, sensing=replace(FINE, density=density)))) for density in (0.0, 5e-9))
     frequencies, density = scipy.signal.welch(1e3 * (noisy - quiet), 2048.0, nperseg=2048, axis=0)
     assert np.mean(density[(frequencies > 5.0) & (frequencies < 500.0)]) == pytest.approx(25.0, rel=0.02)
@@ -267,7 +267,7 @@ def test_records_go_on_over_the_ends_of_blocks() -> None:
 def test_structural_damping_becomes_equivalent_ratios_and_says_so() -> None:
     mechanism, _ = stage()
     model = lumped()
-    record = fs.experiment.rig(mechanism, model, replace(BARE, drive=NoiseDrive(stroke=0.2e-6)), damping=StructuralDamping())
+    record = fs.experiment.rig(mechanism, model, replace(BARE, seconds=30.0, drive=NoiseDrive(stroke=0.2e-6)), damping=StructuralDamping())
     assert "structural damping as equivalent modal ratios" in record.name
     found = identify(record, Search(band=(80.0, 200.0)))
     ratios = modal_ratios(model, eigen(model), StructuralDamping())[list(platform_modes(mechanism, model).platform)]

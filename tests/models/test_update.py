@@ -64,7 +64,7 @@ def test_a_neck_five_per_cent_thicker_is_found_to_half_a_per_cent() -> None:
 
 def test_a_neck_is_found_in_a_record_of_the_virtual_rig() -> None:
     built = changed(neck=1.05)
-    test = rig(built, lumped(built), RigSetup(seconds=20.0, seed=5, sensing=Sensing(density=5e-9)))
+    test = rig(built, lumped(built), RigSetup(seconds=12.0, seed=5, sensing=Sensing(density=5e-9)))
     found = update(STAGE, identification(usable_measurement([test])).found, [NECK])
     assert found.changes[0] == pytest.approx(0.05, abs=0.005)
     assert found.told == (Told.WELL,)

@@ -10,6 +10,7 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.address import addresses, set_value, tag_of
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.retag import set_tags
+from tests.conftest import FULL
 
 TAG = "derived update a test, +- 0.3 %"
 
@@ -18,7 +19,7 @@ TAG = "derived update a test, +- 0.3 %"
 def test_every_kind_of_value_takes_a_tag(name: str) -> None:
     stage = case(name)
     text = dumps(stage, {"materials": "Steel of the shop."})
-    for address in addresses(stage)[::9]:
+    for address in addresses(stage)[:: 9 if FULL else 23]:
         after = set_tags(text, {address: TAG})
         found = loads(after)
         assert tag_of(found, address) == TAG, address

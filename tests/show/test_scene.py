@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.number import Array
@@ -19,6 +19,7 @@ from flexstage.show.scene.order import partition, sort_by_depth
 from flexstage.show.scene.stage import displace, largest_motion, scene
 from flexstage.show.scene.view import Side, order_facets, rejoin, view
 from flexstage.spatial.rotation import exponential
+from tests.conftest import examples
 from tests.show.stages import NAMES, analysed, seldom
 
 UNIT = st.floats(-1.0, 1.0, allow_nan=False)
@@ -52,7 +53,7 @@ def depth(facet: Facet, eye: Array, ray: Array) -> float:
     return float((facet.points[0] - ray) @ facet.normal / (eye @ facet.normal))
 
 
-@settings(max_examples=60)
+@examples(30, 600)
 @given(BOXES, VECTOR.filter(lambda eye: np.linalg.norm(eye) > 0.1), VECTOR)
 def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ray: Array) -> None:
     eye = eye / np.linalg.norm(eye)
@@ -62,7 +63,7 @@ def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ra
     assert all(later >= earlier - 1e-6 for earlier, later in pairwise(depths))
 
 
-@settings(max_examples=60)
+@examples(30, 600)
 @given(BOXES)
 def test_cuts_keep_areas(facets: list[Facet]) -> None:
     pieces = list(sort_by_depth(partition(facets, 2.0), np.array([0.0, 0.0, 1.0])))
@@ -71,7 +72,7 @@ def test_cuts_keep_areas(facets: list[Facet]) -> None:
         assert sum(own) == pytest.approx(area(facet), rel=1e-9)
 
 
-@settings(max_examples=60)
+@examples(30, 600)
 @given(BOXES)
 def test_solids_are_closed_and_face_outward(facets: list[Facet]) -> None:
     for name in {facet.paint.name for facet in facets}:
@@ -112,7 +113,7 @@ def test_faces_between_outlines_of_a_body_are_left_out() -> None:
     assert outer(plate + apart) == plate + apart
 
 
-@settings(max_examples=60)
+@examples(30, 600)
 @given(st.lists(st.tuples(UNIT, UNIT, st.floats(0.05, 0.8), st.floats(0.05, 0.8)), min_size=1, max_size=9))
 def test_hidden_pieces_do_not_show(items: list[tuple[float, float, float, float]]) -> None:
     polygons = [np.array([x, y]) + rectangle(width, height) for x, y, width, height in items]
