@@ -45,7 +45,7 @@ HOMES = {
     "beams.validity": "validity",
     "mechanism.pattern": "Polar Pose Facing Normal",
     "mechanism.mount": "mount",
-    "mechanism.mechanism": "Mechanism NamedNumber Link Unit Placement Probe LinkProbe GaugeSum Stop Force Opening "
+    "mechanism.mechanism": "Mechanism NamedNumber Link StrokePath Unit Placement Probe LinkProbe GaugeSum Stop Force Opening "
     "ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",
     "mechanism.checks": "check",

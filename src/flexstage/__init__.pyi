@@ -103,6 +103,9 @@ from flexstage.mechanism.mechanism import (
     Probe as Probe,
     RayleighDamping as RayleighDamping,
     Stop as Stop,
+)
+from flexstage.mechanism.mechanism import (
+    StrokePath as StrokePath,
     StructuralDamping as StructuralDamping,
     Unit as Unit,
 )

@@ -41,9 +41,10 @@ def _told(page):
 
 def test_every_key_and_alternative_is_told():
     words = {"format", "like", TAGS, *_words(node_of(Mechanism), set())}
-    expect_none(sorted(words - _told(PAGE)), "tell it in docs/design-file.md")
+    told = _told(PAGE)
+    expect_none(sorted(word for word in words if not set(word.split()) <= told), "tell it in docs/design-file.md")
 
 
 def test_every_requirement_is_told():
     told = {word.partition(".")[0] if "platform" not in word else word for word in _told(PAGE)}
-    expect_none((form for form in MEASURES.own if form.partition(".")[0] not in told), "tell it under Requirements")
+    expect_none((form for form in MEASURES.own if form.partition(".")[0].strip("<>") not in told), "tell it under Requirements")

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from flexstage.analysis.course import course
 from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.load_effect import LoadEffect, load_effect
@@ -14,6 +15,7 @@ from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.standing import standing, under_load
+from flexstage.analysis.stroke import Stroke
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
@@ -33,6 +35,8 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
 
 class Bench:
@@ -43,6 +47,33 @@ class Bench:
         self.command = command
         self._corrections: dict[str, Matrix] = {}
         self._reaches: dict[str, ForceReach] = {}
+        self._strokes: dict[tuple[str, float | None], Stroke] = {}
+        self._along: dict[str, Bench] = {}
+
+    @cached_property
+    def nonlinear(self) -> Nonlinear:
+        """The stage for large displacements."""
+        return nonlinear(self.mechanism)
+
+    def along(self, name: str, at: float | None = None) -> Stroke:
+        """What the stage does along a path that the design states, or at one value of its drive."""
+        if (name, at) not in self._strokes:
+            found = course(self.mechanism, name)
+            self._strokes[name, at] = found.stroke(self.nonlinear, None if at is None else np.array([at]))
+        return self._strokes[name, at]
+
+    def over(self, name: str) -> Bench:
+        """The bench of small motions about all points of a path, as a batch."""
+        if name not in self._along:
+            found = course(self.mechanism, name)
+            states = found.path(self.nonlinear, found.rest(self.nonlinear)).state
+            lost = int(np.sum(~states.converged))
+            if lost:
+                raise refuse(f"paths.{name}", f"{lost} of its {states.converged.size} points have no equilibrium", "Ask for less stroke")
+            other = Bench(self.mechanism, self.command)
+            other.__dict__["model"] = linearise(states, locked=found.locked)
+            self._along[name] = other
+        return self._along[name]
 
     def reach(self, point: str) -> ForceReach:
         """How far forces move a point, and what limits it."""

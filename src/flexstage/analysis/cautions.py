@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from flexstage.analysis.course import path_findings
 from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.seating import seating, seating_findings
@@ -349,7 +350,7 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
             read(mechanism)
         except DesignError as error:
             found += error.findings
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys([*found, *path_findings(mechanism)]))
 
 
 def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
-from functools import partial
+from functools import partial, wraps
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from flexstage.base.quantity import (
     MASS,
     MOMENT,
     POWER,
+    PRESSURE,
     RATIO,
     STIFFNESS,
     TEMPERATURE,
@@ -37,7 +38,9 @@ from flexstage.base.quantity import (
 )
 from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
-from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.mechanism.design import design, designs, step_size
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.nonlinear.critical import WEIGHT, critical
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport
@@ -68,7 +71,7 @@ class MeasureKind:
     The first sentence of that function's docstring says what it means. `pointed`: it may be asked at a point. `extreme`: the function gives
     pieces (..., m), of which the measure is the least or largest; an optimiser sees every actuator, hinge and stack then, not only the
     worst one. `softening`: with which power of 1 - 1/factor it changes where the dead load softens it most. `over_strokes`: it is about all
-    strokes. `analytic`: it may be differentiated by complex step.
+    strokes. `analytic`: it may be differentiated by complex step. `along`: it is about a path of the design, perhaps at a place on it.
     """
 
     form: str
@@ -80,6 +83,7 @@ class MeasureKind:
     softening: float = 0.0
     over_strokes: bool = False
     analytic: bool = True
+    along: bool = False
 
     @property
     def meaning(self) -> str:
@@ -103,13 +107,18 @@ class MeasureKind:
 
 @dataclass(frozen=True)
 class Measure:
-    """A number that a stage has: its `key`, the `kind` with its `name` (an axis, actuator, gauge, number), the point it is taken at."""
+    """A number that a stage has: its `key`, the `kind` with its `name` (an axis, actuator, gauge, path, number), the point it is taken at.
+
+    `place` is the value of a path's drive that it is taken at; of the whole path the worst. `path` is that which it is the worst over.
+    """
 
     key: str
     kind: MeasureKind
     name: str
     quantity: Quantity
     point: str = PLATFORM
+    place: float | None = None
+    path: str = ""
 
 
 @partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST)
@@ -409,8 +418,120 @@ def own_load(bench: Bench, asked: Measure) -> Array:
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
 
+def _each_design(work: Callable[[Bench, Measure], float]) -> Callable[[Bench, Measure], Array]:
+    """The same of batches and of complex numbers: design by design, derivatives by central differences along the imaginary parts."""
+
+    @wraps(work)
+    def works(bench: Bench, asked: Measure) -> Array:
+        stage = bench.mechanism
+        count, step = designs(stage), step_size(stage)
+        if count is None and not step:
+            return np.asarray(work(bench, asked))
+        return np.array(
+            [_one_design(stage, place, step, lambda one: work(Bench(one, bench.command), asked)) for place in range(count or 1)]
+        )
+
+    return works
+
+
+def _one_design(stage: Mechanism, place: int, step: float, work: Callable[[Mechanism], float]) -> complex:
+    value = work(design(stage, place))
+    if not step:
+        return value
+    ahead, back = (work(design(stage, place, share)) for share in (step, -step))
+    return value + 1j * (ahead - back) / (2.0 * step)
+
+
+def _column(bench: Bench, asked: Measure, name: str) -> Array:
+    """A column of a stroke: at the place that is asked for, or all of it. Refused where no equilibrium was found."""
+    found = bench.along(asked.name, asked.place)
+    if name not in found.along.columns:
+        raise refuse(asked.key, f"{found.drive} is no coordinate, so nothing holds it", "Drive a coordinate, for example platform.y")
+    values = found.along.values[:, found.along.columns.index(name)]
+    if np.any(np.isnan(values)):
+        where = found.along.values[np.isnan(values)][0, 0]
+        raise refuse(asked.key, f"at {found.drive} = {where:.4g} the stage has no equilibrium, or a free one that is not stable", _LESS)
+    return values
+
+
+_LESS = "Ask for less stroke, or ask flexstage buckle what gives way"
+
+
+@partial(MeasureKind, "<path>.force", FORCE, about=MOMENT, along=True)
+@_each_design
+def path_force(bench: Bench, asked: Measure) -> float:
+    """Force that holds the drive of a path there, at large displacements; over all of it the largest."""
+    return float(np.max(np.abs(_column(bench, asked, "force"))))
+
+
+@partial(MeasureKind, "<path>.stiffness", STIFFNESS, about=TWISTING, along=True)
+@_each_design
+def path_stiffness(bench: Bench, asked: Measure) -> float:
+    """Stiffness against the drive of a path, at large displacements; over all of it the least."""
+    return float(np.min(_column(bench, asked, "stiffness")))
+
+
+@partial(MeasureKind, "<path>.stress", PRESSURE, along=True)
+@_each_design
+def path_stress(bench: Bench, asked: Measure) -> float:
+    """Largest stress of a flexure over a path, at large displacements."""
+    return float(np.max(_column(bench, asked, "stress")))
+
+
+@partial(MeasureKind, "<path>.strain", RATIO, along=True)
+@_each_design
+def path_strain(bench: Bench, asked: Measure) -> float:
+    """Largest strain of a flexure over a path, at large displacements."""
+    return float(np.max(_column(bench, asked, "strain")))
+
+
+@partial(MeasureKind, "<path>.frequency", FREQUENCY, along=True)
+@_each_design
+def path_frequency(bench: Bench, asked: Measure) -> float:
+    """Lowest natural frequency along a path, free under the force there."""
+    return float(np.min(_column(bench, asked, "f1")))
+
+
+def _path_motion(axis: str) -> MeasureKind:
+    """The platform's motion along, or about, one axis as it goes along a path."""
+
+    @_each_design
+    def motion(bench: Bench, asked: Measure) -> float:
+        """Motion of the platform along that axis as it goes along a path, from where it rests; over all of it the largest."""
+        drive = bench.mechanism.paths[asked.name].drive
+        return float(np.max(np.abs(_column(bench, asked, drive if drive == f"{PLATFORM}.{axis}" else f"{PLATFORM}.{axis}"))))
+
+    return MeasureKind(f"<path>.motion.{axis}", ROTATION if axis.startswith("r") else DISPLACEMENT, motion, along=True)
+
+
+@partial(MeasureKind, "buckling.factor", RATIO)
+@_each_design
+def buckling_factor(bench: Bench, _: Measure) -> float:
+    """How many times its own weight and payloads the stage bears, at large displacements."""
+    return critical(bench.nonlinear, {WEIGHT: 1.0}, weight=0.0, tolerance=1e-6).factor
+
+
+def over(kind: MeasureKind) -> MeasureKind:
+    """The worst along a path of what small motions have: a frequency, a stiffness. Refused for what needs more than a model of those.
+
+    >>> over(frequency).form
+    'frequency.<n> over <path>'
+    """
+    if kind.softening <= 0.0:
+        raise refuse(kind.form, "it is not known over a path", "Ask for a frequency or a stiffness over it")
+
+    @_each_design
+    def least(bench: Bench, asked: Measure) -> float:
+        return float(np.min(kind.value(bench.over(asked.path), asked)))
+
+    least.__doc__ = (inspect.getdoc(kind.work) or "").partition(".\n")[0].rstrip(".") + ", the least over a path."
+    return replace(kind, form=f"{kind.form}{_OVER}", work=least, softening=0.0, extreme=None)
+
+
+_OVER = " over <path>"
+_PATH_MOTIONS = tuple(_path_motion(axis) for axis in COMPONENTS)
 MEASURES: Register[MeasureKind] = Register(
-    "flexstage.measures", {each.form: each for each in globals().values() if isinstance(each, MeasureKind)}
+    "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
 )
 """Measures by the form of their keys, ours in the order they stand above: `[require]` lines and studies call them by it."""
 
@@ -421,7 +542,9 @@ def measure_kind(form: str) -> MeasureKind:
     >>> measure_kind("mass").meaning
     'mass of the platform without payload'
     """
-    found = MEASURES.get(form)
+    found = MEASURES.get(form.removesuffix(_OVER))
+    if found is not None and form.endswith(_OVER):
+        return over(found)
     if found is None:
         raise refuse(form, "no installed package offers this measure", "Install the one that does")
     return found

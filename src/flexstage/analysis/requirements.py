@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 
 import numpy as np
 
-from flexstage.analysis.measures import MEASURES, Measure, MeasureKind, direction_of, measure_kind
+from flexstage.analysis.course import drive_quantity
+from flexstage.analysis.measures import MEASURES, Measure, MeasureKind, direction_of, measure_kind, over
 from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.base.quantity import Quantity
+from flexstage.base.quantity import ANGLE, Quantity
 from flexstage.base.unit import parse
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.spatial.frame import COMPONENTS
 
 _LINE = re.compile(r"\s*(?P<sense>at least|at most)\s+(?P<value>.+?)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
-_MEASURE = re.compile(r"\s*(?P<key>[^\s]+)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_MEASURE = re.compile(r"\s*(?P<key>[^\s]+)(?:\s+over\s+(?P<path>[^\s]+))?(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
 _COUNT = re.compile(r"[1-9]\d{0,2}")
 _SLACK = 1e-9
 
@@ -73,7 +74,7 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
     >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
     ['loss', 'loss.B1', 'loss.B2']
     """
-    names = _names(expand(mechanism))
+    names = _names(mechanism)
     return tuple(key for form in MEASURES for key in _keys_of_form(form, names))
 
 
@@ -88,13 +89,11 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     >>> read.kind.form, read.name, read.sense.value, read.limit
     ('stroke.<axis>', 'x', 'at least', 5e-05)
     """
-    assembly = expand(mechanism)
-    names, points = _names(assembly), (PLATFORM, *assembly.points)
     found: list[Requirement] = []
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(f"require.{key}", key, text, names, points))
+            found.append(_read(mechanism, f"require.{key}", key, text))
         except DesignError as error:
             findings += error.findings
     if findings:
@@ -102,9 +101,11 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     return tuple(found)
 
 
-def _names(assembly: Assembly) -> dict[str, tuple[str, ...]]:
+def _names(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
     """What may stand in the place of each placeholder."""
+    assembly = expand(mechanism)
     return {
+        "path": tuple(mechanism.paths),
         "axis": COMPONENTS,
         "dimension": COMPONENTS[:3],
         "direction": ("(1,1,0)",),
@@ -130,18 +131,17 @@ def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requir
     >>> requirement(double_triangle(), "mass", "at most 12 kg", "limits.mass").limit
     12.0
     """
-    assembly = expand(mechanism)
-    return _read(where, key, text, _names(assembly), (PLATFORM, *assembly.points))
+    return _read(mechanism, where, key, text)
 
 
-def _read(where: str, key: str, text: str, names: Mapping[str, tuple[str, ...]], points: tuple[str, ...]) -> Requirement:
-    kind, name = _kind(key, names, where)
+def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
     match = _LINE.fullmatch(text)
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
-    point, quantity = _point_and_quantity(where, kind, name, match["point"], points)
-    limit = parse(match["value"], quantity, where=where)
-    return Requirement(key, kind, name, quantity, point, text=text, sense=Sense(match["sense"]), limit=limit)
+    asked = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
+    limit = parse(match["value"], asked.quantity, where=where)
+    stated = {each.name: getattr(asked, each.name) for each in fields(asked) if each.name != "key"}
+    return Requirement(key, **stated, text=text, sense=Sense(match["sense"]), limit=limit)
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
@@ -152,13 +152,31 @@ def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     >>> read.kind.form, read.name, read.quantity.shown
     ('stroke.<axis>', 'x', 'um')
     """
-    assembly = expand(mechanism)
+    return _measure(mechanism, text, where)
+
+
+def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     match = _MEASURE.fullmatch(text)
     if match is None:
         raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
-    kind, name = _kind(match["key"], _names(assembly), where)
-    point, quantity = _point_and_quantity(where, kind, name, match["point"], (PLATFORM, *assembly.points))
-    return Measure(match["key"], kind, name, quantity, point)
+    kind, name = _kind(match["key"], _names(mechanism), where)
+    if kind.along:
+        return _along(mechanism, (match["key"], kind, name), match["point"], where)
+    point, quantity = _point_and_quantity(where, kind, name, match["point"], (PLATFORM, *expand(mechanism).points))
+    if match["path"] is None:
+        return Measure(match["key"], kind, name, quantity, point)
+    if match["path"] not in mechanism.paths:
+        raise refuse(where, f'there is no path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
+    return Measure(f"{match['key']} over {match['path']}", over(kind), name, quantity, point, path=match["path"])
+
+
+def _along(mechanism: Mechanism, asked: tuple[str, MeasureKind, str], at: str | None, where: str) -> Measure:
+    """A measure along a path, perhaps at a value of its drive."""
+    key, kind, name = asked
+    drive = drive_quantity(expand(mechanism), mechanism.paths[name].drive, f"paths.{name}.drive")
+    place = None if at is None else parse(at, drive, where=where)
+    quantity = kind.about if kind.about is not None and drive is ANGLE else kind.quantity
+    return Measure(key if at is None else f"{key} at {at}", kind, name, quantity, place=place)
 
 
 def _accepts_name(placeholder: str, name: str, where: str) -> bool:
@@ -182,11 +200,13 @@ def _point_and_quantity(where: str, kind: MeasureKind, name: str, point: str | N
 def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[MeasureKind, str]:
     """The kind of measure that a key asks for, and the name in it."""
     for form in MEASURES:
-        stem, _, placeholder = form.rstrip(">").partition("<")
-        name = key.removeprefix(stem)
+        stem, _, rest = form.partition("<")
+        placeholder, _, tail = rest.partition(">")
+        name = key.removeprefix(stem).removesuffix(tail)
         if key == stem and not placeholder:
             return measure_kind(form), ""
-        if placeholder and key.startswith(stem) and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
+        fits = placeholder and key.startswith(stem) and key.endswith(tail)
+        if fits and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
             return measure_kind(form), name
     known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
     advice = f"{suggest_nearest(key, known)}. A measure that another package offers is known where that package is installed"

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.analysis.stance import coordinate
 from flexstage.analysis.strained import strain_cautions
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
@@ -17,6 +18,7 @@ from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.model import LinearModel
+from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.path import Path
 from flexstage.models.nonlinear.strain import Strains, strains
@@ -32,11 +34,13 @@ class Stroke(InNotebook):
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
     displacement and rotation vector; its first natural frequencies, free under that force; the largest stress and strain of a flexure; and
-    in how many ways the free stage would leave that place (0: stable).
+    in how many ways the free stage would leave that place (0: stable). Drive and displacements count from `sag`, where weight and loads
+    bring the platform from its drawn place; None where they count from the drawn one.
     """
 
     drive: str
     along: Matrix
+    sag: Matrix | None
     strained: Annotated[Strains, INNER]
     provenance: str
 
@@ -46,10 +50,11 @@ class Stroke(InNotebook):
         return tuple(_cautions(self))
 
 
-def stroke(path: Path) -> Stroke:
+def stroke(path: Path, rest: State | None = None) -> Stroke:
     """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
 
-    Frequencies are NaN where the free stage is not stable. `loads` and weight are those of the path.
+    Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
+    `rest`, if it is given.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.path import path
@@ -58,28 +63,30 @@ def stroke(path: Path) -> Stroke:
     >>> found.along.columns[:4]
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
-    about = linearise(path.state)
+    about = linearise(path.state, locked=path.locked)
     strained = strains(path.state)
-    columns = dict(_columns(path, about, strained))
+    columns = dict(_columns(path, about, strained, rest))
     values = np.stack([values for values, _ in columns.values()], axis=-1)
     rows = tuple(str(number + 1) for number in range(len(path.values)))
     units = tuple(tuple(unit for _, unit in columns.values()) for _ in rows)
-    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), strained, about.provenance)
+    sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
+    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, about.provenance)
 
 
-def _columns(path: Path, about: LinearModel, strained: Strains) -> Iterator[tuple[str, tuple[Array, str]]]:
+def _columns(path: Path, about: LinearModel, strained: Strains, rest: State | None) -> Iterator[tuple[str, tuple[Array, str]]]:
     owner, _, component = path.drive.rpartition(".")
-    held = component in COMPONENTS and path.state.held == (path.drive,)
+    held = component in COMPONENTS and path.state.held[:1] == (path.drive,)
     units: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
     known = {channel.name: channel.unit for channel in about.inputs}
-    yield path.drive, (path.values, units[component] if held else known.get(path.drive, "1"))
+    begun = 0.0 if rest is None or not held else coordinate(rest, path.drive)
+    yield path.drive, (path.values - begun, units[component] if held else known.get(path.drive, "1"))
     if held:
         force = WRENCH_UNITS[COMPONENTS.index(component)]
         yield "force", (path.state.reactions[..., 0], force)
         conjugate = f"{owner}.{_FORCE_OF[component]}"
         if conjugate in known:
             yield "stiffness", (_stiffness(about, path.drive, conjugate), f"{force}/{units[component]}")
-    twist = path.state.twist(PLATFORM)
+    twist = path.state.twist(PLATFORM) - (0.0 if rest is None else rest.twist(PLATFORM))
     yield from (
         (f"platform.{name}", (twist[..., place], units[name])) for place, name in enumerate(COMPONENTS) if f"platform.{name}" != path.drive
     )

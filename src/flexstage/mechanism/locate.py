@@ -16,7 +16,7 @@ from flexstage.mechanism.node import Node
 from flexstage.mechanism.path import completions, has_member, member
 from flexstage.spatial.frame import COMPONENTS
 
-_DOCUMENT = ("tags", "sources", "requirements", "changes", "formulas")
+_DOCUMENT = ("tags", "sources", "requirements", "changes", "formulas", "paths")
 _TOPOLOGY = ("joins", "part")
 
 

@@ -183,6 +183,21 @@ class Force(Description):
 
 
 @dataclass(frozen=True, eq=False)
+class StrokePath(Description):
+    """A path to judge the stage along: `drive` (a coordinate such as `platform.y`, a stack, a load) goes between the two values of `to`.
+
+    Values are texts with units, counted from where the stage sags to; at `points` of them equilibrium is looked for. `hold` says what
+    stays: a dead load in newtons along a coordinate (`{"platform.x": "-20 N"}`), a coordinate that stays where it rests
+    (`{"platform.rz": "0"}`), or `{"gravity": "off"}`.
+    """
+
+    drive: str
+    to: tuple[str, str]
+    points: int = 11
+    hold: Mapping[str, str] = _empty()
+
+
+@dataclass(frozen=True, eq=False)
 class ModalDamping(Description):
     """One damping ratio for all modes."""
 
@@ -219,9 +234,9 @@ class Mechanism(InNotebook, Description):
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
-    `stops` end strokes. `ground` names the material that the ground grows with (`none`: it does not grow). `packages` are those that its
-    kinds of parts, gauges and measures come from, each perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values
-    are worked out of `numbers`; values are kept as they come out.
+    `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
+    with (`none`: it does not grow). `packages` are those that its kinds of parts, gauges and measures come from, each perhaps with
+    versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they come out.
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -251,6 +266,7 @@ class Mechanism(InNotebook, Description):
     numbers: Mapping[str, NamedNumber] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
     stops: Mapping[str, Stop] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
+    paths: Mapping[str, StrokePath] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
         """The stage as it turns and moves, for a notebook or a page of its own: `flexstage.view`, which stands above all descriptions."""

@@ -89,6 +89,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         payloads={},
         forces={},
         requirements={},
+        paths={},
         envelope=None,
         opening=None,
     )

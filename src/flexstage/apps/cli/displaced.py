@@ -8,16 +8,18 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from flexstage.analysis.course import Course, course, drive_quantity
 from flexstage.analysis.stroke import stroke as over_stroke
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import LENGTH, RATIO
 from flexstage.base.unit import parse
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import WEIGHT, Critical, critical
-from flexstage.models.nonlinear.path import path
-from flexstage.models.nonlinear.stage import nonlinear
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import Load, loads_of, quantity_of
+from flexstage.show.command.displaced import Load, loads_of
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.displaced import buckling_report, stroke_report
@@ -31,10 +33,11 @@ _ENOUGH = 1e-4
 def stroke(  # noqa: PLR0913 (its options)
     design: Design,
     *,
+    named: Annotated[str, text_option("--path", "NAME", "A path of the design, [paths.NAME]. Default: the one that it states.")] = "",
     drive: Annotated[
-        str, text_option("--drive", "NAME", "What is driven: a coordinate (platform.x), a stroke (B1), a force.")
-    ] = "platform.x",
-    start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: as drawn.")] = "",
+        str, text_option("--drive", "NAME", "What is driven: a coordinate, a stroke (B1), a force. Default: platform.x.")
+    ] = "",
+    start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
     points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points of the stroke.")] = 11,
     load: Load = None,
@@ -47,15 +50,18 @@ def stroke(  # noqa: PLR0913 (its options)
     """Force, stiffness, parasitic motion, frequencies over a stroke.
 
     At large displacements, under the stage's weight and the loads that are named: every point is an equilibrium, and its frequencies and
-    stiffness are those of the stage there.
+    stiffness are those of the stage there. Strokes count from where the stage sags to.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     model = nonlinear(mechanism)
-    quantity = quantity_of(model, drive)
-    low = parse(start, quantity, where="--from") if start else 0.0
-    high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
-    along = path(model, drive, np.linspace(low, high, points), loads=loads_of(model, load or ()))
-    found = over_stroke(along)
+    free = not (drive or start or end or load)
+    stated = named or (next(iter(mechanism.paths)) if free and len(mechanism.paths) == 1 else "")
+    asked = (
+        _stated(mechanism, stated) if stated else _asked(model, drive or "platform.x", (start, end), (points, loads_of(model, load or ())))
+    )
+    rest = asked.rest(model)
+    along = asked.path(model, rest)
+    found = over_stroke(along, rest)
     if report is not None:
         save(report, stroke_report(mechanism, along, found), "--report")
     answer(
@@ -69,6 +75,21 @@ def stroke(  # noqa: PLR0913 (its options)
         cautions=found.cautions,
         beside=(report,),
     )
+
+
+def _stated(mechanism: Mechanism, name: str) -> Course:
+    if name not in mechanism.paths:
+        raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+    return course(mechanism, name)
+
+
+def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int, dict[str, float]]) -> Course:
+    quantity = drive_quantity(model.assembly, drive, "--drive")
+    low = parse(ends[0], quantity, where="--from") if ends[0] else 0.0
+    high = parse(ends[1], quantity, where="--to") if ends[1] else (1e-4 if quantity is LENGTH else 1e-3)
+    if low == high:
+        raise refuse("--to", f"{drive} goes from {low:g} to {high:g}: a drive that does nothing", "Name two places")
+    return Course(drive, np.linspace(low, high, more[0]), more[1], (), 1.0)
 
 
 @dataclass(frozen=True, eq=False)

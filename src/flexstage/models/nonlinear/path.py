@@ -33,12 +33,14 @@ class Path:
     """Equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
 
     `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
+    `locked` coordinates stay where they are along it.
     """
 
     drive: str
     values: Array
     state: State
     motions: Array
+    locked: tuple[str, ...] = ()
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -59,13 +61,14 @@ def path(
     values: Array,
     *,
     loads: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
     weight: float = 1.0,
     effort: Effort = USUAL,
 ) -> Path:
     """Equilibria as `drive` takes `values` (k,): a coordinate that is held (`platform.y`), or an actuator's stroke, force or a wrench.
 
-    All values are tried at once from the drawn position; what fails starts again from its nearest neighbour that was found. Raises
-    `DesignError` for a drive that the stage does not have.
+    Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
+    its nearest neighbour that was found. Raises `DesignError` for a drive that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -73,20 +76,21 @@ def path(
     >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
-    values, rest = np.asarray(values, dtype=float), dict(loads or {})
+    values, rest, locked = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {})
     known = {channel.name for channel in model.inputs}
 
     def at(some: Array, start: State | None) -> State:
         if drive in known:
-            return equilibrium(model, {**rest, drive: some + rest.get(drive, 0.0)}, weight=weight, start=start, effort=effort)
-        return equilibrium(model, rest, hold={drive: some}, weight=weight, start=start, effort=effort)
+            driven = {**rest, drive: some + rest.get(drive, 0.0)}
+            return equilibrium(model, driven, hold=locked, weight=weight, start=start, effort=effort)
+        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, effort=effort)
 
     found = at(values, None)
     while 0 < (count := int(np.sum(found.converged))) < values.size:
         found = at(values, _neighbour(found))
         if int(np.sum(found.converged)) <= count:
             break
-    return Path(drive, values, found, unstable_motions(found))
+    return Path(drive, values, found, unstable_motions(found), tuple(locked))
 
 
 def _neighbour(found: State) -> State:

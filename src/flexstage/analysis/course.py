@@ -1,0 +1,147 @@
+"""The paths that a design states, in numbers: from where the stage rests, along a drive, under what stays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.stance import coordinate
+from flexstage.analysis.stroke import Stroke, stroke
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.base.quantity import ANGLE, LENGTH, Quantity
+from flexstage.base.unit import parse, quantity_of_unit
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import Mechanism, StrokePath
+from flexstage.models.linear.channels import input_channels, wrench_places
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.path import Path, path
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.spatial.frame import COMPONENTS, FORCES
+
+_SWITCH = {"on": 1.0, "off": 0.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A path in numbers: `drive` goes over `values` (k,) [SI] from where the stage rests under `loads` and its `weight` (0: without it).
+
+    `locked` coordinates stay where it rests.
+    """
+
+    drive: str
+    values: Array
+    loads: dict[str, float]
+    locked: tuple[str, ...]
+    weight: float
+
+    def rest(self, model: Nonlinear) -> State:
+        """Where the stage rests. Raises `DesignError` where it does not."""
+        found = equilibrium(model, self.loads, weight=self.weight)
+        if not bool(found.converged):
+            raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
+        return found
+
+    def path(self, model: Nonlinear, rest: State, values: Array | None = None) -> Path:
+        """Equilibria along it, or at other values of its drive."""
+        wanted = self.values if values is None else values
+        driven = self.drive in {channel.name for channel in model.inputs}
+        start = 0.0 if driven else float(coordinate(rest, self.drive))
+        hold = {name: float(coordinate(rest, name)) for name in self.locked}
+        return path(model, self.drive, start + wanted, loads=self.loads, hold=hold, weight=self.weight)
+
+    def stroke(self, model: Nonlinear, values: Array | None = None) -> Stroke:
+        """What the stage does along it, counted from where it rests."""
+        rest = self.rest(model)
+        return stroke(self.path(model, rest, values), rest)
+
+
+def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
+    """What a drive is measured in. Raises `DesignError` at `where` for what is neither a coordinate nor a load of the stage.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> drive_quantity(expand(parallelogram()), "platform.rz", "here").noun
+    'an angle'
+    """
+    units = {channel.name: channel.unit for channel in input_channels(assembly)}
+    if drive in units:
+        return quantity_of_unit(units[drive])
+    owner, _, component = drive.rpartition(".")
+    places = [*assembly.bodies, *wrench_places(assembly)]
+    if owner not in places or component not in COMPONENTS:
+        known = [*units, *(f"{place}.{each}" for place in places for each in COMPONENTS)]
+        raise refuse(where, f'"{drive}" is neither a coordinate nor a load of this stage', suggest_nearest(drive, known))
+    return ANGLE if component.startswith("r") else LENGTH
+
+
+def course(mechanism: Mechanism, name: str) -> Course:
+    """Read a path of `[paths]`. Raises `DesignError` with all that is wrong with it.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> from dataclasses import replace
+    >>> stage = replace(stage, paths={"out": fs.StrokePath("platform.x", ("0 mm", "0.1 mm"), points=3)})
+    >>> course(stage, "out").values.tolist()
+    [0.0, 5e-05, 0.0001]
+    """
+    stated, where = mechanism.paths[name], f"paths.{name}"
+    assembly = expand(mechanism)
+    require(_findings(stated, where))
+    quantity = drive_quantity(assembly, stated.drive, f"{where}.drive")
+    low, high = (parse(text, quantity, where=f"{where}.to") for text in stated.to)
+    if low == high:
+        raise refuse(f"{where}.to", f"it goes from {stated.to[0]} to {stated.to[1]}: a drive that does nothing", "Name two places")
+    loads, locked, weight = dict[str, float](), list[str](), 1.0
+    for key, text in stated.hold.items():
+        at = f"{where}.hold.{key}"
+        if key == "gravity":
+            weight = _SWITCH[text]
+        elif text.strip() == "0":
+            drive_quantity(assembly, key, at)
+            locked.append(key)
+        else:
+            load = _load(assembly, key, at)
+            loads[load] = parse(text, drive_quantity(assembly, load, at), where=at)
+    require(_contradictions(stated, loads, locked, where))
+    return Course(stated.drive, np.linspace(low, high, stated.points), loads, tuple(locked), weight)
+
+
+def _load(assembly: Assembly, key: str, where: str) -> str:
+    """The load that a coordinate names, or a load by its own name."""
+    owner, _, component = key.rpartition(".")
+    if component in COMPONENTS:
+        return f"{owner}.{FORCES[COMPONENTS.index(component)]}"
+    drive_quantity(assembly, key, where)
+    return key
+
+
+def _findings(stated: StrokePath, where: str) -> Iterator[Finding]:
+    if stated.points < 2:
+        yield Finding(f"{where}.points", f"{stated.points} points are no path", "Give two or more")
+    switch = stated.hold.get("gravity")
+    if switch is not None and switch not in _SWITCH:
+        yield Finding(f"{where}.hold.gravity", f'found "{switch}"', 'Write "on" or "off"')
+
+
+def _contradictions(stated: StrokePath, loads: dict[str, float], locked: list[str], where: str) -> Iterator[Finding]:
+    owner, _, component = stated.drive.rpartition(".")
+    own = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else stated.drive
+    if own in loads:
+        yield Finding(f"{where}.hold", f"{own} stays, and it is what drives {stated.drive}", "Leave out one of the two")
+    if stated.drive in locked:
+        yield Finding(f"{where}.hold.{stated.drive}", "what is driven cannot stay locked", "Leave it out")
+
+
+def path_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """What is wrong with the paths of a design.
+
+    >>> list(path_findings(Mechanism("stage")))
+    []
+    """
+    for name in mechanism.paths:
+        try:
+            course(mechanism, name)
+        except DesignError as error:
+            yield from error.findings

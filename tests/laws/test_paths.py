@@ -1,0 +1,119 @@
+"""Paths that a design states: what is judged along them is what equilibria say, in files, studies and batches alike."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.cautions import model_findings
+from flexstage.analysis.course import course
+from flexstage.analysis.judge import judge, measure_all
+from flexstage.analysis.measures import measure_kind
+from flexstage.analysis.requirements import measure, requirements
+from flexstage.mechanism.design import design, designs
+from flexstage.mechanism.store import dumps, loads
+from flexstage.studies.sweeps.file import load_study
+from flexstage.studies.sweeps.run import sweep
+from tests.laws.test_nonlinear import LEAF, UNIT, guide
+
+OUT = fs.StrokePath("platform.y", ("-10 mm", "10 mm"), points=5, hold={"platform.x": "-5 N"})
+ASKED = {
+    "out.force at 10 mm": "at most 1 kN",
+    "out.motion.x": "at most 1 m",
+    "out.strain": "at most 2 %",
+    "frequency.1 over out": "at least 1 Hz",
+    "stiffness.z over out": "at least 1 N/um",
+    "buckling.factor": "at least 3",
+}
+
+
+def stage(**changes: fs.StrokePath) -> fs.Mechanism:
+    return replace(guide(gravity=(-9.80665, 0.0, 0.0)), paths={"out": OUT, **changes}, requirements=ASKED)
+
+
+def test_what_is_judged_along_a_path_is_what_equilibria_say():
+    model = fs.nonlinear(stage())
+    rest = fs.equilibrium(model, {"platform.fx": -5.0})
+    ends = fs.equilibrium(model, {"platform.fx": -5.0}, hold={"platform.y": np.array([-10e-3, 0.0, 10e-3])})
+    found = {each.requirement.key: float(np.asarray(each.value)) for each in judge(stage())}
+    assert found["out.force at 10 mm"] == pytest.approx(ends.reactions[2, 0], rel=1e-9)
+    assert found["out.motion.x"] == pytest.approx(abs(ends.displacement()[2, 0] - rest.displacement()[0]), rel=1e-9)
+    assert found["frequency.1 over out"] == pytest.approx(np.min(fs.modes(fs.linearise(ends)).frequencies[:, 0]), rel=1e-6)
+    slender = 2.0 * np.pi**2 * UNIT / 9.80665
+    assert found["buckling.factor"] == pytest.approx(fs.critical(model, {"weight": 1.0}, weight=0.0).factor, rel=1e-5)
+    assert 1.0 < found["buckling.factor"] / slender < 1.1
+
+
+def test_paths_stand_in_files():
+    again = loads(dumps(stage()))
+    assert dict(again.paths["out"].hold) == {"platform.x": "-5 N"}
+    assert [each.limit for each in requirements(again)] == [each.limit for each in requirements(stage())]
+    assert {measure_kind(each.kind.form).form for each in requirements(again)} == {each.kind.form for each in requirements(again)}
+
+
+def test_a_batch_is_its_designs_and_steps_along_imaginary_parts_are_slopes():
+    """Force goes with t^3 but for plate action, which weighs less in thicker leaves."""
+    thick = np.array([0.4e-3, 0.5e-3]) + 1e-20j
+    free = replace(stage(), gravity=(0.0, 0.0, 0.0), paths={"out": replace(OUT, hold={})})
+    batch = replace(free, parts={"leaf": replace(LEAF, thickness=thick)})
+    assert designs(batch) == 2
+    (both,) = measure_all(batch, (measure(batch, "out.force at 10 mm", "here"),))
+    single = [measure_all(design(batch, place), (measure(batch, "out.force at 10 mm", "here"),))[0] for place in (0, 1)]
+    assert not isinstance(both, str)
+    assert np.real(both) == pytest.approx(np.array(single, dtype=float), rel=1e-12)
+    powers = np.imag(both) / 1e-20 * np.real(thick) / np.real(both)
+    assert np.all((powers > 2.8) & (powers < 3.01))
+    mean = np.log(float(np.real(both[1] / both[0]))) / np.log(1.25)
+    assert np.mean(powers) == pytest.approx(mean, abs=5e-3)
+
+
+def test_a_sweep_asks_for_measures_along_a_path(tmp_path: Path):
+    (tmp_path / "stage.toml").write_text(dumps(stage()))
+    (tmp_path / "study.toml").write_text(
+        'format = "flexstage study 1"\nname = "leaves"\ndesign = "stage.toml"\n[variables]\n'
+        't = { of = "parts.leaf.thickness", from = "0.4 mm", to = "0.5 mm", levels = 2 }\n'
+        '[responses]\npush = "out.force at 10 mm"\nslow = "frequency.1 over out"\n[sweep]\nsampling = "grid"\n'
+    )
+    found = sweep(load_study(tmp_path / "study.toml"), tmp_path / "out.h5")
+    assert found.responses[:, 0][1] == pytest.approx(float(np.asarray(judge(stage())[0].value)), rel=1e-9)
+    assert np.all(np.isfinite(found.responses))
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        (fs.StrokePath("platform.q", ("0 mm", "1 mm")), "neither a coordinate nor a load"),
+        (fs.StrokePath("platform.y", ("1 mm", "1 mm")), "does nothing"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 kg")), "kg"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), points=1), "no path"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "what drives"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot stay locked"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"gravity": "half"}), '"on" or "off"'),
+    ],
+)
+def test_paths_that_mean_nothing_are_found(stated: fs.StrokePath, said: str):
+    with pytest.raises(fs.DesignError, match=said):
+        course(stage(bad=stated), "bad")
+    assert any(said in str(each) for each in model_findings(stage(bad=stated)))
+
+
+@pytest.mark.parametrize("key", ["out.force at 5 N", "frequency.1 over in", "mass over out", "in.force", "out.motion.q"])
+def test_measures_along_no_path_are_refused(key: str):
+    with pytest.raises(fs.DesignError):
+        measure(stage(), key, "here")
+
+
+def test_what_stays_on_a_path_stays():
+    """A locked rotation does not turn, gravity off is no weight."""
+    locked = course(
+        stage(bare=fs.StrokePath("platform.y", ("0 mm", "10 mm"), points=2, hold={"platform.rz": "0", "gravity": "off"})), "bare"
+    )
+    assert (locked.weight, locked.locked) == (0.0, ("platform.rz",))
+    found = locked.stroke(fs.nonlinear(stage()))
+    assert found.sag is not None
+    assert np.max(np.abs(found.sag.values)) < 1e-15
+    assert found.along.at("2", "platform.rz") == pytest.approx(0.0, abs=1e-15)
