@@ -25,7 +25,7 @@ _GROUP_SIZES = ("links", "points", "twist", "across", "bending", "fields")
 _GROUP_TABLES = ("weights", "running", "steps", "left", "phi", "inner", "form", "plate", "compliance", "scalar")
 _GROUP_PLACES = ("joins", "turn", "first", "second", "strain", "wrench")
 _SIZES = ("cases", "bodies", "extra", "groups", "dead", "iterations", "heavy")
-_SETTINGS = ("size", "step", "gap", "limit")
+_SETTINGS = ("size", "reach", "step", "gap", "limit")
 _ARRAYS = ("position", "turn", "held", "gravity", "body", "arm", "force", "residual", "stiffness", "status", "count", "moved", "lack")
 _KNOWN = frozenset({"length", "rigidity", "form", "modes", "inner", "plate", "compliance", "trapeze", "stretch", "inertia", "half"})
 
@@ -115,7 +115,7 @@ def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, effort: Effort
     told = {name: np.ones(cases, dtype=np.int64) for name in ("status", "count")} | {name: np.zeros(cases) for name in ("moved", "lack")}
     given = {} if rest is None else {"residual": _copy(rest.residual), "stiffness": _copy(rest.stiffness)}
     held: dict[str, Array] = {name: getattr(pose, name) for name in ("position", "turn", "held")} | _loads(model, loads) | told | given
-    groups, settings = _groups(model, pose), (model.size, effort.step, effort.gap, effort.limit)
+    groups, settings = _groups(model, pose), (model.size, model.reach, effort.step, effort.gap, effort.limit)
     sizes = (cases, len(model.bodies), pose.held.shape[1], len(groups), len(held["body"]), effort.iterations, int(np.any(loads.gravity)))
     task: Any = _Task()
     _fill(task, dict(zip((*_SIZES, *_SETTINGS), (*sizes, *settings), strict=True)), held)

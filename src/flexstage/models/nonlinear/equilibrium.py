@@ -11,7 +11,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import USUAL, Found, equilibrate
+from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, equilibrate
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
@@ -22,8 +22,9 @@ from flexstage.spatial.rotation import logarithm
 class State:
     """A stage at rest under loads, in cases of any shape (...).
 
-    `status` tells how each search ended, `iterations` and `residual` (over lengths and stiffnesses) what it took; where a case did not
-    converge its numbers are NaN. `reactions` (..., h) are what holds the `held` coordinates [N, N m].
+    `status` tells how each search ended, `iterations` and `residual` (over lengths and stiffnesses) what it took. Where a case did not
+    converge its numbers are NaN, `reached` is the largest share of its load for which an equilibrium was found, and `reasons` says so.
+    `reactions` (..., h) are what holds the `held` coordinates [N, N m].
     """
 
     model: Nonlinear
@@ -34,12 +35,18 @@ class State:
     status: Array
     iterations: Array
     residual: Array
+    reached: Array
     held: tuple[str, ...]
 
     @property
     def converged(self) -> Array:
         """Which cases (...) found their equilibrium."""
         return self.status == Status.CONVERGED
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why each case has no numbers, in the order of `status.ravel()`; empty where it has."""
+        return tuple(_reason(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True))
 
     @property
     def reactions(self) -> Array:
@@ -86,6 +93,14 @@ class State:
     def _known(self, values: Array) -> Array:
         known = np.where((self.status == Status.CONVERGED).reshape(-1)[:, None], values, np.nan)
         return known.reshape(*self.shape, values.shape[-1])
+
+
+def _reason(status: int, share: float) -> str:
+    if status == Status.CONVERGED:
+        return ""
+    what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not settle"
+    far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the way to it"
+    return f"{what} under the whole load; {far}. It may end there: fs.trace follows a load by arc length, fs.critical tells what gives way"
 
 
 def place(model: Nonlinear, name: str) -> tuple[int, Array]:
@@ -141,8 +156,8 @@ def equilibrium(
 def state(model: Nonlinear, loads: Loads, hold: Hold, found: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:
     """The state of what was found, its cases in a shape, its held coordinates named."""
     shape, held = labels
-    status, iterations, residual = (each.reshape(shape) for each in (found.status, found.iterations, found.residual))
-    return State(model, loads, hold, found.pose, shape, status, iterations, residual, held)
+    status, iterations, residual, reached = (getattr(found, name).reshape(shape) for name in TOLD)
+    return State(model, loads, hold, found.pose, shape, status, iterations, residual, reached, held)
 
 
 def _first(model: Nonlinear, start: State | None, hold: Hold, cases: int) -> Pose:

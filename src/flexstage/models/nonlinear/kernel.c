@@ -42,7 +42,7 @@ typedef struct {
 
 typedef struct {
     int64_t cases, bodies, extra, groups, dead, iterations, heavy;
-    double size, step, gap, limit;
+    double size, reach, step, gap, limit;
     const Group *group;
     double *position, *turn, *held; /* cases x (bodies + 1) x 3, x 9; cases x extra */
     const double *gravity;          /* cases x 3 */
@@ -912,13 +912,14 @@ static void iterate(Stage *s, lanes *size, lanes *lack)
     *lack = load(s);
     for (int i = 0; i < s->flexures; i++) *lack = larger(bend(s, s->flexure + i), *lack);
     solve(s->matrix, n, 1);
-    lanes largest = all(0.0), poison = all(0.0), inside = all(0.0);
+    lanes largest = all(0.0), far = all(0.0), poison = all(0.0), inside = all(0.0);
     for (int i = 0; i < 6 * (bodies + 1); i++) s->step[i] = i < 6 * bodies ? s->matrix[i * wide + n] : all(0.0);
     for (int i = 0; i < 6 * bodies; i++) {
-        const lanes value = size_of(s->step[i]) * (i % 6 < 3 ? 1.0 / t->size : 1.0);
-        poison += 0.0 * value, largest = larger(value, largest);
+        const lanes value = size_of(s->step[i]);
+        poison += 0.0 * value;
+        largest = larger(value * (i % 6 < 3 ? 1.0 / t->size : 1.0), largest), far = larger(value * (i % 6 < 3 ? 1.0 / t->reach : 1.0), far);
     }
-    const lanes share = t->limit / larger(largest, all(t->limit));
+    const lanes share = t->limit / larger(far, all(t->limit));
     for (int i = 0; i < s->flexures; i++) inside = larger(follow(s, s->flexure + i, s->step, share, &poison), inside);
     for (int b = 0; b < bodies; b++) {
         lanes v[3], turn[9], after[9];

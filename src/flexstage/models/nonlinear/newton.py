@@ -19,24 +19,31 @@ _CHUNK = 128
 
 
 USUAL = Effort()
+TOLD = ("status", "iterations", "residual", "reached")
+"""What is told of every case."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Poses of b cases, each with its status, its iterations and the last residual of its flexures."""
+    """Poses of b cases, each with its status, its iterations, the last residual of its flexures, and the share of its load `reached`."""
 
     pose: Pose
     status: Array
     iterations: Array
     residual: Array
+    reached: Array
+
+    def of(self, cases: Array) -> Found:
+        """Some of the cases."""
+        return Found(self.pose.of(cases), *(getattr(self, name)[cases] for name in TOLD))
 
 
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort = USUAL) -> Found:
-    """The equilibrium of every case, the whole load at once; what fails so is loaded in halved steps, up to 64."""
+    """The equilibrium of every case, the whole load at once; what fails so is loaded in steps."""
     cases = np.arange(len(loads.inputs))
     chunks = [_search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
     found = join(chunks)
-    return _by_halves(model, start, loads, hold, (effort, found))
+    return _by_steps(model, start, loads, hold, (effort, found))
 
 
 def _split(cases: Array) -> list[Array]:
@@ -59,33 +66,30 @@ def join(parts: list[Found]) -> Found:
         wrench,
         np.concatenate([each.held for each in poses]),
     )
-    status, iterations, residual = (
-        np.concatenate([getattr(part, name) for part in parts]) for name in ("status", "iterations", "residual")
-    )
-    return Found(pose, status, iterations, residual)
+    return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
 
 
-def _by_halves(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, tried: tuple[Effort, Found]) -> Found:
+def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, tried: tuple[Effort, Found]) -> Found:
+    """What failed, loaded in steps: twice as long after each that is found, half as long after each that is not."""
     effort, found = tried
-    rest = Loads(np.zeros_like(loads.inputs), np.zeros_like(loads.gravity), np.zeros_like(loads.constant))
-    for halving in range(1, effort.halvings + 1):
-        failed = np.flatnonzero(found.status != Status.CONVERGED)
-        if not failed.size:
-            return found
-        mine, all_of, held = start.of(failed), loads.of(failed), hold.of(failed)
-        again = None
-        for step in range(1, 2**halving + 1):
-            share = step / 2**halving
-            target = Hold(held.body, held.arm, held.component, held.origin, share * held.value)
-            again = _search(model, mine, rest.of(failed).between(all_of, share), target, effort)
-            mine = again.pose
-        found = _merge(found, failed, again) if again is not None else found
-    return found
+    failed = np.flatnonzero(found.status != Status.CONVERGED)
+    share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
+    loads, hold = loads.of(failed), hold.of(failed)
+    while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**effort.halvings))).size:
+        aim = np.minimum(1.0, share[active] + width[active])
+        target = replace(hold.of(active), value=aim[:, None] * hold.value[active])
+        again = _search(model, pose.of(active), loads.of(active).times(aim), target, effort)
+        good = again.status == Status.CONVERGED
+        width[active] *= np.where(good, 2.0, 0.5)
+        share[active[good]] = aim[good]
+        pose = pose.put(active[good], again.pose.of(np.flatnonzero(good)))
+        whole = np.flatnonzero(aim == 1.0)
+        found = _merge(found, failed[active[whole]], again.of(whole))
+    return replace(found, reached=put(found.reached, failed, share))
 
 
 def _merge(found: Found, cases: Array, other: Found) -> Found:
-    status, iterations, residual = (put(getattr(found, name), cases, getattr(other, name)) for name in ("status", "iterations", "residual"))
-    return Found(found.pose.put(cases, other.pose), status, iterations, residual)
+    return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
 
 
 def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
@@ -93,7 +97,7 @@ def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Eff
     compiled = kernel() is not None and tables(model) is not None
     if compiled and not model.hinges.names and not len(hold.body):
         found = iterate_compiled(model, start, loads, effort, None)
-        return Found(found.pose, found.status, found.count, found.lack)
+        return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
     count = len(loads.inputs)
     status, iterations, residual = np.full(count, Status.NOT_CONVERGED), np.zeros(count, dtype=int), np.full(count, np.inf)
     pose, active = start, np.arange(count)
@@ -111,7 +115,7 @@ def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Eff
             done = (size < effort.step) & (gap < effort.gap)
             status[active[done]], status[active[lost]] = Status.CONVERGED, Status.SINGULAR
             active = active[~(done | lost)]
-    return Found(pose, status, iterations, residual)
+    return Found(pose, status, iterations, residual, 1.0 * (status == Status.CONVERGED))
 
 
 def _iterate_compiled(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:
@@ -124,16 +128,16 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effo
     """One step: the pose after it, the step's size (b,) and how large the flexures' residuals were before it (b,)."""
     system = assemble(model, pose, loads, hold)
     step = solve(system.stiffness, -system.residual[..., None])[..., 0]
-    size = motion(model, step)
-    share = np.minimum(1.0, effort.limit / np.maximum(size, effort.limit))
+    size, far = (motion(model, step, length) for length in (model.size, model.reach))
+    share = np.minimum(1.0, effort.limit / np.maximum(far, effort.limit))
     after, inside = advance(model, pose, system.bent, step, share)
     return after, np.maximum(size, inside), lack(model, system)
 
 
-def motion(model: Nonlinear, step: Array) -> Array:
-    """The largest motion (b,) in a step (b, n): lengths over the flexures' length, radians."""
+def motion(model: Nonlinear, step: Array, length: float) -> Array:
+    """The largest motion (b,) in a step (b, n): translations over a length, radians."""
     moved = step[:, : model.freedoms].reshape(len(step), -1, 6)
-    over = np.array([model.size] * 3 + [1.0] * 3)
+    over = np.array([length] * 3 + [1.0] * 3)
     return np.max(np.abs(moved) / over, axis=(1, 2))
 
 

@@ -132,7 +132,7 @@ def trace(
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
     rate = Loads(np.array([[load.get(name, 0.0) for name in names]]), np.zeros((1, 3)), np.zeros(1))
     tracing = _Tracing(model, start.loads, rate, effort)
-    found, factors, last = [Found(start.pose, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1))], [0.0], None
+    found, factors, last = [Found(start.pose, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))], [0.0], None
     for _ in range(points):
         after = _step(tracing, found[-1].pose, factors[-1], last, step)
         if after is None:
@@ -174,11 +174,11 @@ def _step(tracing: _Tracing, pose: Pose, factor: float, last: Array | None, leng
             else:
                 change = -float((whole * scale) @ (own * scale) / ((whole * scale) @ (along * scale)))
             moved = own + change * along
-            size, gap = float(motion(model, moved[None])[0]), float(lack(model, system)[0])
+            size, gap = float(motion(model, moved[None], model.size)[0]), float(lack(model, system)[0])
             if not np.isfinite(size + gap) or size > 20.0 * length:
                 return None
             pose, inside = advance(model, pose, system.bent, moved[None], np.ones(1))
             factor, whole, size = factor + change, whole + moved, max(size, float(inside[0]))
             if iteration and size < effort.step and gap < effort.gap and abs(change) <= 1e-9 * max(abs(factor), abs(factor - change)):
-                return Found(pose, np.array([Status.CONVERGED]), np.array([iteration + 1]), np.array([gap])), factor, whole
+                return Found(pose, np.array([Status.CONVERGED]), np.array([iteration + 1]), np.array([gap]), np.ones(1)), factor, whole
     return None

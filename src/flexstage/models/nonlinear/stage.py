@@ -79,6 +79,13 @@ class Nonlinear:
         arms = [np.max(np.abs(each), initial=0.0) for each in (self.hinges.arm_first, self.hinges.arm_second)]
         return max(lengths) if lengths else float(max(*arms, 1e-3))
 
+    @cached_property
+    def reach(self) -> float:
+        """The length that steps of translations are limited by [m]: bodies on long arms move far as they turn."""
+        groups = (*self.flexures, self.hinges)
+        arms = [np.max(np.linalg.norm(each, axis=-1), initial=0.0) for group in groups for each in (group.arm_first, group.arm_second)]
+        return float(max(self.size, *arms))
+
     @property
     def freedoms(self) -> int:
         """Coordinates of the bodies."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
@@ -23,14 +23,14 @@ class Status(IntEnum):
 class Effort:
     """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
 
-    `limit` is the largest step. What fails is loaded in 2, 4, ... 2^`halvings` steps.
+    `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load.
     """
 
     step: float = 1e-9
     gap: float = 1e-6
     iterations: int = 25
     limit: float = 0.3
-    halvings: int = 6
+    halvings: int = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +48,9 @@ class Loads:
         """Those of some cases."""
         return Loads(self.inputs[cases], self.gravity[cases], self.constant[cases])
 
-    def between(self, other: Loads, share: float) -> Loads:
-        """These, and a share of the way to others."""
-        return Loads(*(getattr(self, each.name) * (1.0 - share) + getattr(other, each.name) * share for each in fields(self)))
+    def times(self, share: Array) -> Loads:
+        """A share (b,) of each case's."""
+        return Loads(self.inputs * share[:, None], self.gravity * share[:, None], self.constant * share)
 
 
 @dataclass(frozen=True, eq=False)
