@@ -14,6 +14,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import loop
 from flexstage.control.error_tables import noise_table
+from flexstage.control.playing import response_motions
 from flexstage.control.reduction import reduce_modes, resonances
 from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
@@ -36,6 +37,7 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tables import step_table
 from flexstage.parts.gauge import Gauge
 from flexstage.show.display import format_value
+from flexstage.show.viewer.data import stage_data
 
 CALM = ControllerSetup(integral=300.0)
 
@@ -53,6 +55,25 @@ def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
     assert power.slew == pytest.approx(1e3 * volts)  # slower than 0.1 A into the stack lets it
     assert (sensor.noise_density, sensor.resolution, sensor.bandwidth) == (1e-10, 2e-9, 3e3)
     assert (sensor.filter_order, sensor.filter_corner) == (2, 4e3)
+
+
+def test_what_plays_is_where_the_platform_truly_went() -> None:
+    """The farthest instant by the bodies' twists, every instant by the weights of the coordinates."""
+    stage = parallelogram()
+    found = loop_study(stage, LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=0.0), seconds=0.05))
+    shown = stage_data(stage)
+    (motion,) = response_motions(found, shown)
+    assert motion.response is not None
+    place, bone = shown.bodies.index("platform"), shown.bones.references["platform"]
+    seen = found.runs[0].simulated
+    true = (seen.reference - seen.true_error)[:, 0]
+    times = motion.response.curves[0].values / {"s": 1.0, "ms": 1e3}[motion.response.curves[0].unit]
+    np.testing.assert_allclose(motion.response.weights[:, 0], np.interp(times, seen.times, true), rtol=0.0, atol=1e-15)
+    far = int(np.argmax(np.abs(motion.response.weights[:, 0])))
+    moved = motion.twists[place, :3] + np.cross(motion.twists[place, 3:], bone)
+    np.testing.assert_allclose(moved, [motion.response.weights[far, 0], 0.0, 0.0], rtol=0.0, atol=1e-15)
+    basis = motion.response.basis[0, place]
+    np.testing.assert_allclose(basis[:3] + np.cross(basis[3:], bone), [1.0, 0.0, 0.0], rtol=0.0, atol=1e-9)
 
 
 def test_rates_are_round_and_fast_enough() -> None:

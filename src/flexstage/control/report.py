@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import flexstage
 from flexstage.base.digest import digest
+from flexstage.control.playing import response_motions
 from flexstage.control.sections import error_section, frequency_section, headline, loop_section, time_section
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.page import Head, page
+from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
-from flexstage.show.sections.stage import turning_section
+from flexstage.show.sections.stage import first_motion, stage_section
 from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.motions import Group
 
 
 def loop_report(found: LoopStudy) -> str:
@@ -22,8 +27,10 @@ def loop_report(found: LoopStudy) -> str:
         ("flexstage", flexstage.__version__),
     )
     data = stage_data(mechanism)
+    data = replace(data, motions=(*response_motions(found, data), *data.motions))
+    played = next((f"{each.group.value} {each.name}" for each in data.motions if each.group is Group.RESPONSE), "")
     sections = (
-        turning_section(mechanism, data),
+        stage_section(scene(mechanism), motion=played or first_motion(data)),
         loop_section(found),
         caveat_section(mechanism, found.cautions),
         frequency_section(found),

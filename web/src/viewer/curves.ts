@@ -1,7 +1,7 @@
 // Curves over the points of a path, one small figure each, with a cursor that stands where the picture does. What is beyond a limit is red.
 
 import { written } from "./player";
-import type { Course, Curve } from "./types";
+import type { Course, Curve, Response } from "./types";
 import { floats } from "./unpack";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -33,14 +33,14 @@ class Small {
   private readonly told = document.createElement("output");
   private readonly cursor = line("cursor", { x1: 0, x2: 0, y1: 0, y2: HIGH });
 
-  constructor(private readonly curve: Curve, course: Course, private readonly along: (share: number) => void) {
+  constructor(private readonly curve: Curve, said: string[], private readonly along: (share: number) => void) {
     this.values = floats(curve.values);
     const known = [...this.values].filter(Number.isFinite), low = Math.min(...known), high = Math.max(...known);
     const svg = document.createElementNS(SVG, "svg"), path = document.createElementNS(SVG, "path");
     svg.setAttribute("viewBox", `0 0 ${WIDE} ${HIGH}`);
     svg.setAttribute("preserveAspectRatio", "none");
     path.setAttribute("d", this.outline(low, high - low));
-    svg.append(...this.bands(course), line("axis", { x1: 0, x2: WIDE, y1: HIGH, y2: HIGH }), path, this.cursor);
+    svg.append(...this.bands(said), line("axis", { x1: 0, x2: WIDE, y1: HIGH, y2: HIGH }), path, this.cursor);
     const caption = document.createElement("figcaption"), name = document.createElement("span"), range = document.createElement("div");
     name.textContent = curve.name;
     caption.append(name, this.told);
@@ -65,9 +65,9 @@ class Small {
     }).join("");
   }
 
-  private bands(course: Course): SVGRectElement[] {
+  private bands(said: string[]): SVGRectElement[] {
     const half = 0.5 * this.x(1);
-    return course.said.flatMap((words, point) => {
+    return said.flatMap((words, point) => {
       if (!words) return [];
       const made = document.createElementNS(SVG, "rect"), low = Math.max(0, this.x(point) - half), high = Math.min(WIDE, this.x(point) + half);
       const place = { x: low, width: high - low, y: 0, height: HIGH };
@@ -109,8 +109,9 @@ export class Curves {
     this.element.hidden = true;
   }
 
-  show(course: Course | null): void {
-    this.figures = (course?.curves ?? []).map((each) => new Small(each, course!, this.along));
+  show(told: Course | Response | null): void {
+    const said = told && "said" in told ? told.said : [];
+    this.figures = (told?.curves ?? []).map((each) => new Small(each, said, this.along));
     this.root.replaceChildren(...this.figures.map((each) => each.element));
     this.element.hidden = !this.figures.length;
   }

@@ -4,7 +4,7 @@ import { AMPLITUDES, type Player } from "./player";
 import type { Motion, MotionGroup, StageData } from "./types";
 
 const HEADS: Readonly<Record<MotionGroup, string>> = {
-  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", drift: "As it warms", path: "Along a path",
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", drift: "As it warms", response: "Over time, in the loop", path: "Along a path",
   state: "About a state",
 };
 

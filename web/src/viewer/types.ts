@@ -57,7 +57,7 @@ export interface Label {
   bodies: [number, number];
 }
 
-export type MotionGroup = "mode" | "stroke" | "axis" | "deflection" | "drift" | "path" | "state";
+export type MotionGroup = "mode" | "stroke" | "axis" | "deflection" | "drift" | "response" | "path" | "state";
 
 /** Something that all bodies do together. */
 export interface Motion {
@@ -78,6 +78,8 @@ export interface Motion {
   scaled: boolean;
   /** Of large displacements, along a path or about a state: where everything is; `twists` is empty then. */
   course?: Course;
+  /** What happens over time; `twists` are those of its farthest instant. */
+  response?: Response;
   /** Float32, one an entry of `StageData.links`: share of the strain energy in it, NaN where it is not known. */
   energy?: Packed;
   /** Float32, one an entry of `StageData.links`: share of the allowed stress that it bears, NaN where it is not known. */
@@ -92,6 +94,17 @@ export interface Curve {
   unit: string;
   /** Float32, one a point, NaN where unknown. */
   values: Packed;
+}
+
+/** Small motions over time, at equal steps. */
+export interface Response {
+  points: number;
+  /** Float32, for each coordinate 6 a body: the twists by a unit of it. */
+  basis: Packed;
+  /** Float32, one a coordinate, for each instant. */
+  weights: Packed;
+  /** The time, then what is told beside it. */
+  curves: Curve[];
 }
 
 /** Large displacements through the points of a path, or a small motion about one state. */

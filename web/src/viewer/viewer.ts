@@ -194,6 +194,7 @@ export class Viewer implements Controller {
 
   setPhase(phase: number): void {
     this.player.phase = phase;
+    this.player.follow();
     this.panel?.update(this.player, this.meaning);
     this.travelled();
     this.draw();
@@ -468,7 +469,7 @@ export class Viewer implements Controller {
 
   private moved(): void {
     const { motion, twists } = this.player;
-    this.figures.show(this.player.travels ? this.player.route!.course : null);
+    this.figures.show(this.player.curves);
     this.travelled();
     const known = this.painted && motion?.[this.painted];
     this.shares = known ? floats(known) : null;
@@ -483,6 +484,7 @@ export class Viewer implements Controller {
   /** Cursor and colours follow the place on a path. */
   private travelled(): void {
     this.figures.place(this.player.place);
+    if (this.player.happens) this.model.setTwists(this.player.twists!);
     const beyond = this.player.beyond.join();
     if (beyond === this.told) return;
     this.told = beyond;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -27,7 +27,9 @@ from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
 from flexstage.show.viewer.motions import (
     Course,
+    Curve,
     Motion,
+    Response,
     Skeleton,
     axis_motions,
     deflections,
@@ -117,6 +119,8 @@ class StageData:
             said["stressed"] = motion.stressed
         if motion.course is not None:
             said["course"] = _course(motion.course)
+        if motion.response is not None:
+            said["response"] = _response(motion.response)
         return said
 
 
@@ -227,8 +231,16 @@ def _course(course: Course) -> dict[str, Any]:
     said: dict[str, Any] = {"points": len(course.said), "frames": course.frames.tolist(), "poses": packed(course.poses, "<f4")}
     if course.shape is not None:
         said["shape"] = packed(course.shape, "<f4")
-    curves = [{"name": each.name, "unit": each.unit, "values": packed(each.values, "<f4")} for each in course.curves]
-    return said | {"curves": curves, "beyond": [list(each) for each in course.beyond], "said": list(course.said)}
+    return said | {"curves": _curves(course.curves), "beyond": [list(each) for each in course.beyond], "said": list(course.said)}
+
+
+def _response(response: Response) -> dict[str, Any]:
+    said = {"basis": packed(response.basis, "<f4"), "weights": packed(response.weights, "<f4")}
+    return said | {"curves": _curves(response.curves), "points": len(response.weights)}
+
+
+def _curves(curves: Iterable[Curve]) -> list[dict[str, str]]:
+    return [{"name": each.name, "unit": each.unit, "values": packed(each.values, "<f4")} for each in curves]
 
 
 def packed(values: Array | Sequence[float], form: str) -> str:

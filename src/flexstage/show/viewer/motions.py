@@ -37,6 +37,7 @@ class Group(Enum):
     AXIS = "axis"
     DEFLECTION = "deflection"
     DRIFT = "drift"
+    RESPONSE = "response"
     PATH = "path"
     STATE = "state"
 
@@ -54,6 +55,18 @@ class Curve:
         """From the first value to the last."""
         first, last = (to_typography(number(float(value), 4)) for value in (self.values[0], self.values[-1]))
         return f"{first} … {last} {self.unit}".strip()
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """What a stage does over time, small motions: `basis` (n, b, 6) the twists of all bodies by unit coordinate, at the stage's origin.
+
+    `weights` (f, n) is what every coordinate does at equal steps of time; `curves` are told beside it, the time first.
+    """
+
+    basis: Array
+    weights: Array
+    curves: tuple[Curve, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +99,8 @@ class Motion:
     `name` is unique in its group, `remark` says more; `frequency` [Hz] is that of a mode. `energy` is the share of the strain energy by
     link, and of all else that is elastic by its name; empty where it is not known. `stress` is the share of what is allowed that links
     bear, by name, `stressed` says in words where: at the full stroke, under that load. The size of a motion means something but for modes.
-    Motions of large displacements, along a path or about a state, have a `course` instead of twists.
+    Motions of large displacements, along a path or about a state, have a `course` instead of twists; what happens over time has a
+    `response` beside those of its farthest instant.
     """
 
     group: Group
@@ -99,6 +113,7 @@ class Motion:
     stress: Mapping[str, float] | None = None
     stressed: str = ""
     course: Course | None = None
+    response: Response | None = None
 
 
 @dataclass(frozen=True, eq=False)
