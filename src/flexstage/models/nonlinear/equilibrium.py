@@ -81,10 +81,9 @@ class State:
     def case(self, number: int) -> State:
         """One case, by its number in a row."""
         cases = np.array([number])
-        status, iterations, residual = (each.ravel()[number] for each in (self.status, self.iterations, self.residual))
-        return State(
-            self.model, self.loads.of(cases), self.hold.of(cases), self.pose.of(cases), (), status, iterations, residual, self.held
-        )
+        status, iterations, residual, reached = (getattr(self, name).ravel()[number] for name in TOLD)
+        loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
+        return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
     def place(self, name: str) -> tuple[int, Array]:
         """The number of a body, and the drawn arm of its reference or of a named point on it."""
