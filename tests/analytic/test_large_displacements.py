@@ -73,18 +73,23 @@ def test_modes_converge_as_a_series_does():
     assert missing[2] < 0.1 * missing[1] < 0.01 * missing[0]
 
 
-def test_a_column_that_shears_buckles_as_haringx_has_it():
-    """P (1 + P / GA) = pi^2 E I / (4 L^2) (J. A. Haringx, Philips Research Reports 3, 1948); Euler's load without shear."""
-    euler = np.pi**2 / 4.0
+def shearing() -> Nonlinear:
+    """A cantilever of G A = 200 E I / L^2."""
     model = cantilever()
     (group,) = model.flexures
     sheared = np.array(group.law.compliance)
     sheared[..., 1] = 1.0 / 200.0
-    found = critical(with_law(model, compliance=sheared), {"platform.fx": -RIGIDITY})
+    return with_law(model, compliance=sheared)
+
+
+def test_a_column_that_shears_buckles_as_haringx_has_it():
+    """P (1 + P / GA) = pi^2 E I / (4 L^2) (J. A. Haringx, Philips Research Reports 3, 1948); Euler's load without shear."""
+    euler = np.pi**2 / 4.0
+    found = critical(shearing(), {"platform.fx": -RIGIDITY})
     assert found.factor == pytest.approx(100.0 * (np.sqrt(1.0 + 4.0 * euler / 200.0) - 1.0), rel=1e-7)
     assert found.kind is Kind.BIFURCATION
     assert np.argmax(np.abs(found.shape[0])) in {1, 5}
-    assert critical(model, {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+    assert critical(cantilever(), {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
 
 
 def test_a_heated_column_buckles_at_its_temperature():
@@ -123,15 +128,20 @@ def test_what_grows_alike_has_no_forces():
     assert found.twist() == pytest.approx([0.01, 0.001, 0.003, 0.0, 0.0, 0.0], abs=1e-12)
 
 
-def test_a_strip_bent_upright_buckles_sideways():
-    """4.0126 sqrt(E I G J) / L^2 at its tip (L. Prandtl, Kipp-Erscheinungen, 1899); 4.01259934 with more digits."""
+def upright_strip() -> tuple[Nonlinear, dict[str, float], float]:
+    """A strip that does not bend in its own plane, a load on its tip, and sqrt(E I G J) / L^2 over that load."""
     model = cantilever()
     (group,) = model.flexures
     form = np.array(group.law.form)
     form[..., 6:12, 6:12] *= 1e3  # no bending in its own plane
     twisting = RIGIDITY / 1e-2 / 3e-5**3 * 12.0 / form[0, 0, 0]
-    found = critical(with_law(model, form=form), {"platform.fz": RIGIDITY})
-    assert found.factor == pytest.approx(4.01259934 * np.sqrt(twisting), rel=1e-6)
+    return with_law(model, form=form), {"platform.fz": RIGIDITY}, float(np.sqrt(twisting))
+
+
+def test_a_strip_bent_upright_buckles_sideways():
+    """4.0126 sqrt(E I G J) / L^2 at its tip (L. Prandtl, Kipp-Erscheinungen, 1899); 4.01259934 with more digits."""
+    model, load, unit = upright_strip()
+    assert critical(model, load).factor == pytest.approx(4.01259934 * unit, rel=1e-6)
 
 
 @pytest.mark.parametrize(("beta", "factor"), [(1, 1.0029), (3, 1.0208), (5, 1.0402), (7, 1.0533), (10, 1.0634), (20, 1.0735)])
@@ -233,20 +243,27 @@ def test_tension_softens_a_cross_pivot():
     assert found.reactions[:, 0] / 1e-4 / rigidity == pytest.approx([2.23438, 1.76311, 1.52344], rel=2e-4)
 
 
+def princeton(force: float, angle: np.ndarray) -> np.ndarray:
+    """Displacements (n, 3) of its end under a force [N] at angles to its edge."""
+    leaf = Leaf("soft", length=0.508, thickness=3.2024e-3, width=12.3777e-3, section=LeafSection.BEAM)
+    model = cantilever(leaf, Material(young=71.7e9, poisson=0.31, density=0.0))
+    return equilibrium(model, {"platform.fz": force * np.cos(angle), "platform.fy": force * np.sin(angle)}).displacement()
+
+
 def test_the_princeton_beam():
     """Beam elements of ANSYS stored in EXUDYN (TestModels/ANCFBeamTest.py): 8.896 N at 0, 15, ... 90 degrees; its J is not said."""
-    leaf = Leaf("soft", length=0.508, thickness=3.2024e-3, width=12.3777e-3, section=LeafSection.BEAM)
-    angle = np.deg2rad(np.arange(0.0, 91.0, 15.0))
-    model = cantilever(leaf, Material(young=71.7e9, poisson=0.31, density=0.0))
-    found = equilibrium(model, {"platform.fz": 8.896 * np.cos(angle), "platform.fy": 8.896 * np.sin(angle)}).displacement()
+    found = princeton(8.896, np.deg2rad(np.arange(0.0, 91.0, 15.0)))
     edge = [0.010714176, 0.010613287, 0.010111696, 0.008837226, 0.006604665, 0.003538889, 0.0]
     flat = [0.0, 0.042082321, 0.079394829, 0.108987937, 0.129887616, 0.142194370, 0.146245978]
     assert found[:, 2] == pytest.approx(edge, rel=0.015, abs=1e-9)
     assert found[:, 1] == pytest.approx(flat, rel=0.015, abs=1e-9)
 
 
-def test_a_guide_bears_so_much_misalignment():
-    """A foot turned about the normal of its leaf's width, in the middle of the leaf: 4 pi sqrt(E I G J) / (E I_y), whatever the length."""
+def misalignment() -> tuple[Nonlinear, Callable[[Number], dict[str, Number]]]:
+    """A guide of two leaves on the ground and on a foot, and what turns the foot by a share of what the guide bears.
+
+    About the normal of its leaf's width, in the middle of the leaf: 4 pi sqrt(E I G J) / (E I_y), whatever the length.
+    """
     length, spacing, thickness, width = 0.1, 0.05, 0.37e-3, 0.05
     leaf = Leaf("soft", length, thickness, width, section=LeafSection.BEAM)
     bodies = {"platform": body(length, 0.0, 0.0), "foot": body(0.5 * length, 0.5 * spacing, 0.0)}
@@ -256,9 +273,14 @@ def test_a_guide_bears_so_much_misalignment():
     }
     section = rectangle(thickness, width)
     expected = 4.0 * np.pi * np.sqrt(section.inertia_z * section.torsion / 2.6) / section.inertia_y
-    fixed = {f"foot.{name}": 0.0 for name in ("x", "y", "z", "rx", "rz")}
-    turned = {**fixed, "foot.ry": expected * np.array([1.0 - 1e-4, 1.0 + 1e-4])}
-    assert (unstable_motions(equilibrium(nonlinear(stage(leaf, bodies, links)), hold=turned)) > 0).tolist() == [False, True]
+    fixed: dict[str, Number] = {f"foot.{name}": 0.0 for name in ("x", "y", "z", "rx", "rz")}
+    return nonlinear(stage(leaf, bodies, links)), lambda share: {**fixed, "foot.ry": expected * share}
+
+
+def test_a_guide_bears_so_much_misalignment():
+    guide, turned = misalignment()
+    found = unstable_motions(equilibrium(guide, hold=turned(np.array([1.0 - 1e-4, 1.0 + 1e-4]))))
+    assert (found > 0).tolist() == [False, True]
 
 
 def vee() -> Nonlinear:

@@ -46,8 +46,18 @@ SPACE = np.array([3.0, 12.0, 2.0, 0.02, 0.03, -0.1])
 Given = Mapping[str, Number]
 
 
+NONE = (0.0, 0.0, 0.0)
+AWAY = (0.03, 0.02, -0.04)
+"""Where a platform's weight is, from its reference [m]."""
+
+
 def guide(
-    turn: np.ndarray | None = None, *, swap: bool = False, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0), mass: float = 1.0
+    turn: np.ndarray | None = None,
+    *,
+    swap: bool = False,
+    gravity: tuple[float, float, float] = NONE,
+    mass: float = 1.0,
+    centre: tuple[float, float, float] = NONE,
 ) -> Mechanism:
     """Two leaves 50 mm apart between ground and platform, perhaps turned in space, or one of them drawn from its other end."""
     turn = np.eye(3) if turn is None else turn
@@ -58,8 +68,8 @@ def guide(
         name: Link(joins[name], "leaf", tuple(turn @ [0.05, sides[name], 0.0]), tuple(signs[name] * turn[:, 0]), bends=tuple(turn[:, 2]))
         for name in joins
     }
-    place = tuple(turn @ [0.1, 0.0, 0.0])
-    body = Body(mass=mass, inertia=Inertia(1e-3, 1e-3, 1e-3), centre=place, reference=place)
+    place = turn @ [0.1, 0.0, 0.0]
+    body = Body(mass=mass, inertia=Inertia(1e-3, 1e-3, 1e-3), centre=tuple(place + turn @ centre), reference=tuple(place))
     return Mechanism("", materials={"steel": STEEL}, parts={"leaf": LEAF}, bodies={"platform": body}, links=links, gravity=gravity)
 
 
@@ -145,7 +155,7 @@ def test_the_frame_does_not_matter():
 
 
 def test_tangents_are_the_slopes_of_reactions():
-    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0)))
+    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0), centre=AWAY))
     held = {f"platform.{name}": value for name, value in zip(("x", "y", "z"), (-1e-3, 0.02, 4e-5), strict=True)}
     step = 1e-6
     moved = {name: value + step * np.eye(3)[:, [place]] * [[1, -1]] for place, (name, value) in enumerate(held.items())}

@@ -11,6 +11,7 @@ import flexstage as fs
 from flexstage.mechanism.expand import expand
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
+from tools.validation import displaced
 from tools.validation.row import Row, Section, relative, table
 
 _TITLE = "Exudyn"
@@ -19,8 +20,9 @@ _TITLE = "Exudyn"
 def sections() -> list[Section]:
     """The sections on other codes."""
     if importlib.util.find_spec("exudyn") is None:
-        return [Section(_TITLE, "Exudyn is not installed here (it has no wheels for this interpreter): nothing was compared.")]
-    return [_frequencies(), _gains()]
+        absent = Section(_TITLE, "Exudyn is not installed here (it has no wheels for this interpreter): nothing was compared.")
+        return [absent, *displaced.codes()]
+    return [_frequencies(), _gains(), *displaced.codes()]
 
 
 def _frequencies() -> Section:

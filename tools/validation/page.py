@@ -134,7 +134,8 @@ that is recorded agrees."""
 
 _ABSENT = """\
 * What the paper does not print: R_a and R_s, masses, radii, damping, the values of its Figs. 11 and 12.
-* Large displacements (elastica, centre shift of cross pivots, more): they are compared in `tests/analytic/test_large_displacements.py`.
+* Large displacements beyond what is listed (vibrations of loaded beams, laws of any stage): `tests/analytic/test_loaded_vibrations.py`,
+  `tests/laws/test_nonlinear.py`.
 * 3-D finite elements of other stages than the paper's: they are compared in `tests/models`."""
 
 _TREE = """\

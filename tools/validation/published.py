@@ -13,6 +13,7 @@ from flexstage.parts.body import Body
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from tests.analytic.test_inner_modes import stage as clamped_free
+from tools.validation import displaced
 from tools.validation.row import Row, Scale, Section, Tolerance, relative
 
 _SU = "Su, solid elements"
@@ -22,7 +23,7 @@ _UNIT = 210e9 * 0.05 * 0.005**3 / 12.0 / 0.25**2
 
 def sections() -> list[Section]:
     """A section for each source."""
-    return [_telescope(), _mirror(), _guide(), _resonator(), _suspension(), _leaf()]
+    return [_telescope(), _mirror(), _guide(), _resonator(), _suspension(), _leaf(), *displaced.sections()]
 
 
 def _motion(model: fs.LinearModel, output: str, load: str) -> float:
