@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -249,6 +250,28 @@ def hinge_errors() -> Any:
     return figure
 
 
+def far_motion() -> Any:
+    """Stiffness along x of the case for long travel and how far its table sinks, over the stroke, by each of three models."""
+    values, stage = np.linspace(-5e-3, 5e-3, 21), fs.case("long-travel-xy")
+    plain = replace(stage, parts={**stage.parts, "leaf": replace(stage.parts["leaf"], section=fs.LeafSection.BEAM)})
+    drawn = 1.0 / fs.statics(fs.lumped(stage)).compliance.at("platform.x", "platform.fx")
+    with style_context():
+        figure = canvas(FULL, 2.9)
+        figure.subplots_adjust(left=0.09, right=0.99, bottom=0.17, top=0.9, wspace=0.28)
+        stiff, low = figure.subplots(1, 2)
+        for (label, each), color in zip({"leaves as plates": stage, "leaves as beams": plain}.items(), SERIES, strict=False):
+            found = fs.stroke(fs.path(fs.nonlinear(each), "platform.x", values)).along
+            for axes, column, factor in ((stiff, "stiffness", 1.0), (low, "platform.z", 1e3)):
+                axes.plot(1e3 * values, factor * found.values[:, found.columns.index(column)], color=color, label=label)
+        for axes, level, title in ((stiff, drawn, "stiffness along x [N/m]"), (low, 0.0, "z of the table [mm]")):
+            axes.axhline(level, color=MUTED, linestyle="--", label="as drawn, unloaded")
+            axes.set_title(title)
+            axes.set_xlabel("x [mm]")
+        stiff.set_ylim(400.0, 850.0)
+        stiff.legend(loc="center")
+    return figure
+
+
 def _curves(axes: Any, curves: Mapping[str, list[tuple[float, float]]], title: str) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.6)
     for number, (name, points) in enumerate(curves.items()):
@@ -431,6 +454,10 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
     "loop-frequency": (loop_frequency, "magnitude and phase of the open loops over frequency; notches hold down the modes of the stage"),
     "loop-raster": (loop_raster, "a raster as commanded and as followed, its error magnified"),
     "loop-noise": (loop_noise, "shares of floor, gauges and rounding in the noise of each motion at rest"),
+    "far-motion": (
+        far_motion,
+        "stiffness along x and height of a table on leaves over 5 mm both ways, as drawn and at large displacements",
+    ),
     "hinge-errors": (hinge_errors, "error of beam theory against finite elements over thickness over radius"),
 }
 
