@@ -354,13 +354,21 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Parts outside the range that beam theory was compared with.
+    """Parts outside the range that beam theory was compared with, or not straight when free.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> part_cautions(double_triangle())
     ()
     """
-    return tuple(_validity(mechanism))
+    return (*_validity(mechanism), *_not_straight(mechanism))
+
+
+def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
+    """Flexures that are not straight when free, which linear models take as straight."""
+    for name, part in mechanism.parts.items():
+        if getattr(part, "is_bent", False):
+            what = "it is not straight when free; all models but that of large displacements take it as straight, without what holds it so"
+            yield Finding(f"parts.{name}", what, "Ask flexstage stroke, or modes --at, what it does")
 
 
 def _validity(mechanism: Mechanism) -> Iterator[Finding]:

@@ -85,6 +85,7 @@ ROTATIONAL_STIFFNESS = Quantity("rotational stiffness", "N m/rad", "N m/rad", "2
 COUPLING_STIFFNESS = Quantity("coupling stiffness", "N/rad", "N/rad", "12 N/rad", also=("N m/m",))
 BENDING_RIGIDITY = Quantity("bending rigidity", "N m^2", "N m^2", "180 N m^2")
 EXPANSION = Quantity("thermal expansion", "1/K", "1/K", "10.3e-6 1/K")
+CURVATURE = Quantity("curvature", "1/m", "1/m", "2 1/m")
 TEMPERATURE = Quantity("temperature difference", "K", "K", "0.1 K")
 FREQUENCY = Quantity("frequency", "Hz", "Hz", "4 kHz")
 VOLTAGE = Quantity("voltage", "V", "V", "1000 V")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.quantity import CURVATURE, LENGTH, POSITIVE, TEMPERATURE
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.shape import INNER_MODES, Order, Section, Shaped
+from flexstage.parts.shape import INNER_MODES, Order, Section, Shaped, reversed_or_none
 
 
 class LeafSection(Enum):
@@ -34,6 +34,9 @@ class Leaf(Shaped):
     Intended freedoms: translation along y, bending about z, twist about x. With `section` beam its law leaves plate action out, and its
     ends are free to warp; a plate's are with `ends` free. `inner_modes` is how many of its own bending modes, and of its twist, the lumped
     model counts.
+
+    Where it is not straight when free: `curvature` is that of its blank about z (positive: towards y), `warmth` how much warmer its face at
+    +y is than that at -y. It is mounted straight, as drawn: large displacements count what that takes, other models take it as straight.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -45,6 +48,18 @@ class Leaf(Shaped):
     section: LeafSection = LeafSection.PLATE
     inner_modes: Annotated[int, INNER_MODES] = 0
     ends: LeafEnds = LeafEnds.CLAMPED
+    curvature: Annotated[Number, CURVATURE] | None = None
+    warmth: Annotated[Number, TEMPERATURE] | None = None
+
+    @property
+    def mirrored(self) -> Leaf:
+        """The leaf with its blank bent, and warm, on the other side."""
+        return replace(self, curvature=reversed_or_none(self.curvature), warmth=reversed_or_none(self.warmth)) if self.is_bent else self
+
+    @property
+    def is_bent(self) -> bool:
+        """Whether it is not straight when it is free."""
+        return self.curvature is not None or self.warmth is not None
 
     @property
     def warps(self) -> bool:

@@ -156,6 +156,11 @@ class Elastic(Description):
         return self
 
 
+def reversed_or_none(value: Number | None) -> Number | None:
+    """A number that a mirror across y reverses, where it is stated."""
+    return None if value is None else -value
+
+
 class Shaped(Elastic):
     """A part with a shape: x along it, its centre at the origin, alike on both sides of its three planes.
 

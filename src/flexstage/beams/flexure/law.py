@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
 from flexstage.beams.flexure.modes import FINE, gauss, polynomials, project
@@ -45,6 +46,8 @@ class FlexureLaw:
     of the steps of rotation; `plate` (..., n, 2, e) the fields a2 and a4. `compliance` (..., n, 3) is the stretch and shear by force,
     `trapeze` (...) I_p / A, `stretch` (..., 2) the stiffness against Gaussian curvature. `length` [m], `rigidity` [N m^2], `inertia`
     (..., n, 4): mass per length and its second moments about x, y and z [kg/m, kg m]. `half` (..., 2) are half thickness and width [m].
+    `natural` (..., 2) are the curvatures about z and across the width that bending is counted from, times the length, and `rest` (..., q)
+    the first derivative of the quadratic energy that comes of them, reversed.
     """
 
     length: Array
@@ -58,6 +61,8 @@ class FlexureLaw:
     stretch: Array
     inertia: Array
     half: Array
+    natural: Array
+    rest: Array
 
     @property
     def signature(self) -> tuple[int, ...]:
@@ -85,6 +90,10 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     pull = poisson * factor * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, : resolution.bending]
     bend = slice(size - resolution.bending, size)
     form[size:, bend], form[bend, size:] = pull, pull.T
+    blank, heated = _natural(part, material)
+    rest = blank * form[:, size - resolution.bending]
+    rest[size - resolution.bending] += factor * (1.0 + poisson) * heated
+    rest[size:] += factor * (1.0 + poisson) * heated * (shapes.coupling[0] + 10.0 / 3.0 * shapes.coupling[1])[:, 0]
     modes, inner = _tables([twist, np.eye(resolution.across, rule.size), np.eye(resolution.bending, rule.size)], rule.size)
     ratio = width * width / (thickness * length)
     return FlexureLaw(
@@ -99,13 +108,37 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
         stretch=12.0 * ratio * ratio * np.array([STRETCH_TWO, STRETCH_FOUR]),
         inertia=_spread(_inertia(section, float(material.density)), rule.size),
         half=0.5 * np.stack([thickness, width]),
+        natural=np.array([blank + heated, heated]),
+        rest=rest,
     )
 
 
-def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False) -> FlexureLaw:
+def _natural(part: Leaf, material: Material) -> tuple[float, float]:
+    """Curvatures of a leaf's blank, and of what is warmer at +y and so bends both ways, times its length (docs/nonlinear.md, 30)."""
+    blank = 0.0 if part.curvature is None else float(part.curvature)
+    if part.warmth is None:
+        return blank * float(part.length), 0.0
+    if material.expansion is None:
+        raise refuse(
+            part.material, "its expansion is not stated, and a leaf of it is warmer on one side", "State expansion, or leave out warmth"
+        )
+    return blank * float(part.length), -float(material.expansion * part.warmth / part.thickness * part.length)
+
+
+def natural_curvature(part: Leaf, material: Material) -> float:
+    """The curvature about z of a free leaf [1/m], of its blank and of its warmer face.
+
+    >>> natural_curvature(Leaf("steel", 0.1, 0.001, 0.01, curvature=2.0), Material(young=200e9, poisson=0.3, density=7750.0))
+    2.0
+    """
+    return sum(_natural(part, material)) / float(part.length)
+
+
+def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
     """Any part that is a `Beam`, by modes of stress: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
-    At rest exactly the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch when it twists (Wagner).
+    At rest exactly the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch when it twists (Wagner). `curvature`
+    is the one about z from which its bending is counted [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)
@@ -134,6 +167,8 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
         stretch=np.array([wagner, 0.0]),
         inertia=(project(inertia[:, [0, 3, 4, 5]].T, places, weights, size) @ points).T,
         half=0.5 * np.array([thickness, width]),
+        natural=np.array([curvature * length, 0.0]),
+        rest=curvature * length * np.eye(sum(counts))[sum(counts[:2])],
     )
 
 

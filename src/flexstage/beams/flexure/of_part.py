@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from flexstage.beams.compliance import beam_of
-from flexstage.beams.flexure.law import DEFAULT, STRESSES, FlexureLaw, Resolution, beam_law, leaf_law
+from flexstage.beams.flexure.law import DEFAULT, STRESSES, FlexureLaw, Resolution, beam_law, leaf_law, natural_curvature
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -19,12 +19,12 @@ from flexstage.parts.rod import Rod
 
 def _of_leaf(part: Leaf, material: Material, resolution: Resolution) -> FlexureLaw:
     if part.section is LeafSection.BEAM:
-        return beam_law(beam_of(part, material), resolution, flat=True)
+        return beam_law(beam_of(part, material), resolution, flat=True, curvature=natural_curvature(part, material))
     return leaf_law(part, material, resolution, warps=part.warps)
 
 
 def _of_rod(part: Rod, material: Material, resolution: Resolution) -> FlexureLaw:
-    return beam_law(beam_of(part, material), resolution)
+    return beam_law(beam_of(part, material), resolution, curvature=0.0 if part.curvature is None else float(part.curvature))
 
 
 def _of_hinge(part: Notch | Neck, material: Material, resolution: Resolution) -> FlexureLaw:

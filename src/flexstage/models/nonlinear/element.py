@@ -143,12 +143,13 @@ def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
     stretch = weights * law.stretch[..., None, None, :] * bend
     plate = law.plate[..., None, :, :, :]
     matrix = law.form[..., None, count:, count:] + _product(plate, (stretch * bend)[..., None] * plate)
-    return matrix, _project(plate, stretch * twist * twist * [1.0, 0.0]) - strain[..., :count] @ law.form[..., :count, count:]
+    right = _project(plate, stretch * twist * twist * [1.0, 0.0]) + law.rest[..., None, count:]
+    return matrix, right - strain[..., :count] @ law.form[..., :count, count:]
 
 
 def energy(law: FlexureLaw, strain: Array, found: Shape) -> Array:
-    """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included."""
-    quadratic = 0.5 * np.sum(strain * (strain @ law.form), axis=-1)
+    """Strain energy (..., b) over E I / L, that of stretch and shear by the end force included, counted from straight."""
+    quadratic = np.sum(strain * (0.5 * strain @ law.form - law.rest[..., None, :]), axis=-1)
     gauss_two, gauss_four = _gaussian(found)
     stretch = law.stretch[..., None, None, :]
     density = stretch[..., 0] * gauss_two * gauss_two + stretch[..., 1] * gauss_four * gauss_four
@@ -218,7 +219,7 @@ def _plate(found: Shape) -> tuple[Array, Array]:
 
 def _elastic(law: FlexureLaw, strain: Array, found: Shape) -> tuple[Array, Array]:
     """First and second derivatives of the strain energy without stretch by forces (docs/nonlinear.md, 13)."""
-    gradient = strain @ law.form
+    gradient = strain @ law.form - law.rest[..., None, :]
     hessian = np.broadcast_to(law.form[..., None, :, :], (*gradient.shape, gradient.shape[-1])).copy()
     if not np.any(law.stretch):
         return gradient, hessian

@@ -12,6 +12,7 @@ from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.stage import Flexures
 from flexstage.parts.material import Material
 
+_ABOUT_Z = np.array([0.0, 0.0, 1.0])
 _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 """Where across the width stress is looked at, over half of it."""
 
@@ -52,17 +53,23 @@ def strains(state: State) -> Strains:
     for number, group in enumerate(state.model.flexures):
         law = group.law
         lies = shape(law, state.pose.strain[number], state.pose.wrench[number][..., :3])
-        bent = np.abs(np.concatenate([lies.curvature, lies.rule.ends @ lies.curvature], axis=-2)) / law.length[:, None, None, None]
+        bent = np.abs(_bent(lies) - law.natural[:, None, None, :1] * _ABOUT_Z) / law.length[:, None, None, None]
         half, wide = law.half[:, None, None, 0], law.half[:, None, None, 1]
         pulled = np.max(np.abs(lies.tension) * law.compliance[:, None, :, 0], axis=-1)
         bending = bent[..., 2] * half + bent[..., 1] * wide + bent[..., 0] ** 2 * wide**2 / 3.0
         names += group.names
         largest += list(pulled + np.max(bending, axis=-1))
         stressed += list(_stress(group, _materials(state, group), lies))
-        curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * np.max(bent[..., 2], axis=-1))
+        curved = np.max(np.abs(_bent(lies)[..., 2]), axis=-1) / law.length[:, None]
+        curving += list(2.0 * law.half[:, None, 1] ** 2 / law.half[:, None, 0] * curved)
     known = np.where(state.converged, 1.0, np.nan)[..., None]
     told = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
     return Strains(tuple(names), *told, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
+
+
+def _bent(lies: Shape) -> Array:
+    """Curvatures (l, b, n + 2, 3) at points and ends, over the length."""
+    return np.concatenate([lies.curvature, lies.rule.ends @ lies.curvature], axis=-2)
 
 
 def _materials(state: State, group: Flexures) -> list[Material]:
@@ -84,7 +91,8 @@ def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
     young, shear = _column([each.modulus for each in materials]), _column([each.shear for each in materials])
     poisson = _column([each.contraction if flat else 0.0 for each in materials])
     length, half, wide = (each[:, None, None, None, None] for each in (law.length, law.half[:, 0], law.half[:, 1]))
-    bent = np.concatenate([lies.curvature, lies.rule.ends @ lies.curvature], axis=-2)[..., None, None, :] / length[..., None]
+    bent = _bent(lies)[..., None, None, :] / length[..., None]
+    natural, across_natural = (law.natural[:, None, None, None, None, place] / length for place in (0, 1))
     ends = np.zeros((*lies.plate.shape[:-2], 2, 2))  # clamped: the section of a leaf cannot curve there
     plate = np.concatenate([lies.plate, ends], axis=-2)[..., None, None, :] / length[..., None]
     pulled = lies.tension * law.compliance[:, None, :, 0]
@@ -96,6 +104,7 @@ def _stress(group: Flexures, materials: list[Material], lies: Shape) -> Array:
     flexed = plate[..., 0] + plate[..., 1] * (420.0 * u**2 - 60.0) / 24.0
     stretched = pulled + twist * twist * two - bend * (plate[..., 0] * two + plate[..., 1] * four) + wide * u * across
     factor = young / (1.0 - poisson * poisson)
+    bend, flexed = bend - natural, flexed - across_natural
     along = young * stretched - factor * face * (bend + poisson * flexed)
     over = -factor * face * (flexed + poisson * bend) if flat else 0.0 * along
     torsion = 2.0 * shear * half * twist
