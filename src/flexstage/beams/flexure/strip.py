@@ -92,8 +92,11 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
     return np.block([[amplitude, both], [both.T, rotation]])
 
 
-def fields(width: Number, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
+@functools.lru_cache(maxsize=256)
+def fields(width: float, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
     """The modes of a leaf's fields: answers of the strip to line loads P_k on a2 and on a4; `width` and `thickness` over the length.
+
+    Kept for each proportion, so that nobody may write into its arrays.
 
     >>> fields(0.3, 0.003, 0.3, 10).values.shape
     (2, 10, 10)
@@ -110,12 +113,22 @@ def fields(width: Number, thickness: Number, poisson: Number, size: int, loads: 
     along = amplitudes @ value
     coupling = along * weights @ moments.T
     projected = coupling * (2.0 * np.arange(size) + 1.0) @ polynomials(size, gauss(size).points)
-    return Fields(answer.T @ form @ answer, projected, coupling)
+    found = Fields(answer.T @ form @ answer, projected, coupling)
+    for each in (found.form, found.values, found.coupling):
+        each.flags.writeable = False
+    return found
 
 
 def _solve(form: Array, right: Array) -> Array:
-    root = np.sqrt(np.diag(form))
-    return np.linalg.lstsq(form / root / root[:, None], right / root[:, None], rcond=_CUT)[0] / root[:, None]
+    """Fields that mirror and fields that turn their sign between the ends have nothing to do with one another."""
+    odd = np.arange(_TERMS) % 2
+    turns = np.concatenate([odd, odd, 1 - odd, 1 - odd]) == 1  # where amplitudes mirror, rotations turn their sign
+    result = np.zeros_like(right)
+    for part in (np.flatnonzero(turns), np.flatnonzero(~turns)):
+        own = form[np.ix_(part, part)]
+        root = np.sqrt(np.diag(own))
+        result[part] = np.linalg.lstsq(own / root / root[:, None], right[part] / root[:, None], rcond=_CUT)[0] / root[:, None]
+    return result
 
 
 def secant(beta: Number, poisson: Number, *, shapes: int = 2) -> Number:
