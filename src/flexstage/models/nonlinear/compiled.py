@@ -22,12 +22,13 @@ from flexstage.models.nonlinear.state import Effort, Loads, Pose
 _MOST = {"points": 24, "modes": 48, "fields": 24, "unknowns": 150}
 """What the kernel has room for; and unknowns of bodies, beyond which LAPACK's blocks are faster than lanes."""
 _GROUP_SIZES = ("links", "points", "twist", "across", "bending", "fields")
-_GROUP_TABLES = ("weights", "running", "steps", "left", "phi", "inner", "form", "plate", "compliance", "scalar")
+_GROUP_TABLES = ("weights", "running", "steps", "left", "phi", "inner", "form", "rest", "plate", "compliance", "scalar")
 _GROUP_PLACES = ("joins", "turn", "first", "second", "strain", "wrench")
 _SIZES = ("cases", "bodies", "extra", "groups", "dead", "iterations", "heavy")
 _SETTINGS = ("size", "reach", "step", "gap", "limit")
 _ARRAYS = ("position", "turn", "held", "gravity", "body", "arm", "force", "residual", "stiffness", "status", "count", "moved", "lack")
-_KNOWN = frozenset({"length", "rigidity", "form", "modes", "inner", "plate", "compliance", "trapeze", "stretch", "inertia", "half"})
+_TABLES = ("length", "rigidity", "form", "modes", "inner", "plate", "compliance", "trapeze", "stretch")
+_KNOWN = frozenset((*_TABLES, "inertia", "half", "natural", "rest"))
 
 
 class _Group(ctypes.Structure):
@@ -163,7 +164,7 @@ def _group(group: Flexures) -> tuple[Mapping[str, int], Mapping[str, Array]] | N
     arrays: tuple[Array, ...] = (
         *(rule.weights, rule.running, np.diff(rule.knots), 1.0 - rule.points),
         *(np.moveaxis(np.sum(each, axis=-2), -1, -2) for each in (law.modes, law.inner)),
-        *(law.form, law.plate, law.compliance, np.stack(scalar, axis=-1), group.turn, group.arm_first, group.arm_second),
+        *(law.form, law.rest, law.plate, law.compliance, np.stack(scalar, axis=-1), group.turn, group.arm_first, group.arm_second),
     )
     found: dict[str, Array] = {name: _copy(each) for name, each in zip((*_GROUP_TABLES, "turn", "first", "second"), arrays, strict=True)}
     found["joins"] = np.stack([group.first, group.second], axis=-1).astype(np.int64, order="C")

@@ -32,6 +32,7 @@ typedef struct {
     const double *phi;                              /* links x modes x points */
     const double *inner;                            /* links x modes x 3 (points + 1) */
     const double *form;                             /* links x amplitudes x amplitudes */
+    const double *rest;                             /* links x amplitudes: what natural curvatures pull */
     const double *plate;                            /* links x points x 2 x fields */
     const double *compliance;                       /* links x points x 3 */
     const double *scalar; /* links x 7: length, rigidity, trapeze, stretch of P2 and P4, weight per gravity, largest stiffness */
@@ -242,7 +243,7 @@ static void solve(lanes *restrict a, int n, int m)
 typedef struct {
     const Group *group;
     int number, modes, amplitudes, columns;
-    const double *phi, *inner, *form, *plate, *compliance, *scalar, *turn, *first, *second;
+    const double *phi, *inner, *form, *rest, *plate, *compliance, *scalar, *turn, *first, *second;
     int64_t one, other;
     double *paths;  /* points x modes x points: running integrals of each mode */
     double *pairs;  /* points x fields (fields + 1) / 2: stretching of pairs of fields, weights included */
@@ -292,7 +293,7 @@ static void settle(Flexure *f)
             m[a * e + b] = s;
         }
     for (int a = 0; a < e; a++) {
-        lanes s = all(0.0);
+        lanes s = all(f->rest[k0 + a]);
         for (int i = 0; i < n; i++) s += f->plate[2 * i * e + a] * load[i];
         for (int k = 0; k < k0; k++) s -= f->form[k * q + k0 + a] * f->strain[k];
         right[a] = s;
@@ -486,7 +487,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
     lanes largest = all(0.0);
     for (int axis = 0; axis < 3; axis++)
         for (int k = ends[axis]; k < ends[axis + 1]; k++) {
-            lanes t = all(0.0);
+            lanes t = all(-f->rest[k]);
             for (int l = ends[axis]; l < ends[axis + 1]; l++) t += f->form[k * q + l] * f->strain[l];
             for (int c = k0; c < q; c++) t += f->form[k * q + c] * f->strain[c];
             for (int i = 0; i < n; i++) t += f->phi[k * n + i] * first[3 * i + axis];
@@ -966,7 +967,7 @@ static void lay(Stage *s, Store *store, const Task *t)
             if (!store->from) continue;
             Flexure *f = s->flexure + count;
             f->group = group, f->number = (int)i, f->modes = k, f->amplitudes = q, f->columns = columns;
-            f->phi = group->phi + i * k * n, f->inner = group->inner + i * k * 3 * (n + 1), f->form = group->form + i * q * q;
+            f->phi = group->phi + i * k * n, f->inner = group->inner + i * k * 3 * (n + 1), f->form = group->form + i * q * q, f->rest = group->rest + i * q;
             f->plate = group->plate + i * n * 2 * e, f->compliance = group->compliance + i * n * 3, f->scalar = group->scalar + i * 7;
             f->turn = group->turn + 9 * i, f->first = group->first + 3 * i, f->second = group->second + 3 * i;
             f->one = group->joins[2 * i], f->other = group->joins[2 * i + 1];
