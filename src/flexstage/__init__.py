@@ -71,6 +71,7 @@ HOMES = {
     "analysis.sensitivities": "sensitivities",
     "analysis.stroke": "stroke",
     "analysis.stance": "stance",
+    "analysis.misalign": "misalign",
     "analysis.workspace.workspace": "workspace",
     "analysis.workspace.reach": "reach",
     "analysis.inner_stage": "amplified",

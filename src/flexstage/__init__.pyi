@@ -32,6 +32,9 @@ from flexstage.analysis.response import (
 from flexstage.analysis.sensitivities import (
     sensitivities as sensitivities,
 )
+from flexstage.analysis.misalign import (
+    misalign as misalign,
+)
 from flexstage.analysis.stance import (
     stance as stance,
 )

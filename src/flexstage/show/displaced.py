@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import flexstage
+from flexstage.analysis.misalign import Misaligned, Misalignments
 from flexstage.analysis.stroke import Stroke
 from flexstage.base.digest import digest
 from flexstage.base.labelled import Matrix
@@ -19,9 +20,10 @@ from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, p
 from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
-from flexstage.show.table import matrix_table, result_tables
+from flexstage.show.table import Column, Table, make_table, matrix_table, result_tables
 from flexstage.show.viewer.course import buckling_data, curves_of, limits, stroke_data
-from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.data import StageData, still_data
+from flexstage.show.viewer.motions import Curve
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
@@ -64,6 +66,46 @@ def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
     good = found.factor > 1.0
     headline = Headline(to_typography(f"{load}: gives way at {format_value(found.factor, '1', 4)} times the load"), good)
     return _page(mechanism, "What gives way", found.state.model.provenance, (headline, sections), data)
+
+
+def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
+    """What a misaligned copy does, as a page of HTML: loads, frequencies and stress over the misalignment."""
+    seen = scene(mechanism)
+    curves = [
+        Curve(name, unit, values)
+        for name, unit, values in zip(found.along.columns, found.along.unit[0], found.along.values.T, strict=True)
+        if name != "unstable"
+    ]
+    beyond = found.along.values[:, -1] != 0.0
+    kind = "about" if found.axis.startswith("r") else "along"
+    words = f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
+    figure = to_svg(stroke_figure(curves, beyond), "misalign", "What a misalignment does")
+    sections = (
+        section("Over the misalignment", [Picture(figure, to_typography(f"{words}. Shaded: the stage gives way."))]),
+        caveat_section(mechanism, found.cautions),
+        section("Point by point", [*result_tables(found)]),
+        drawing_section(mechanism, seen),
+    )
+    good = not bool(np.any(beyond))
+    return _page(mechanism, "A misalignment", found.provenance, (Headline(to_typography(words), good), sections), still_data(mechanism))
+
+
+def critical_text(found: Misaligned) -> str:
+    """At which misalignment the stage gives way, in words."""
+    if np.isnan(found.critical):
+        return "it bears all up to 0.1 rad, or a tenth of its flexures"
+    return f"it gives way at {format_value(found.critical, 'rad' if found.axis.startswith('r') else 'm', 4)}"
+
+
+def misalignment_tables(found: Misalignments) -> list[Table]:
+    """What each copy bears about its axes, as far as it gives way at all."""
+    rows = [
+        [copy, *("-" if np.isnan(each) else format_value(float(each), "rad", 4) for each in values)]
+        for copy, values in zip(found.critical.rows, found.critical.values, strict=True)
+    ]
+    note = "Of one copy alone, about the axes of its own frame. -: it does not give way up to 0.1 rad."
+    heads = ["copy", *(Column(f"about {axis[-1]}") for axis in found.critical.columns)]
+    return [make_table("Misalignment at which the stage gives way", heads, rows, notes=[note])]
 
 
 def _flags(said: tuple[str, ...]) -> Array:

@@ -84,6 +84,8 @@ COMMANDS: tuple[Command, ...] = (
             'flexstage stroke stage.toml --drive platform.x --to "50 um" --points 3'),
     Command("buckle", _ANALYSE, "How far a load may grow until the stage gives way.", f"{_CLI}.displaced:buckle",
             'flexstage buckle stage.toml --load "platform.fz=-100 kN"'),
+    Command("misalign", _ANALYSE, "What a misaligned copy does to an over-constrained stage.", f"{_CLI}.displaced:misalign",
+            "flexstage misalign stage.toml --copy B4 --about y --points 3"),
     Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_CLI}.accuracy:workspace",
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
     Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_CLI}.accuracy:drift",

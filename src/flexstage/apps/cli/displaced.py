@@ -9,10 +9,12 @@ import numpy as np
 import typer
 
 from flexstage.analysis.course import Course, course, drive_quantity
+from flexstage.analysis.misalign import Misalignments, critical_misalignments
+from flexstage.analysis.misalign import misalign as misaligned
 from flexstage.analysis.stroke import stroke as over_stroke
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.quantity import ANGLE, LENGTH, RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import WEIGHT, Critical, critical
@@ -22,7 +24,7 @@ from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import Load, loads_of
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import save
-from flexstage.show.displaced import buckling_report, stroke_report
+from flexstage.show.displaced import buckling_report, misalign_report, misalignment_tables, stroke_report
 from flexstage.show.table import result_tables
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -129,6 +131,60 @@ def buckle(
     if report is not None:
         save(report, buckling_report(mechanism, found, told.load), "--report")
     answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx, beside=(report,))
+
+
+def misalign(  # noqa: PLR0913 (its options)
+    design: Design,
+    *,
+    copy: Annotated[str, text_option("--copy", "NAME", "A copy of a unit, or a link on the ground. Default: all, by their limits.")] = "",
+    about: Annotated[str, text_option("--about", "AXIS", "Axis of its own frame about which it is turned: x, y or z. Default: y.")] = "",
+    shift: Annotated[str, text_option("--along", "AXIS", "Axis along which it is shifted instead: x, y or z.")] = "",
+    size: Annotated[str, text_option("--size", "VALUE", 'How far it is misaligned: "1 mrad", "10 um". Default: 1 mrad, 0.1 mm.')] = "",
+    points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points from none to all of it.")] = 11,
+    report: Report = None,
+    changes: Changes = None,
+    json: Json = None,
+    csv: Csv = None,
+    xlsx: Xlsx = None,
+) -> None:
+    """What a misaligned copy does to an over-constrained stage.
+
+    A copy or link is forced into a seat on the ground that is turned, or shifted: the loads that this leaves in all flexures, the
+    stage's frequencies over it, and the misalignment at which the stage gives way. Without --copy: that one, copy by copy, about all axes.
+    """
+    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
+    if not copy:
+        told = Misalignments(critical_misalignments(mechanism))
+        answer("misalign", mechanism, lambda: told, lambda: misalignment_tables(told), json=json, csv=csv, xlsx=xlsx)
+        return
+    axis = _axis(about, shift)
+    quantity = ANGLE if axis.startswith("r") else LENGTH
+    wanted = parse(size, quantity, where="--size") if size else (1e-3 if quantity is ANGLE else 1e-4)
+    if not wanted:
+        raise refuse("--size", "a misalignment of zero does nothing", "Give it a size")
+    found = misaligned(mechanism, copy, axis, wanted, points=points)
+    if report is not None:
+        save(report, misalign_report(mechanism, found), "--report")
+    answer(
+        "misalign",
+        mechanism,
+        lambda: found,
+        lambda: result_tables(found),
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=found.cautions,
+        beside=(report,),
+    )
+
+
+def _axis(about: str, shift: str) -> str:
+    if about and shift:
+        raise refuse("--along", f"it is turned about {about} already", "Leave out --about, or --along")
+    option, axis = ("--along", shift) if shift else ("--about", about or "y")
+    if axis not in COMPONENTS[:3]:
+        raise refuse(option, f'"{axis}" is no axis', "Write x, y or z")
+    return axis if shift else f"r{axis}"
 
 
 def _buckling(load: str, found: Critical) -> Buckling:

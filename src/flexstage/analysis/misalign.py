@@ -1,0 +1,191 @@
+"""Over-constrained stages made with a misalignment: the internal loads that it leaves, and the one at which the stage gives way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.strained import strain_cautions
+from flexstage.base.finding import Finding, refuse, suggest_nearest
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.mechanism.expand import Assembly, copies, expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.linear.eigen import eigenvalues
+from flexstage.models.nonlinear.critical import unstable_motions
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.seat import SEAT, seat
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.strain import Strains, strains
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_FIRST, _MOST, _CLOSE = 1e-6, 0.1, 1e-5
+"""Where the search begins and ends [rad, or over the flexures' length], and how closely a critical misalignment is found."""
+_FREQUENCIES = 3
+_HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
+
+
+@dataclass(frozen=True, eq=False)
+class Misaligned(InNotebook):
+    """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
+
+    `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
+    of a flexure, in how many ways the stage leaves (0: it stays). `loads` are the wrenches in all flexures at the last size, on each end in
+    the frame of its start. `critical` is the size at which the stage stops being stable [rad, m]; NaN where it does not up to 0.1 rad, or
+    0.1 of the longest flexure.
+    """
+
+    copy: str
+    axis: str
+    along: Matrix
+    loads: Matrix
+    critical: float
+    strained: Annotated[Strains, INNER]
+    provenance: str
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory at these sizes."""
+        return tuple(strain_cautions(self.strained))
+
+
+@dataclass(frozen=True, eq=False)
+class Misalignments:
+    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where it does not up to 0.1 rad."""
+
+    critical: Matrix
+
+
+def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
+    """Force a copy of a unit, or a single link, into a misaligned seat on the ground, at large displacements and under its weight.
+
+    The seat, on which the copy's links join the ground, is moved by `size` [m, rad] along or about an axis of the copy's own frame, about
+    its origin (of a link: its middle), in `points` from none. What is not over-constrained follows freely. Raises `DesignError` for names
+    that the stage does not have, and for what does not join the ground.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
+    >>> found.along.columns[:2]
+    ('ry', 'load')
+    """
+    forced = _forced(mechanism, copy, axis)
+    state = forced.at(size * np.linspace(0.0, 1.0, points))
+    strained = strains(state)
+    along = _along(forced, state, strained, size * np.linspace(0.0, 1.0, points))
+    names = tuple(name for group in forced.model.flexures for name in group.names)
+    loads = np.array([state.wrench(name)[-1] for name in names]).reshape(-1, 6)
+    return Misaligned(
+        copy=copy,
+        axis=axis,
+        along=along,
+        loads=Matrix(loads, names, FORCES, (WRENCH_UNITS,) * len(names)),
+        critical=forced.critical(),
+        strained=strained,
+        provenance=f"{copy} misaligned in the {forced.model.provenance}",
+    )
+
+
+def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> Matrix:
+    """The misalignment of every copy (or link) that joins the ground at which the stage gives way, by axis; NaN where none does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> critical_misalignments(parallelogram(), ("ry",)).rows
+    ('B', 'left', 'right')
+    """
+    rows = seated(mechanism)
+    values = [[_forced(mechanism, copy, axis).critical() for axis in axes] for copy in rows]
+    units = tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes)
+    return Matrix(np.array(values).reshape(len(rows), len(axes)), rows, axes, (units,) * len(rows))
+
+
+def seated(mechanism: Mechanism) -> tuple[str, ...]:
+    """Copies of units, and single links, that join the ground.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> seated(parallelogram())
+    ('B', 'left', 'right')
+    """
+    assembly = expand(mechanism)
+    known = [name for name, _, _ in copies(mechanism)]
+    found = [name for name in known if any(GROUND in assembly.links[link].joins for link in _links_of(assembly, name))]
+    return (*found, *(name for name, link in assembly.links.items() if GROUND in link.joins and name.partition("/")[0] not in known))
+
+
+@dataclass(frozen=True, eq=False)
+class _Forced:
+    """A stage on a seat that is held, `direction` (6,) its motion per size along or about an axis of the copy."""
+
+    model: Nonlinear
+    direction: Array
+    axis: str
+
+    def at(self, sizes: Array, start: State | None = None) -> State:
+        hold = {name: sizes * part for name, part in zip(_HELD, self.direction, strict=True)}
+        return equilibrium(self.model, hold=hold, start=start)
+
+    def critical(self) -> float:
+        """The size at which the stage stops being stable; NaN where it does not."""
+        scale = self.model.size if np.any(self.direction[:3]) else 1.0
+        last, low, high = self.at(np.array(0.0)), 0.0, _FIRST
+        if int(unstable_motions(last)):
+            raise refuse("stage", "it is not stable, or has no equilibrium, without a misalignment", "Look at its weight and its forces")
+        while high <= _MOST:
+            found = self.at(np.array(scale * high), last)
+            if int(unstable_motions(found)):
+                return scale * self._between(low, high, last, scale)
+            last, low, high = found, high, 2.0 * high
+        return np.nan
+
+    def _between(self, low: float, high: float, last: State, scale: float) -> float:
+        while high - low > _CLOSE * high:
+            middle = 0.5 * (low + high)
+            found = self.at(np.array(scale * middle), last)
+            if int(unstable_motions(found)):
+                high = middle
+            else:
+                last, low = found, middle
+        return 0.5 * (low + high)
+
+
+def _forced(mechanism: Mechanism, copy: str, axis: str) -> _Forced:
+    if axis not in COMPONENTS:
+        raise refuse(axis, "it is no axis", suggest_nearest(axis, COMPONENTS))
+    assembly = expand(mechanism)
+    frames = {name: frame for name, _, frame in copies(mechanism)}
+    links = _links_of(assembly, copy) if copy in frames else [copy]
+    if copy not in frames and copy not in assembly.links:
+        raise refuse(copy, "it is neither a copy of a unit nor a link", suggest_nearest(copy, seated(mechanism)))
+    frame = frames.get(copy) or assembly.links[copy].frame
+    place = COMPONENTS.index(axis)
+    along = np.asarray(frame.rotation)[:, place % 3]
+    direction = np.concatenate([along, np.zeros(3)] if place < 3 else [np.zeros(3), along])
+    return _Forced(seat(nonlinear(mechanism), links, np.asarray(frame.position)), direction, axis)
+
+
+def _links_of(assembly: Assembly, copy: str) -> list[str]:
+    return [name for name in assembly.links if name.partition("/")[0] == copy]
+
+
+def _along(forced: _Forced, state: State, strained: Strains, sizes: Array) -> Matrix:
+    columns = dict(_columns(forced, state, strained, sizes))
+    units = tuple(unit for _, unit in columns.values())
+    values = np.stack([each for each, _ in columns.values()], axis=-1)
+    return Matrix(values, tuple(str(number + 1) for number in range(len(sizes))), tuple(columns), (units,) * len(sizes))
+
+
+def _columns(forced: _Forced, state: State, strained: Strains, sizes: Array) -> Iterator[tuple[str, tuple[Array, str]]]:
+    place = COMPONENTS.index(forced.axis)
+    yield forced.axis, (sizes, TWIST_UNITS[place])
+    yield "load", (state.reactions @ forced.direction, WRENCH_UNITS[place])
+    frequencies = np.sqrt(eigenvalues(linearise(state, locked=_HELD))) / (2.0 * np.pi)
+    yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
+    yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
+    yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
+    motions = unstable_motions(state)
+    yield "unstable", (np.where(motions < 0, np.nan, motions), "1")

@@ -1,0 +1,78 @@
+"""Misaligned guides against closed forms: the load that a turned leaf leaves, the turn at which the guide gives way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.misalign import critical_misalignments, misalign, seated
+from flexstage.beams.section import rectangle
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.show.displaced import misalign_report
+from flexstage.spatial.rotation import exponential
+from tests.laws.test_nonlinear import guide
+
+SLENDER = Leaf("steel", length=0.1, thickness=0.37e-3, width=0.05, section=LeafSection.BEAM)
+
+
+def slender(turn: np.ndarray | None = None) -> fs.Mechanism:
+    return replace(guide(turn), parts={"leaf": SLENDER})
+
+
+def limit() -> float:
+    """4 pi sqrt(E I G J) / (E I_y) [rad], any length: uniform bending in the stiff plane until the leaves twist away."""
+    section = rectangle(SLENDER.thickness, SLENDER.width)
+    return 4.0 * np.pi * np.sqrt(section.inertia_z * section.torsion / 2.6) / section.inertia_y
+
+
+def test_a_guide_gives_way_at_its_critical_misalignment():
+    found = critical_misalignments(slender(), ("ry",))
+    assert found.rows == ("left", "right")
+    assert found.values[:, 0] == pytest.approx(limit(), rel=5e-5)
+
+
+def test_the_axes_are_those_of_the_link():
+    turn = exponential(np.array([0.4, -1.0, 0.3]))
+    assert critical_misalignments(slender(turn), ("ry",)).values[:, 0] == pytest.approx(limit(), rel=5e-5)
+
+
+def test_below_it_both_leaves_bend_uniformly():
+    """M = E I_y phi / (2 L), opposite in the two, as nothing else holds the platform."""
+    found = misalign(slender(), "left", "ry", 0.5 * limit(), points=3)
+    moment = 200e9 * rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.5 * limit() / (2.0 * SLENDER.length)
+    assert found.along.at("3", "load") == pytest.approx(moment, rel=1e-3)
+    assert np.abs(found.loads.values[:, 4]) == pytest.approx([moment, moment], rel=1e-3)
+    assert found.along.values[:, -1].tolist() == [0.0, 0.0, 0.0]
+    assert found.along.at("3", "f1") < found.along.at("1", "f1")
+
+
+def test_what_is_not_held_twice_follows_freely():
+    """About z one leaf bends and the platform goes with it: hardly any load, and nothing gives way."""
+    found = misalign(slender(), "left", "rx", 1e-3, points=2)
+    assert found.along.at("2", "load") < 0.1 * misalign(slender(), "left", "ry", 1e-3, points=2).along.at("2", "load")
+    single = replace(slender(), links={"left": slender().links["left"]})
+    free = misalign(single, "left", "ry", 1e-3, points=2)
+    assert abs(free.along.at("2", "load")) < 1e-9
+    assert np.isnan(free.critical)
+
+
+def test_copies_stand_on_the_ground():
+    assert seated(double_triangle()) == ("B1", "B2", "B3", "B4", "B5", "B6")
+
+
+@pytest.mark.parametrize(("copy", "axis"), [("middle", "ry"), ("left", "q")])
+def test_names_that_are_none_are_refused(copy: str, axis: str):
+    with pytest.raises(fs.DesignError):
+        misalign(slender(), copy, axis, 1e-3)
+
+
+def test_its_report_stands_alone():
+    found = misalign(slender(), "left", "ry", 1.5 * limit(), points=4)
+    assert found.along.values[-1, -1] > 0
+    page = misalign_report(slender(), found)
+    assert "gives way at" in page
+    assert "<svg" in page
