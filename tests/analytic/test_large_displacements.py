@@ -174,6 +174,7 @@ def test_a_twisted_strip_stiffens_and_shortens(kind: dict[str, LeafSection | Lea
     assert wagner[1] > 0.5 * saint_venant[1]
     assert found.reactions[:, 0] == pytest.approx(saint_venant + pull * polar * twist + wagner, rel=1e-9)
     assert found.displacement()[:, 0] == pytest.approx(pull / 1e-5 - 0.5 * polar * twist**2, rel=1e-9)
+    assert strains(found).largest[:2, 0] == pytest.approx(twist[:2] ** 2 * 0.05**2 / 12.0, rel=1e-9)
 
 
 def test_the_form_of_a_strip_is_the_energy_of_its_plate():
@@ -329,6 +330,29 @@ def test_stress_at_a_root_is_that_of_its_moment(section: LeafSection, share: flo
     pulled = strains(equilibrium(cantilever(leaf), {"platform.fx": 1e-9}))
     assert pulled.stress[0] == pytest.approx(1e-9 / (0.2 * 1e-3), rel=1e-6)
     assert np.isnan(pulled.limit).all()
+
+
+def test_a_bent_strip_is_stretched_across_its_width():
+    """In the middle of a long one k, a_2 and a_4 are uniform, of least energy: stress of the plate's bending and of its stretch there."""
+    thickness, width, beta = 1e-4, 0.1, 12.0
+    curvature = beta * thickness / width**2
+    leaf = Leaf("soft", length=0.8, thickness=thickness, width=width)
+    moment = float(secant(beta, 0.3)) * width * thickness**3 / 12.0 * curvature
+    found = strains(equilibrium(cantilever(leaf), {"platform.mz": moment}))
+    assert found.curving[0] == pytest.approx(beta, rel=0.03)
+    w = width * np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
+    shapes = [width**2 / 12.0 * Legendre.basis(degree, domain=[-0.5 * width, 0.5 * width]) for degree in (2, 4)]
+    nodes, weights = legendre.leggauss(12)
+    curved = np.array([shape.deriv(2)(0.5 * width * nodes) for shape in shapes])
+    plain = np.array([shape(0.5 * width * nodes) for shape in shapes])
+    plate, stretch = thickness**2 / 12.0 / 0.91, curvature**2
+    form = plate * (curved * weights @ curved.T) + stretch * (plain * weights @ plain.T)
+    fields = np.linalg.solve(form, -0.3 * curvature * plate * (curved @ weights))
+    across, along = (sum(a * each(w) for a, each in zip(fields, kind, strict=True)) for kind in ([s.deriv(2) for s in shapes], shapes))
+    bent = [face * 0.5 * thickness / 0.91 * np.array([curvature + 0.3 * across, across + 0.3 * curvature]) for face in (1.0, -1.0)]
+    pairs = [(one - curvature * along, other) for one, other in bent]
+    expected = max(float(np.max(np.sqrt(one**2 + other**2 - one * other))) for one, other in pairs)
+    assert found.stress[0] == pytest.approx(expected, rel=0.02)
 
 
 def test_twist_is_sheared_at_its_faces():

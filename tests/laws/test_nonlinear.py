@@ -28,11 +28,12 @@ from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Effort, Status
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.given import Given as Matrix
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import spatial_rotation
-from flexstage.spatial.rotation import exponential, magnus
+from flexstage.spatial.rotation import exponential, exponential_rate, magnus
 
 STEEL = Material(young=200e9, poisson=0.3, density=7800.0)
 LEAF = Leaf("steel", length=0.1, thickness=0.5e-3, width=0.02)
@@ -154,8 +155,9 @@ def test_the_frame_does_not_matter():
     assert spatial_rotation(turn).T @ there == pytest.approx(here, abs=1e-13)
 
 
-def test_tangents_are_the_slopes_of_reactions():
-    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0), centre=AWAY))
+@pytest.mark.parametrize("swap", [False, True])
+def test_tangents_are_the_slopes_of_reactions(swap: bool):
+    model = nonlinear(guide(swap=swap, gravity=(40.0, -90.0, 30.0), mass=0.1, centre=AWAY))
     held = {f"platform.{name}": value for name, value in zip(("x", "y", "z"), (-1e-3, 0.02, 4e-5), strict=True)}
     step = 1e-6
     moved = {name: value + step * np.eye(3)[:, [place]] * [[1, -1]] for place, (name, value) in enumerate(held.items())}
@@ -166,6 +168,30 @@ def test_tangents_are_the_slopes_of_reactions():
     condensed = matrix[place, place] - matrix[place, 3:6] @ np.linalg.solve(free, matrix[3:6, place])
     scale = np.sqrt(np.diag(condensed))
     assert np.max(np.abs(slope - condensed) / scale / scale[:, None]) < 1e-5
+
+
+def on_matrices(*, swap: bool = False) -> Nonlinear:
+    """The guide on two given 6x6 in place of leaves, on which its platform turns far."""
+    part = Matrix(tuple(map(tuple, np.diag(1.0 / np.array([4e3, 9e2, 2e3, 0.4, 0.9, 0.6])))), free=())
+    return nonlinear(replace(guide(swap=swap), parts={"leaf": part}))
+
+
+def test_what_holds_a_rotation_is_the_moment_of_its_component():
+    """T^-T e times the reaction, fixed in space, brings the stage where holding a component of its rotation vector does."""
+    model, wrench = on_matrices(), np.array([20.0, 45.0, 30.0, 0.1, -0.2, 0.0])
+    held = equilibrium(model, loads(wrench), hold={"platform.rz": 0.3})
+    assert np.linalg.norm(held.rotation()[:2]) > 0.1
+    wrench[3:] += np.linalg.inv(exponential_rate(held.rotation())).T[:, 2] * held.reactions[0]
+    assert equilibrium(model, loads(wrench)).twist() == pytest.approx(held.twist(), abs=1e-9)
+
+
+def test_links_about_centres_are_alike_from_both_ends_and_have_an_energy():
+    """Bodies turned by half a radian and more: the same from either end, and symmetric without dead couples."""
+    force = np.array([20.0, 45.0, 30.0, 0.0, 0.0, 0.0])
+    one, other = (equilibrium(on_matrices(swap=swap), loads(force)) for swap in (False, True))
+    assert np.linalg.norm(one.rotation()) > 0.5
+    assert other.twist() == pytest.approx(one.twist(), abs=1e-10)
+    assert asymmetry(on_matrices(swap=False), force / UNIT) < 1e-9
 
 
 def asymmetry(model: Nonlinear, wrench: np.ndarray) -> float:
