@@ -25,7 +25,7 @@ from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.arguments import takes_models
-from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.model import LinearModel, strain_forces
 from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
@@ -109,9 +109,9 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     size = len(model.coordinates)
     whole = {name: _without_modes(strains[name], part.law.shape[-1] - 6) for name, part in model.stiffness.items()}
-    load = sum((_transpose(part.operator) @ (part.law @ whole[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
+    load = _load(model, whole, size)
     motion = displacement(model, -load)
-    twists = {body: _twist(model, body, motion) + fitted.twists.get(body, 0.0) for body in thermal.assembly.bodies}
+    twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
     forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in model.stiffness.items()}
     return Drift(
         motion=_motions(thermal, twists),
@@ -189,8 +189,20 @@ def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     )
 
 
-def _twist(model: LinearModel, body: str, motion: Array) -> Array:
-    return model.output[..., model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)), :] @ motion
+def _load(model: LinearModel, strains: Mapping[str, Array], size: int) -> Array:
+    """Generalised forces (..., n, 4) of what the links grow."""
+    if model.is_sparse:
+        return strain_forces(model.stiffness, strains)
+    return sum((_transpose(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
+
+
+def _twists(assembly: Assembly, model: LinearModel, motion: Array) -> dict[str, Array]:
+    """The twist (..., 6, 4) of every body."""
+    places = {body: model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)) for body in assembly.bodies}
+    if model.is_sparse:
+        outputs = model.output @ motion
+        return {body: outputs[rows] for body, rows in places.items()}
+    return {body: model.output[..., rows, :] @ motion for body, rows in places.items()}
 
 
 def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:

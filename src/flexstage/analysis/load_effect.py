@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.stability import Stability, prestress
+from flexstage.analysis.stability import Stability, is_large, prestress
 from flexstage.analysis.standing import standing, under_load
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError, refuse
@@ -88,6 +88,8 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     if bound < FELT:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)
+    if is_large(mechanism, still):
+        return LoadEffect(bound, "", f"its {len(still.coordinates):,} freedoms are too many for that of the loaded one", None)
     near = _compare(still, prestress(mechanism, still))
     if abs(near.change) < FELT:
         return near

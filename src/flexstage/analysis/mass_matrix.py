@@ -65,7 +65,9 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
     rigid = None if own is None or placed is None else _congruent(own, transport(placed.reference - place.point))
     reasons = {} if rigid is not None else {"rigid": _MASSLESS}
     try:
-        reduced = _congruent(model.inertia_matrix, _static_shapes(model, point))
+        shapes = _static_shapes(model, point)
+        followed = np.swapaxes(shapes, -1, -2)
+        reduced = _symmetric(followed @ model.momenta(shapes) if model.is_sparse else followed @ model.inertia_matrix @ shapes)
     except DesignError as error:
         reduced, reasons = None, {**reasons, "reduced": str(error)}
     return MassMatrix(point, place.body, _label(rigid, point), _label(reduced, point), model.provenance, reasons)
@@ -80,7 +82,10 @@ def _static_shapes(model: LinearModel, point: str) -> Array:
 
 
 def _congruent(matrix: Array, motions: Array) -> Array:
-    found = np.swapaxes(motions, -1, -2) @ matrix @ motions
+    return _symmetric(np.swapaxes(motions, -1, -2) @ matrix @ motions)
+
+
+def _symmetric(found: Array) -> Array:
     return 0.5 * (found + np.swapaxes(found, -1, -2))
 
 

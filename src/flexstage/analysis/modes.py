@@ -16,7 +16,7 @@ from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.models.batch.choice import NEGLIGIBLE
 from flexstage.models.linear.arguments import takes_models
-from flexstage.models.linear.eigen import Eigen, eigen, sign_weights
+from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -56,6 +56,7 @@ class Modes(InNotebook):
     kinetic energy of the platform body over the total; `bodies` names the rows of `energies` (..., b, k), the share of every body and
     link. `names`, `in_plane` and `platform` (indices of the platform's modes) are those of the first design. A mode in which several bodies
     have equal shares is named after all of them, and so is each of the modes that repeat. `margin` is the largest share not chosen.
+    Of a large stage only the lowest modes are worked out, `partial`; the platform's are those among them.
     """
 
     frequencies: Array
@@ -71,6 +72,7 @@ class Modes(InNotebook):
     limit: Annotated[float, FREQUENCY]
     coordinates: Annotated[tuple[str, ...], INNER]
     provenance: str
+    partial: Annotated[bool, INNER] = False
 
     @property
     def modes(self) -> Annotated[tuple[Mode, ...], VIEW]:
@@ -93,7 +95,7 @@ class Modes(InNotebook):
 
     @property
     def computed(self) -> Annotated[int, VIEW]:
-        """How many modes there are."""
+        """How many modes were worked out: all, but of a large stage."""
         return len(self.names)
 
     @property
@@ -126,7 +128,8 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
 
     The platform's modes are the `count` largest platform shares below `limit` [Hz] (absent: of all modes); modes closer than `cluster`
     (relative) are kept together, and within such a cluster the basis is turned so that shapes follow the platform's axes, and those that
-    leave the platform at rest the coordinates that move most. Small motions.
+    leave the platform at rest the coordinates that move most. Small motions. Of a large stage (`LinearModel.is_sparse`, above 900 freedoms)
+    only some 30 modes, the lowest, are worked out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -134,7 +137,8 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
     ('tilt', 'tilt', 'z', 'yaw')
     """
     platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
-    solved = eigen(model)
+    solved = lowest_modes(model)
+    partial = model.is_sparse and len(model.coordinates) > ALL_MODES
     groups = repeated_groups(first_design(solved.values, 1), cluster)
     solved, moving = _align(platform, solved, groups, sign_weights(model.coordinates))
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
@@ -155,7 +159,8 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
         margin=margin,
         limit=limit,
         coordinates=model.coordinates,
-        provenance=model.provenance,
+        provenance=model.provenance + (f", the lowest {len(names)} modes of {len(model.coordinates):,} freedoms" if partial else ""),
+        partial=partial,
     )
 
 
@@ -311,8 +316,7 @@ def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array) -> 
 
 def _equal(bodies: tuple[str, ...], shares: Array) -> list[str]:
     """The bodies with the largest share, in their order."""
-    least = np.max(shares) - _EQUAL
-    return [body for body, share in zip(bodies, shares, strict=True) if body != _PLATFORM and share >= least]
+    return [bodies[place] for place in np.flatnonzero(shares >= np.max(shares) - _EQUAL) if bodies[place] != _PLATFORM]
 
 
 def _set(names: list[str]) -> str:

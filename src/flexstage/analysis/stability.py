@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Annotated, TypeAlias, TypeVar
+from typing import Annotated, TypeAlias, TypeVar, cast
 
 import numpy as np
 import scipy
@@ -18,8 +18,9 @@ import scipy
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import DesignError, Finding, require
-from flexstage.base.number import Array, stack
+from flexstage.base.number import Array, first_design, stack
 from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.sparse import Rows, Sparse, below, few
 from flexstage.beams.compliance import locked_freedoms as locked_by
 from flexstage.beams.geometric import ENDS, Geometric, geometric
 from flexstage.beams.mass import mass
@@ -27,6 +28,7 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses
+from flexstage.models.linear.large import Quadratic, Solver, least_ratios
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.parts.material import Material
@@ -40,6 +42,10 @@ _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
+_LARGE = 600
+"""Freedoms above which matrices are kept without their zeros."""
+_SHAPES = 6
+"""Shapes looked at of a large stage: of more that repeat, not all bodies are named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +119,8 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     True
     """
     require(_unknown_softening(expand(mechanism)))
+    if _pieces(mechanism, model).is_large:
+        return _of_large(mechanism, _pieces(mechanism, model), limits)
     pieces, dead = _loaded(mechanism, model)
     unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
     matrices = np.broadcast_arrays(pieces.stiffness, dead, *unit)
@@ -137,8 +145,24 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
 @lru_cache(maxsize=2)
 def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
     """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
-    pieces = _Pieces.of(mechanism, model)
+    pieces = _pieces(mechanism, model)
     return pieces, pieces.softening(*_dead(mechanism, pieces))
+
+
+@lru_cache(maxsize=2)
+def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
+    return _Pieces.of(mechanism, model)
+
+
+def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
+    """Whether load factors of a stage are worked out without dense matrices, which it has too many freedoms for.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> is_large(parallelogram(), lumped(parallelogram()))
+    False
+    """
+    return _pieces(mechanism, model).is_large
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
@@ -183,11 +207,19 @@ class _Pieces:
     @staticmethod
     def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
         assembly = expand(_with_drawn_parts(mechanism))
-        twists = {name: _rows(model, name, COMPONENTS) for name in assembly.bodies}
+        rows = _few_rows if model.is_sparse else _rows
+        twists = {name: rows(model, name, COMPONENTS) for name in assembly.bodies}
         parts = dict(zip(assembly.links, _by_part(assembly.links.values(), geometric), strict=True))
         return _Pieces(assembly, model, {GROUND: np.zeros((6, len(model.coordinates))), **twists}, parts)
 
-    @property
+    @cached_property
+    def is_large(self) -> bool:
+        """Whether there are so many freedoms that the matrices of a single design are kept without their zeros."""
+        if self.size <= _LARGE or self.model.designs or any(part.per_force.ndim > 3 for part in self.parts.values()):
+            return False
+        return self.model.is_sparse or not np.iscomplexobj(self.model.stiffness_matrix)
+
+    @cached_property
     def size(self) -> int:
         return len(self.model.coordinates) + sum(part.inner.shape[-1] for part in self.parts.values())
 
@@ -252,10 +284,46 @@ class _Pieces:
                 total = total + self._turning(name, acting)
         return total
 
+    def quadratics(self) -> Quadratic:
+        """K as strains, the inner bending of every part beside those of the model."""
+        size, place = self.size, len(self.model.coordinates)
+        own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
+        parts = [(Sparse(rows.columns, rows.values, size), law) for rows, law in own]
+        for part in self.parts.values():
+            inner = len(part.inner)
+            parts.append((Sparse(np.arange(place, place + inner), np.eye(inner), size), np.diag(part.inner)))
+            place += inner
+        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], size)
+
+    def large_softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Quadratic:
+        """K_g of one design as `softening` has it, without its zeros."""
+        forces: dict[str, list[tuple[Array, Array]]] = {
+            name: [(load[:3], at) for load, at in loads.get(name, ())] for name in self.assembly.bodies
+        }
+        twists = {name: few(twist) for name, twist in self.twists.items()}
+        parts: list[tuple[Sparse, Array]] = []
+        place = len(self.model.coordinates)
+        for name, link in self.assembly.links.items():
+            part, wrench = self.parts[name], wrenches[name]
+            inner = np.arange(place, place + part.inner.shape[-1])
+            place += len(inner)
+            ends = [_carried(self.assembly, link, body, twists[body], self.size) for body in link.joins]
+            law = np.einsum("i,iab->ab", wrench, part.per_force)
+            if law.any():
+                parts.append((below([*ends, Sparse(inner, np.eye(len(inner)), self.size)], self.size), law))
+            force = link.frame.direction(wrench[:3])
+            arm = link.frame.direction(part.half * np.eye(3)[0])
+            for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+                if body != GROUND:
+                    forces[body].append((sign * force, link.frame.position - sign * arm))
+        for name, acting in forces.items():
+            if acting:
+                turns = twists[name][..., slice(3, 6), :]
+                parts.append((Sparse(turns.columns, turns.values, self.size), _turning_law(self.assembly.bodies[name].reference, acting)))
+        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], self.size)
+
     def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> Array:
-        reference = self.assembly.bodies[name].reference
-        moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
-        law = np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
+        law = _turning_law(self.assembly.bodies[name].reference, acting)
         turns = self.twists[name][..., 3:, :]
         small = _transposed(turns) @ law @ turns
         result = np.zeros((*small.shape[:-2], self.size, self.size), dtype=small.dtype)
@@ -265,10 +333,22 @@ class _Pieces:
     def moving(self, shapes: Array) -> tuple[str, ...]:
         """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
         own = shapes[: len(self.model.coordinates)]
-        first = {name: np.real(twist.reshape(-1, *twist.shape[-2:])[0]) @ own for name, twist in self.twists.items() if name != GROUND}
+        first = {name: np.real(first_design(twist, 2)) @ own for name, twist in self.twists.items() if name != GROUND}
         sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
         largest = max(sizes.values(), default=0.0)
         return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
+
+
+def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:
+    """What forces at points of a rigid body resist of its rotation (..., 3, 3)."""
+    moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
+    return np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
+
+
+def _carried(assembly: Assembly, link: PlacedLink, body: str, twist: Sparse, size: int) -> Sparse:
+    """The twist (6, n + k) of a body at a link's centre, in its frame."""
+    values = twist.values if body == GROUND else twist_transform(link.frame, assembly.bodies[body].reference) @ twist.values
+    return Sparse(twist.columns, values, size)
 
 
 def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
@@ -285,7 +365,8 @@ def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loa
     loads = _weights(mechanism)
     total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     motion = displacement(model, total[..., None])
-    sprung = {name: (_rows(model, name, FORCES) @ motion)[..., 0] - _pushed(link) for name, link in pieces.assembly.links.items()}
+    seen = _seen_forces(pieces, motion)
+    sprung = {name: seen[name] - _pushed(link) for name, link in pieces.assembly.links.items()}
     return _whole(mechanism, sprung, loads), loads
 
 
@@ -300,11 +381,19 @@ def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[
     model = pieces.model
     column = model.input_index((actuator,))
     motion = displacement(model, model.input_matrix[..., column])
-    sprung: dict[str, Array] = {}
-    for name in pieces.assembly.links:
-        rows = model.output_index(tuple(f"{name}.{force}" for force in FORCES))
-        sprung[name] = (model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., column])[..., 0]
-    return _whole(mechanism, sprung, {}), {}
+    return _whole(mechanism, _seen_forces(pieces, motion, column), {}), {}
+
+
+def _seen_forces(pieces: _Pieces, motion: Array, column: list[int] | None = None) -> dict[str, Array]:
+    """What the springs of every link feel (..., 6) of a motion (..., n, 1) and of a unit of the input in that column."""
+    model = pieces.model
+    places = {name: model.output_index(tuple(f"{name}.{force}" for force in FORCES)) for name in pieces.assembly.links}
+    outputs = model.output @ motion if model.is_sparse else None
+    found: dict[str, Array] = {}
+    for name, rows in places.items():
+        seen = model.output[..., rows, :] @ motion if outputs is None else outputs[rows]
+        found[name] = (seen if column is None else seen + model.feedthrough[..., rows, :][..., column])[..., 0]
+    return found
 
 
 def _weights(mechanism: Mechanism) -> _Loads:
@@ -428,6 +517,72 @@ def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
     return complex(elastic / taken) if np.real(taken) > _NONE * np.real(elastic) else complex(np.inf)
 
 
+def _of_large(mechanism: Mechanism, pieces: _Pieces, limits: StrokeLimits | None) -> Stability:
+    """Load factors of one design of many freedoms: the least eigenvalues of K_g x = mu K x, without dense matrices."""
+    solver = Solver(pieces.quadratics())
+    dead = pieces.large_softening(*_dead(mechanism, pieces))
+    unit = [pieces.large_softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
+    corners = np.zeros((1, 0)) if limits is None else np.real(first_design(limits.corners, 2))
+    values, shapes = _softest(solver, dead)
+    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
+    strokes, steep = _worst_of_large(solver, [dead, *unit], corners) if unit else (corners[0], shapes[:, 0])
+    factors = [_large_factor(solver, each, shape) for each, shape in ((dead, shapes[:, 0]), (_mixed([dead, *unit], strokes), steep))]
+    stiffest = -_softest(solver, Quadratic(dead.rows, -dead.law))[0][0]
+    return Stability(
+        dead=np.array(factors[0]),
+        worst=np.array(min(factors)),
+        strokes=np.array(strokes),
+        stiffens=np.array(float(max(stiffest, 0.0))),
+        moving=pieces.moving(shapes[:, alike]),
+        provenance=f"linearised buckling of the {pieces.model.provenance}",
+    )
+
+
+def _softest(solver: Solver, softening: Quadratic) -> tuple[Array, Array]:
+    """The least mu of K_g x = mu K x and their shapes (n + k, s)."""
+    if not softening.matrix.count_nonzero():
+        size = softening.rows.shape[1]
+        return np.zeros(1), solver.solve(np.ones((size, 1)))
+    return least_ratios(solver, softening, _SHAPES)
+
+
+def _mixed(parts: list[Quadratic], strokes: Array) -> Quadratic:
+    """K_g of the dead load, the first part, and of strokes."""
+    rows = scipy.sparse.vstack([part.rows for part in parts], format="csr")
+    laws = [part.law * weight for part, weight in zip(parts, (1.0, *strokes), strict=True)]
+    return Quadratic(rows, scipy.sparse.block_diag(laws, format="csr"))
+
+
+def _worst_of_large(solver: Solver, parts: list[Quadratic], corners: Array) -> tuple[Array, Array]:
+    """As `_worst`: the corner with the least mu, and its shape."""
+    weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
+    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
+    space, solved = np.zeros((parts[0].rows.shape[1], 0)), dict[int, Array]()
+    while True:
+        for corner in dict.fromkeys(wanted):
+            solved[corner] = _softest(solver, _mixed(parts, corners[corner]))[1][:, :_KEPT]
+            space = _orthonormal(solver, np.concatenate([space, solved[corner]], axis=-1))
+        small = np.array([space.T @ (part @ space) for part in parts])
+        bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
+        least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
+        if least in solved:
+            return corners[least], solved[least][:, 0]
+        wanted = [least]
+
+
+def _orthonormal(solver: Solver, shapes: Array) -> Array:
+    """What spans the same, with unit energies and none between any two."""
+    shapes = shapes / np.sqrt(np.sum(shapes * (solver.stiffness @ shapes), axis=0))
+    values, turn = np.linalg.eigh(shapes.T @ (solver.stiffness @ shapes))
+    kept = values > _ALIKE
+    return (shapes @ turn)[:, kept] / np.sqrt(values[kept])
+
+
+def _large_factor(solver: Solver, softening: Quadratic, shape: Array) -> float:
+    elastic, taken = float(shape @ (solver.stiffness @ shape)), -float(shape @ (softening @ shape))
+    return elastic / taken if taken > _NONE * elastic else float(np.inf)
+
+
 def _normal(root: Array, matrix: Array) -> Array:
     half = scipy.linalg.solve_triangular(root, matrix, lower=True)
     whole = scipy.linalg.solve_triangular(root, half.T, lower=True)
@@ -440,6 +595,11 @@ def _back(root: Array, shape: Array) -> Array:
 
 def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
     return model.output[..., model.output_index(tuple(f"{owner}.{name}" for name in names)), :]
+
+
+def _few_rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
+    first = model.output_index((f"{owner}.{names[0]}",))[0]
+    return cast("Array", cast("Rows", model.output).few(first, len(names)))
 
 
 def _transposed(matrix: Array) -> Array:

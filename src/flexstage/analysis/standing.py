@@ -40,7 +40,7 @@ def under_load(mechanism: Mechanism) -> Stability | None:
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
     """The lumped model and how it stands, kept for what else one command asks of the same description."""
     model = lumped(mechanism)
-    known = model.stiffness_matrix.ndim == 2 and not expand(mechanism).superelements
+    known = not model.designs and not expand(mechanism).superelements
     return model, stability(mechanism, model) if known else None
 
 

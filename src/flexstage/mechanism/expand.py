@@ -318,7 +318,7 @@ def port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator
 def _unknown_bodies(
     bodies: Mapping[str, PlacedBody], links: Iterable[PlacedLink | PlacedSuperelement], looking: Mapping[str, Probe | Stop]
 ) -> Iterator[Finding]:
-    known = (*bodies, GROUND)
+    known = dict.fromkeys((*bodies, GROUND))
     ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
     ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
     yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import cast
 
 import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.memory import require_memory
 from flexstage.base.number import Array, Table
+from flexstage.base.sparse import Sparse
 from flexstage.mechanism.expand import Assembly, PlacedLink
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
+
+LARGE = 60
+"""Bodies from which a single design is worked out without the zeros of its matrices."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,10 +26,12 @@ class Layout:
     """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first; then the `inner` ones.
 
     `inner` is how many inner coordinates a link has, by its name: amplitudes of its modes while its ends are held, zero in rigid motion.
+    Of a layout that is `sparse`, matrices over the coordinates come as `flexstage.base.sparse.Sparse`.
     """
 
     bodies: tuple[str, ...]
     inner: Mapping[str, int] = field(default_factory=lambda: Table({}))
+    sparse: bool = False
 
     @property
     def size(self) -> int:
@@ -38,24 +46,39 @@ class Layout:
 
     def columns(self, body: str) -> slice:
         """The coordinates of a body."""
-        start = 6 * self.bodies.index(body)
+        start = self._starts[body]
         return slice(start, start + 6)
+
+    @cached_property
+    def _starts(self) -> Mapping[str, int]:
+        """The first coordinate of every body."""
+        return {body: 6 * number for number, body in enumerate(self.bodies)}
+
+    @cached_property
+    def inner_starts(self) -> Mapping[str, int]:
+        """The first inner coordinate of every link that has some."""
+        ends = np.cumsum(list(self.inner.values()), dtype=int).tolist()
+        return {name: 6 * len(self.bodies) + end - self.inner[name] for name, end in zip(self.inner, ends, strict=True)}
+
+    def embed(self, first: int, block: Array) -> Array:
+        """A matrix (..., r, n) that is a block (..., r, c) from column `first` on, and zero elsewhere."""
+        if self.sparse:
+            return cast("Array", Sparse(np.arange(first, first + block.shape[-1]), block, self.size))
+        result = np.zeros((*block.shape[:-1], self.size), dtype=block.dtype)
+        result[..., first : first + block.shape[-1]] = block
+        return result
 
     def selector(self, body: str) -> Array:
         """The (6, n) matrix that picks a body's twist, at its own reference point in the stage's axes."""
-        result = np.zeros((6, self.size))
-        result[:, self.columns(body)] = np.eye(6)
-        return result
+        return self.embed(self._starts[body], np.eye(6))
 
     def inner_selector(self, link: str) -> Array:
         """The (m, n) matrix that picks a link's inner coordinates; without rows where it has none."""
-        before = list(self.inner).index(link) if link in self.inner else len(self.inner)
-        start = 6 * len(self.bodies) + sum(list(self.inner.values())[:before])
-        return np.eye(self.inner.get(link, 0), self.size, k=start)
+        return self.embed(self.inner_starts.get(link, 0), np.eye(self.inner.get(link, 0)))
 
 
-def layout(assembly: Assembly, inner: Mapping[str, int] | None = None) -> Layout:
-    """The coordinate layout of an expanded stage whose links have so many `inner` coordinates (absent: none).
+def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse: bool = False) -> Layout:
+    """The coordinate layout of an expanded stage whose links have so many `inner` coordinates (absent: none), dense or `sparse`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.expand import expand
@@ -64,7 +87,20 @@ def layout(assembly: Assembly, inner: Mapping[str, int] | None = None) -> Layout
     """
     names = tuple(assembly.bodies)
     first = tuple(name for name in names if name == "platform")
-    return Layout(first + tuple(name for name in names if name != "platform"), Table(inner or {}))
+    return Layout(first + tuple(name for name in names if name != "platform"), Table(inner or {}), sparse)
+
+
+def is_single(assembly: Assembly) -> bool:
+    """Whether nothing that is placed is a batch or stepped.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.expand import expand
+    >>> is_single(expand(double_triangle()))
+    True
+    """
+    places = [(link.frame.rotation, link.frame.position) for link in assembly.links.values()]
+    places += [(body.frame.rotation, body.reference) for body in assembly.bodies.values()]
+    return all(turn.ndim == 2 and at.ndim == 1 and not np.iscomplexobj(turn) and not np.iscomplexobj(at) for turn, at in places)
 
 
 def require_room(assembly: Assembly, matrices: float) -> None:
@@ -94,11 +130,8 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
     (6, 114)
     """
     if body == GROUND:
-        return np.zeros((6, order.size))
-    carry = twist_transform(frame, assembly.bodies[body].reference)
-    result = np.zeros((*carry.shape[:-2], 6, order.size), dtype=carry.dtype)
-    result[..., order.columns(body)] = carry
-    return result
+        return order.embed(0, np.zeros((6, 0)))
+    return order.embed(order.columns(body).start, twist_transform(frame, assembly.bodies[body].reference))
 
 
 def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:

@@ -9,18 +9,22 @@ virtual work.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
+import scipy
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design
+from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
-from flexstage.mechanism.incidence import Layout, deformation, free_deformations, layout, require_room, twist_at
+from flexstage.mechanism.incidence import LARGE, Layout, deformation, free_deformations, is_single, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
@@ -68,6 +72,11 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
     [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
     """
+    return _ideal_of_large(mechanism) or _ideal(mechanism)
+
+
+def _ideal(mechanism: Mechanism) -> Kinematics:
+    """With dense matrices, of all designs of a batch."""
     graph = _graph(mechanism)
     solution = eliminate(graph.constraints, graph.scale, keep=tuple(range(6)))
     freedoms = [index for index in solution.independent if index < 6]
@@ -101,6 +110,110 @@ def ideal(mechanism: Mechanism) -> Kinematics:
         thrust=_thrust(graph, sensed),
     )
     return replace(found, blocked=_blockages(graph, found.immobile)) if found.immobile else found
+
+
+def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
+    """Of one large design, body by body; `None` of others, and where gauges or forces see idle motions."""
+    whole = expand(mechanism)
+    assembly = whole.welded
+    if len(assembly.bodies) < LARGE or whole.superelements or not is_single(assembly) or not assembly.links:
+        return None
+    order = layout(assembly, sparse=True)
+    operators = [cast("Sparse", deformation(assembly, order, link)) for link in assembly.links.values()]
+    rows, names = _large_constraints(assembly, operators, order.size)
+    length = _length(assembly)
+    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.strokes))])
+    solved = eliminate_blocks(rows, scale, len(order.bodies), len(assembly.strokes))
+    free = [index for index in solved.last.independent if index < 6]
+    columns = [solved.last.independent.index(index) for index in free]
+    rest = [index for index in range(len(solved.last.independent)) if index not in columns]
+    graph = _Graph(assembly, order, cast("Array", Rows.of(operators, order.size)), np.zeros((0, 0)), names, scale, length, {})
+    _require_paths(graph, solved.last.basis[6:, rest])
+    size = order.size
+    idle = as_csr([Sparse(each.columns, each.values, len(scale)) for each in solved.idle], len(scale)).T.tocsr()[:size]
+    strained = cast("Rows", graph.strain).entries @ idle if idle.shape[1] else None
+    watching = [*(_reading(graph, name) for name in assembly.gauges), *_elongations(graph).values()]
+    if rest or (strained is not None and any(_sees_few(row, idle) for row in watching)):
+        return None
+    bodies = _least_deformed(graph, solved.wanted[:size, columns], idle, strained)
+    strokes = solved.wanted[size:, columns]
+    strains = graph.strain @ bodies
+    found = Kinematics(
+        actuators=tuple(assembly.strokes),
+        coordinates=tuple(COMPONENTS[index] for index in free),
+        gauges=tuple(assembly.gauges),
+        gauge_units=tuple(gauge.unit for gauge in assembly.gauges.values()),
+        sums={name: gauge.members for name, gauge in assembly.gauges.items() if gauge.members},
+        actuation=strokes,
+        sensing=_sensing(graph, bodies),
+        motion=bodies[:6],
+        body_coordinates=order.coordinates,
+        bodies=bodies,
+        strains=dict(zip(assembly.links, _by_link(strains), strict=True)),
+        free={name: free_freedoms(link) for name, link in assembly.links.items()},
+        idle=_named_idle(graph, idle, strained),
+        redundant=tuple(Redundant(tuple(names[place] for place in state)) for state in solved.redundant),
+        length=length,
+        provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
+        thrusts=tuple(assembly.thrusts),
+        thrust_inputs=tuple(assembly.actuator(name).input.si for name in assembly.thrusts),
+        thrust=_thrust(graph, bodies),
+    )
+    return None if found.immobile else found
+
+
+def _large_constraints(assembly: Assembly, operators: Sequence[Sparse], size: int) -> tuple[list[Sparse], tuple[str, ...]]:
+    """The constraints as `_constraints` has them, each by itself."""
+    strokes = {link: size + number for number, link in enumerate(assembly.strokes.values())}
+    moved = {link: assembly.actuator(name).free_deformation for name, link in assembly.strokes.items()}
+    rows: list[Sparse] = []
+    names: list[str] = []
+    for (name, link), operator in zip(assembly.links.items(), operators, strict=True):
+        free = free_freedoms(link)
+        for index, freedom in enumerate(ALL):
+            if freedom not in free:
+                columns, values = operator.columns, operator.values[[index]]
+                if name in strokes:
+                    columns, values = np.append(columns, strokes[name]), np.append(values, [[-moved[name][index]]], axis=1)
+                rows.append(Sparse(columns, values, size + len(strokes)))
+                names.append(f"{name}.{freedom.value}")
+    return rows, tuple(names)
+
+
+def _sees_few(row: Array, idle: Any) -> bool:
+    """As `_sees`, of idle motions without their zeros."""
+    own = few(row)
+    seen, most = own.values @ idle[own.columns].toarray(), np.abs(own.values) @ np.abs(idle[own.columns].toarray())
+    return bool(np.any(np.abs(seen) > _NEGLIGIBLE * most))
+
+
+def _least_deformed(graph: _Graph, wanted: Array, idle: Any, strained: Any) -> Array:
+    """As `_without_idle`, of idle motions without their zeros."""
+    if strained is None or not wanted.shape[1]:
+        return wanted
+    weights = scipy.sparse.diags_array(np.tile(_weights(graph.length), len(graph.assembly.links)))
+    spun, before = weights @ strained, weights @ (graph.strain @ wanted)
+    return wanted - idle @ scipy.sparse.linalg.splu((spun.T @ spun).tocsc()).solve(spun.T @ before)
+
+
+def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:
+    """Bodies and links that every idle motion moves and strains."""
+    if strained is None:
+        return ()
+    links = tuple(graph.assembly.links)
+    found: list[Idle] = []
+    moving, deforming = idle.tocsc(), strained.tocsc()
+    for place in range(idle.shape[1]):
+        size = np.max(np.abs(moving.data[moving.indptr[place] : moving.indptr[place + 1]]), initial=0.0)
+        named = [_owners(matrix, place, _NEGLIGIBLE * size, names) for matrix, names in ((moving, graph.order.bodies), (deforming, links))]
+        found.append(Idle(*named))
+    return tuple(found)
+
+
+def _owners(matrix: Any, column: int, threshold: float, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The bodies or links, six rows each, that a column of a sparse matrix moves by more than a threshold."""
+    own = slice(matrix.indptr[column], matrix.indptr[column + 1])
+    return tuple(names[place] for place in np.unique(matrix.indices[own][np.abs(matrix.data[own]) > threshold] // 6))
 
 
 def _hinges(graph: _Graph) -> dict[str, PlacedSuperelement]:
@@ -337,6 +450,4 @@ def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
 def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
     """Self-stress states of the locked freedoms: left null vectors of the constraints."""
     states = echelon(null_space(_comparable(graph).T).T)
-    return tuple(
-        Redundant(tuple(name for name, force in zip(graph.names, state, strict=True) if abs(force) > _NEGLIGIBLE)) for state in states
-    )
+    return tuple(Redundant(tuple(graph.names[place] for place in np.flatnonzero(np.abs(state) > _NEGLIGIBLE))) for state in states)

@@ -9,20 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
+from flexstage.base.sparse import Rows, Sparse, below
 from flexstage.beams.compliance import Law, law, law_of, viscous_damping
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.incidence import Layout, end_twists, layout, require_room, twist_at, with_ground
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.incidence import LARGE, Layout, end_twists, is_single, layout, require_room, twist_at, with_ground
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.models.linear.channels import (
     Motions,
@@ -39,6 +40,7 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.eigen import cholesky, sign_weights
 from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
+from flexstage.models.linear.large import Quadratic, Solver, surely_definite
 from flexstage.models.linear.model import Contribution, Contributions, LinearModel, assemble, strain_forces
 from flexstage.parts.condensation import Condensed, condense
 from flexstage.parts.freedom import ALL, Freedom
@@ -107,7 +109,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     >>> len(lumped(double_triangle()).coordinates)
     114
     """
-    stage = _stage(mechanism)
+    stage = _stage_without_zeros(mechanism) or _stage(mechanism)
     inertia = _inertia(mechanism, stage, masses)
     carried = _carrier_forces(stage, inertia)
     kept = _keep(stage, inertia)
@@ -166,19 +168,38 @@ class _Kept:
     idle: _Idle | None
 
 
-def _stage(mechanism: Mechanism) -> _Stage:
+def _stage_without_zeros(mechanism: Mechanism) -> _Stage | None:
+    """A large stage as sparse operators; `None` where it is small, a batch, or has freedoms or motions that are not elastic."""
     assembly = expand(mechanism)
-    require_room(assembly, _MATRICES)
+    if len(assembly.bodies) < LARGE or assembly.superelements or not is_single(assembly):
+        return None
+    stage = _stage(mechanism, sparse=True)
+    if stage.freedoms or any(item.law.ndim > 2 or np.iscomplexobj(item.law) for item in stage.strains.values()):
+        return None
+    numbers = {name: place for place, name in enumerate(stage.order.bodies)} | {GROUND: len(stage.order.bodies)}
+    joins = ((numbers[first], numbers[second]) for first, second in (link.joins for link in assembly.links.values()))
+    laws = [item.law for item in stage.strains.values()]
+    if surely_definite(laws, joins, len(stage.order.bodies)):
+        return stage
+    operators = (cast("Sparse", item.operator) for item in stage.strains.values())
+    return stage if Solver(Quadratic.of(operators, laws, stage.order.size)).definite() else None
+
+
+def _stage(mechanism: Mechanism, *, sparse: bool = False) -> _Stage:
+    assembly = expand(mechanism)
+    if not sparse:
+        require_room(assembly, _MATRICES)
     with np.errstate(all="ignore"):  # what comes of it is told below
         laws = _by_part(law, assembly)
     inner = {name: item.inner.shape[-1] for name, item in laws.items() if item.inner is not None}
     inner |= {name: len(_condensed(element).squares) for name, element in assembly.superelements.items()}
-    order = layout(assembly, inner)
+    order = layout(assembly, inner, sparse=sparse)
     ends: dict[str, tuple[Array, ...]] = {name: end_twists(assembly, order, link) for name, link in assembly.links.items()}
     strains: dict[str, Contribution] = {}
+    whole = _by_value(_whole_law, laws)
     for name, link in assembly.links.items():
         operator = _with_inner(order, name, (ends[name][1] - ends[name][0],))
-        strains[name] = Contribution(operator, _whole_law(laws[name]), _loss_factor(as_drawn(mechanism, link)))
+        strains[name] = Contribution(operator, whole[name], _loss_factor(as_drawn(mechanism, link)))
     for name, element in assembly.superelements.items():
         ends[name] = tuple(twist_at(assembly, order, port.body, port.frame) for port in element.ports.values())
         strains[name] = _strain_of(assembly, order, element)
@@ -203,6 +224,8 @@ def _strain_of(assembly: Assembly, order: Layout, element: PlacedSuperelement) -
 
 def _with_inner(order: Layout, link: str, rows: tuple[Array, ...]) -> Array:
     """Rows (..., r, N) of a link one above the other, and below them those of its inner coordinates."""
+    if order.sparse:
+        return cast("Array", below(cast("tuple[Sparse, ...]", (*rows, order.inner_selector(link))), order.size))
     return np.concatenate(_broadcast((*rows, order.inner_selector(link))), axis=-2)
 
 
@@ -274,6 +297,13 @@ def _by_part(function: Callable[[Part, Material | None], _Value], assembly: Asse
     return {name: values[key] for name, key in keys.items()}
 
 
+def _by_value(function: Callable[[Law], _Value], laws: Mapping[str, Law]) -> dict[str, _Value]:
+    """A value for every link, computed once for all that share a law."""
+    distinct = {id(item): item for item in laws.values()}
+    values = {key: function(item) for key, item in distinct.items()}
+    return {name: values[id(item)] for name, item in laws.items()}
+
+
 def _loss_factor(link: PlacedLink) -> Number:
     inner = link.part.part if isinstance(link.part, Restricted) else link.part
     holder = link.material if link.material is not None else inner
@@ -296,7 +326,7 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
     if not independent:
         what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
         raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model tells how strokes move it as it is")
-    loose = _loose(stage, basis)
+    loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
     if loose.shape[1] == 0:
         return _Kept(basis, driven, tuple(names[index] for index in independent), None)
     named = _loose_coordinates(stage, loose, independent)
@@ -460,8 +490,10 @@ def _stable(stage: _Stage, strains: Contributions, size: int) -> Contributions:
     """The contributions; a later design of a batch that negative stiffnesses make unstable has no numbers."""
     links = stage.assembly.links.items()
     stated = next((name for name, link in links if (known := law_of(link.part)) is not None and known.stiffness is not None), None)
+    if stated is None or stage.order.sparse:
+        return strains
     total = assemble(strains, size)
-    if stated is None or total.ndim == 2:
+    if total.ndim == 2:
         return strains
     failed = np.isnan(cholesky(np.real(total))[..., :1, :1])
     return {**strains, stated: replace(strains[stated], law=np.where(failed, np.nan, strains[stated].law))}
@@ -584,7 +616,10 @@ def _outputs(stage: _Stage, imposed: Mapping[str, Array]) -> tuple[Array, Array]
         rows.append(law @ item.operator)
         own = -law @ imposed[name] if name in imposed else np.zeros((law.shape[-2], inputs))
         passed.append(own - exerted[name] if name in exerted else own)
-    return np.concatenate(_broadcast(tuple(rows)), axis=-2), np.concatenate(_broadcast(tuple(passed)), axis=-2)
+    through = np.concatenate(_broadcast(tuple(passed)), axis=-2)
+    if stage.order.sparse:
+        return cast("Array", Rows.of(cast("list[Sparse]", rows), stage.order.size)), through
+    return np.concatenate(_broadcast(tuple(rows)), axis=-2), through
 
 
 def _port_wrenches(element: PlacedSuperelement) -> Array:

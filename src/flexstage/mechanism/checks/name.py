@@ -201,7 +201,8 @@ def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     for body in link.bodies:
-        yield from _check_known(f"{where}.joins", "body", body, {GROUND, *bodies})
+        if body not in bodies:
+            yield from _check_known(f"{where}.joins", "body", body, {GROUND, *bodies})
     owners = {owner_of(bodies, body) for body in link.bodies}
     if len(owners) == 1:
         both = "both ends" if len(link.bodies) == 2 else "all ports"

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.models.linear.large import lowest
 from flexstage.models.linear.model import LinearModel
 
 _MASSLESS = 1e-13
+_CLUSTER = 1e-5
+ALL_MODES = 900
+"""Freedoms up to which all modes of a sparse model are worked out where its lowest are asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +28,8 @@ def eigen(model: LinearModel) -> Eigen:
     """Eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon); modes without inertia are left out.
 
     Solved as K^-1 M with K = L L^T, so M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is positive. A
-    design whose K is not positive definite gives NaN. The number of modes is that of the first design.
+    design whose K is not positive definite gives NaN. The number of modes is that of the first design. Raises `DesignError` for a large
+    stage, of which `lowest_modes` gives some.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -46,6 +51,22 @@ def eigenvalues(model: LinearModel) -> Array:
     inverse_values = np.linalg.eigvalsh(scaled)[..., ::-1]
     inverse_values = inverse_values[..., : _massive(inverse_values)]
     return np.where(np.isnan(lower[..., 0, 0])[..., None], np.nan, 1.0 / inverse_values)
+
+
+def lowest_modes(model: LinearModel) -> Eigen:
+    """All modes of a model; of a large sparse one some 30 of the lowest, without those of the last cluster, which may go on.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> lowest_modes(mapped(double_triangle())).values.shape
+    (6,)
+    """
+    if not model.is_sparse or len(model.coordinates) <= ALL_MODES:
+        return eigen(model)
+    values, shapes = lowest(model.solver, model.masses)
+    apart = np.flatnonzero(np.diff(values) > _CLUSTER * values[1:])
+    kept = int(apart[-1]) + 1 if len(apart) else len(values)
+    return Eigen(values[:kept], _apply_signs(shapes[:, :kept], sign_weights(model.coordinates)))
 
 
 def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:

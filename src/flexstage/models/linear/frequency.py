@@ -105,7 +105,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     """
     frequencies = np.asarray(frequencies, dtype=float)
     lines, outputs, inputs = max(1, len(frequencies)), len(chosen.outputs), len(chosen.inputs)
-    each = 16.0 * math.prod(model.stiffness_matrix.shape[:-2]) * (outputs * (2 * len(model.coordinates) + 3 * inputs) + 1)
+    each = 16.0 * math.prod(model.designs) * (outputs * (2 * len(model.coordinates) + 3 * inputs) + 1)
     require_memory(
         "response",
         f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",

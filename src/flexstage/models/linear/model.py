@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number
+from flexstage.base.sparse import Rows, Sparse, as_csr
 from flexstage.mechanism.mechanism import Damping
+from flexstage.models.linear.large import Quadratic, Solver
+
+_DENSE = 3000
+"""Freedoms up to which dense matrices of a sparse model are made: all its modes take a minute."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +57,9 @@ class LinearModel:
     `idle` names coordinates that no stiffness holds. They are left out with their zero modes: what is kept is M-orthogonal to them, so that
     neither frequencies nor shapes depend on which were named. `idle_output` (..., p, k) is how the outputs see the k idle motions,
     `idle_inertia` (..., k, 6) what accelerating the ground exerts on them (both absent: there are none).
+
+    A model of a large stage `is_sparse`: its operators and outputs hold no zeros (`flexstage.base.sparse`), `solve` and `momenta` use no
+    dense matrix, and K and M are made when they are asked for.
     """
 
     coordinates: tuple[str, ...]
@@ -76,13 +85,53 @@ class LinearModel:
 
     @cached_property
     def stiffness_matrix(self) -> Array:
-        """K (..., n, n), read-only."""
+        """K (..., n, n), read-only. Raises `DesignError` for a large sparse model."""
+        self._require_dense()
         return _freeze(assemble(self.stiffness, len(self.coordinates)))
 
     @cached_property
     def inertia_matrix(self) -> Array:
-        """M (..., n, n), read-only."""
+        """M (..., n, n), read-only. Raises `DesignError` for a large sparse model."""
+        self._require_dense()
         return _freeze(assemble(self.inertia, len(self.coordinates)))
+
+    def _require_dense(self) -> None:
+        size = len(self.coordinates)
+        if self.is_sparse and size > _DENSE:
+            what = f"it has {size:,} freedoms, and this needs their dense matrices, which are given up to {_DENSE:,}"
+            raise refuse("stage", what, "Ask for stiffness, modes, deflection or drift, which do without, or read parts of the stage")
+
+    @property
+    def is_sparse(self) -> bool:
+        """Whether operators and outputs are kept without their zeros, of one design."""
+        return isinstance(self.output, Rows)
+
+    @cached_property
+    def solver(self) -> Solver:
+        """What solves K q = f of a model that is sparse."""
+        return Solver(self._quadratic(self.stiffness))
+
+    @cached_property
+    def masses(self) -> Quadratic:
+        """M of a model that is sparse."""
+        return self._quadratic(self.inertia)
+
+    def _quadratic(self, contributions: Contributions) -> Quadratic:
+        operators = (cast("Sparse", item.operator) for item in contributions.values())
+        return Quadratic.of(operators, (item.law for item in contributions.values()), len(self.coordinates))
+
+    def solve(self, load: Array) -> Array:
+        """K^-1 load (..., n, k)."""
+        return self.solver.solve(load) if self.is_sparse else np.linalg.solve(self.stiffness_matrix, load)
+
+    def momenta(self, motion: Array) -> Array:
+        """M times a motion (..., n, k)."""
+        return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
+
+    @property
+    def designs(self) -> tuple[int, ...]:
+        """Shape of the batch axes of K."""
+        return () if self.is_sparse else self.stiffness_matrix.shape[:-2]
 
     @property
     def input_matrix(self) -> Array:
@@ -104,8 +153,11 @@ class LinearModel:
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
         """Positions of outputs by name."""
-        known = {channel.name: index for index, channel in enumerate(self.outputs)}
-        return [known[name] for name in names]
+        return [self._output_places[name] for name in names]
+
+    @cached_property
+    def _output_places(self) -> Mapping[str, int]:
+        return {channel.name: index for index, channel in enumerate(self.outputs)}
 
     def input_index(self, names: tuple[str, ...]) -> list[int]:
         """Positions of inputs by name."""
@@ -133,6 +185,7 @@ def assemble(contributions: Contributions, size: int) -> Array:
     if not contributions:
         return np.zeros((size, size))
     total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})
+    total = total if isinstance(total, np.ndarray) else total.toarray()
     return 0.5 * (total + _transpose(total))
 
 
@@ -145,6 +198,9 @@ def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) ->
     """
     operators = [item.operator for item in contributions.values()]
     forces = [item.law @ strains[name] for name, item in contributions.items()]
+    if isinstance(operators[0], Sparse):
+        rows = as_csr(cast("list[Sparse]", operators), operators[0].shape[-1]).T
+        return rows @ (as_csr(cast("list[Sparse]", forces), rows.shape[0]) if isinstance(forces[0], Sparse) else np.concatenate(forces))
     return _transpose(_stack(operators)) @ _stack(forces)
 
 

@@ -35,7 +35,7 @@ def mode_table(modes: Modes) -> Table:
         for index, frequency in zip(listed, frequencies, strict=True)
     ]
     heads = [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share"), "plane", "role"]
-    notes = [margin_text(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
+    notes = [margin_text(modes), *_partial(modes), *_unlisted(modes, listed), *batch_note(modes.frequencies, 1)]
     return make_table("Modes", heads, rows, notes=notes, provenance=modes.provenance)
 
 
@@ -74,6 +74,11 @@ def margin_text(modes: Modes) -> str:
     chosen = f"The platform's modes are the {len(modes.platform)} with the largest share of kinetic energy in the platform"
     below = f" below {modes.limit:g} Hz" if np.isfinite(modes.limit) else ""
     return f"{chosen}{below}: at least {percent(least, 3)} each, {percent(modes.margin, 3)} in the next one."
+
+
+def _partial(modes: Modes) -> list[str]:
+    most = f"The lowest {len(modes.names)} modes of {len(modes.coordinates):,} freedoms were computed: the platform's are those among them."
+    return [most] if modes.partial else []
 
 
 def _unlisted(modes: Modes, listed: tuple[int, ...]) -> list[str]:

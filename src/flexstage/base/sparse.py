@@ -1,0 +1,199 @@
+"""Matrices of large stages: rows that are zero but in few columns, and what is made of many of them, without the zeros."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Sparse:
+    """A real matrix (r, n) that is zero but in few `columns` (c,), where it is `values` (r, c); columns named twice add up.
+
+    It stands where an operator (r, n) does: products with arrays are arrays, and whatever else numpy does with it, it does with the
+    dense matrix.
+
+    >>> import numpy as np
+    >>> rows = Sparse(np.array([2]), np.array([[3.0]]), 4)
+    >>> (rows @ np.arange(4.0)[:, None]).tolist(), np.asarray(rows).tolist()
+    ([[6.0]], [[0.0, 0.0, 3.0, 0.0]])
+    """
+
+    columns: Array
+    values: Array
+    size: int
+
+    __array_priority__ = 100.0
+    __array_ufunc__ = None
+    ndim = 2
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(r, n)."""
+        return self.values.shape[0], self.size
+
+    @property
+    def dtype(self) -> Any:
+        """That of the values."""
+        return self.values.dtype
+
+    @property
+    def real(self) -> Sparse:
+        """Itself."""
+        return self
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
+        return np.asarray(as_csr([self], self.size).toarray(), dtype=dtype, copy=copy)
+
+    def __matmul__(self, motion: Array) -> Array:
+        return self.values @ motion[..., self.columns, :]
+
+    def __rmatmul__(self, law: Array) -> Sparse:
+        return Sparse(self.columns, law @ self.values, self.size)
+
+    def __sub__(self, other: Sparse) -> Sparse:
+        return Sparse(np.concatenate([self.columns, other.columns]), np.concatenate([self.values, -other.values], axis=1), self.size)
+
+    def __add__(self, other: Sparse) -> Sparse:
+        return Sparse(np.concatenate([self.columns, other.columns]), np.concatenate([self.values, other.values], axis=1), self.size)
+
+    def __rmul__(self, factor: Array) -> Sparse:
+        return Sparse(self.columns, np.real(factor) * self.values, self.size)
+
+    def __getitem__(self, index: Any) -> Any:
+        """Some of the rows, `[..., rows, :]`, of this kind; any other part of it dense."""
+        if index == ():
+            return self
+        if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
+            return Sparse(self.columns, self.values[index[1]], self.size)
+        return np.asarray(self)[index]
+
+    def swapaxes(self, first: int, second: int) -> Array:
+        """The dense transpose."""
+        return np.swapaxes(np.asarray(self), first, second)
+
+
+def few(matrix: Array | Sparse) -> Sparse:
+    """A real matrix (r, n) without its empty columns.
+
+    >>> import numpy as np
+    >>> few(np.array([[0.0, 2.0, 0.0]])).columns.tolist()
+    [1]
+    """
+    if isinstance(matrix, Sparse):
+        return matrix
+    columns = np.flatnonzero(np.any(matrix != 0.0, axis=0))
+    return Sparse(columns, np.ascontiguousarray(matrix[:, columns]), matrix.shape[1])
+
+
+def below(rows: Iterable[Sparse], size: int) -> Sparse:
+    """Several one below the other.
+
+    >>> import numpy as np
+    >>> one = Sparse(np.array([1]), np.array([[3.0]]), 2)
+    >>> np.asarray(below([one, one], 2)).tolist()
+    [[0.0, 3.0], [0.0, 3.0]]
+    """
+    parts = list(rows)
+    values = np.zeros((sum(len(part.values) for part in parts), sum(len(part.columns) for part in parts)))
+    row = column = 0
+    for part in parts:
+        values[row : row + len(part.values), column : column + len(part.columns)] = part.values
+        row, column = row + len(part.values), column + len(part.columns)
+    return Sparse(np.concatenate([part.columns for part in parts]), values, size)
+
+
+def as_csr(rows: Iterable[Sparse], size: int) -> Any:
+    """Many one below the other, as one `scipy.sparse.csr_array` (R, size)."""
+    parts = list(rows)
+    data = np.concatenate([part.values.ravel() for part in parts]) if parts else np.zeros(0)
+    columns = [np.broadcast_to(part.columns, part.values.shape).ravel() for part in parts]
+    counts = np.concatenate([np.full(len(part.values), len(part.columns)) for part in parts]) if parts else np.zeros(0, dtype=int)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    found = scipy.sparse.csr_array((data, np.concatenate(columns) if columns else np.zeros(0, dtype=int), starts), (len(counts), size))
+    found.sum_duplicates()
+    return found
+
+
+def block_diagonal(blocks: Iterable[Array]) -> Any:
+    """Square blocks along the diagonal, as one `scipy.sparse.csr_array`.
+
+    >>> block_diagonal([np.eye(1), 2.0 * np.eye(2)]).toarray().diagonal().tolist()
+    [1.0, 2.0, 2.0]
+    """
+    parts = [np.asarray(block) for block in blocks]
+    starts = np.concatenate([[0], np.cumsum([len(part) for part in parts])])
+    rows = [Sparse(np.arange(start, start + len(part)), part, int(starts[-1])) for start, part in zip(starts, parts, strict=False)]
+    return as_csr(rows, int(starts[-1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """A tall matrix (p, n) by its nonzero entries: it stands where an output matrix does, and gives the rows asked for dense.
+
+    >>> import numpy as np
+    >>> tall = Rows.of([Sparse(np.array([2]), np.array([[3.0]]), 4)], 4)
+    >>> tall[..., [0], :].tolist(), tall.shape
+    ([[0.0, 0.0, 3.0, 0.0]], (1, 4))
+    """
+
+    entries: Any
+
+    __array_priority__ = 100.0
+    __array_ufunc__ = None
+    ndim = 2
+
+    @staticmethod
+    def of(rows: Iterable[Sparse], size: int) -> Rows:
+        """Those one below the other."""
+        return Rows(as_csr(rows, size))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(p, n)."""
+        return self.entries.shape
+
+    def few(self, first: int, count: int) -> Sparse:
+        """So many rows from one on, without their empty columns."""
+        starts = self.entries.indptr[first : first + count + 1]
+        own = self.entries.indices[starts[0] : starts[-1]]
+        columns = np.unique(own)
+        values = np.zeros((count, len(columns)))
+        rows = np.repeat(np.arange(count), np.diff(starts))
+        values[rows, np.searchsorted(columns, own)] = self.entries.data[starts[0] : starts[-1]]
+        return Sparse(columns, values, self.shape[1])
+
+    @cached_property
+    def dtype(self) -> Any:
+        """That of the entries."""
+        return self.entries.dtype
+
+    @property
+    def real(self) -> Rows:
+        """Itself."""
+        return self
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
+        return np.asarray(self.entries.toarray(), dtype=dtype, copy=copy)
+
+    def __matmul__(self, motion: Array) -> Array:
+        return self.entries @ motion
+
+    def __getitem__(self, index: Any) -> Any:
+        """Rows `[..., rows, :]`, or any other part, dense."""
+        if index == ():
+            return self
+        if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
+            return self.entries[index[1]].toarray()
+        return np.asarray(self)[index]
+
+    def swapaxes(self, first: int, second: int) -> Array:
+        """The dense transpose."""
+        return np.swapaxes(np.asarray(self), first, second)

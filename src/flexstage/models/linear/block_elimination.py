@@ -1,0 +1,259 @@
+"""Elimination of the constraints of a large stage, body by body: the work grows with the stage, not with its square.
+
+A body's rows are turned (pivoted QR of its six columns) into some that give its coordinates from those of its neighbours, and others in
+which it does not occur and that bind the neighbours to one another. Coordinates that no row holds are idle motions; rows that vanish are
+redundant. Bodies with the fewest neighbours go first; the platform and the strokes are kept.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.base.sparse import Sparse
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
+
+_RANK = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Rows (m, c) over some `blocks` of coordinates, and what each is made of: `shares` (m, k) of the constraints `made` (k,)."""
+
+    blocks: tuple[int, ...]
+    rows: Array
+    made: Array
+    shares: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """Coordinates of a block: `free` ones are idle, the `bound` ones follow from these and from `others`' (one after the other)."""
+
+    free: Array
+    bound: Array
+    own: Array
+    others: tuple[int, ...]
+    rest: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Motions that fulfil the constraints.
+
+    `last` is the elimination of platform and strokes, `wanted` (N, c) the motions of everything by its columns, idle coordinates at rest;
+    `idle` (k rows, N) one motion for every coordinate that nothing holds; `redundant` the numbers of the constraints of each state of
+    self-stress.
+    """
+
+    last: Elimination
+    wanted: Array
+    idle: tuple[Sparse, ...]
+    redundant: tuple[tuple[int, ...], ...]
+
+
+def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> Solved:
+    """Eliminate constraints, each (1, N), over the twists of `bodies` (the platform's first) and the strokes; `scale` (N,) compares them.
+
+    >>> rows = [Sparse(np.array([0, 6]), np.array([[1.0, -1.0]]), 12), Sparse(np.array([6]), np.array([[1.0]]), 12)]
+    >>> found = eliminate_blocks([*rows, rows[1]], np.ones(12), bodies=2, strokes=0)
+    >>> len(found.last.independent), len(found.idle), found.redundant
+    (5, 5, ((1, 2),))
+    """
+    starts = np.concatenate([6 * np.arange(bodies), 6 * bodies + np.arange(strokes + 1)])
+    groups = {number: _group(row, number, scale, starts) for number, row in enumerate(rows)}
+    near: dict[int, set[int]] = {block: set() for block in range(bodies + strokes)}
+    for number, group in groups.items():
+        for block in group.blocks:
+            near[block].add(number)
+    given: dict[int, _Given] = {}
+    stresses: list[tuple[Array, Array]] = []
+    heap = [(_degree(groups, near[block]), block) for block in range(1, bodies)]
+    heapq.heapify(heap)
+    while heap:
+        degree, block = heapq.heappop(heap)
+        now = _degree(groups, near[block])
+        if degree != now:
+            heapq.heappush(heap, (now, block))
+            continue
+        own = _take(groups, near, block)
+        given[block], left = _eliminate(block, _join(own, block, starts), starts, stresses)
+        if left is not None:
+            key = len(rows) + block
+            groups[key] = left
+            for other in left.blocks:
+                near[other].add(key)
+    return _solved(list(groups.values()), given, stresses, scale=scale, starts=starts, bodies=bodies)
+
+
+def _take(groups: dict[int, _Group], near: dict[int, set[int]], block: int) -> list[_Group]:
+    """The groups of rows of a block, which are no longer there."""
+    numbers = sorted(near.pop(block))
+    own = [groups.pop(number) for number in numbers]
+    for other in {each for group in own for each in group.blocks} - {block}:
+        near[other].difference_update(numbers)
+    return own
+
+
+def _group(row: Sparse, number: int, scale: Array, starts: Array) -> _Group:
+    """A constraint by its blocks, of unit size."""
+    found = np.unique(np.searchsorted(starts, row.columns, side="right") - 1)
+    widths, places = _places(found, starts)
+    values = np.zeros((1, int(widths.sum())))
+    blocks = np.searchsorted(starts, row.columns, side="right") - 1
+    offset = dict(zip(found.tolist(), places.tolist(), strict=True))
+    for column, block, value in zip(row.columns, blocks, row.values[0], strict=True):
+        values[0, offset[int(block)] + column - starts[block]] += value * scale[column]
+    size = float(np.linalg.norm(values))
+    return _Group(tuple(found.tolist()), values / (size or 1.0), np.array([number]), np.ones((1, 1)))
+
+
+def _places(blocks: Array, starts: Array) -> tuple[Array, Array]:
+    """Widths of blocks, and where each begins when they stand side by side."""
+    widths = starts[blocks + 1] - starts[blocks]
+    return widths, np.concatenate([[0], np.cumsum(widths)[:-1]]).astype(int)
+
+
+def _degree(groups: dict[int, _Group], numbers: set[int]) -> int:
+    return len({block for number in numbers for block in groups[number].blocks})
+
+
+def _join(groups: Sequence[_Group], first: int | None, starts: Array) -> _Group:
+    """Groups one below the other, over all their blocks, one of them first."""
+    rest = sorted({block for group in groups for block in group.blocks} - {first})
+    blocks = np.array([*([] if first is None else [first]), *rest], dtype=int)
+    made = np.unique(np.concatenate([group.made for group in groups])) if groups else np.zeros(0, dtype=int)
+    widths, places = _places(blocks, starts)
+    offset = dict(zip(blocks.tolist(), places.tolist(), strict=True))
+    count = sum(len(group.rows) for group in groups)
+    rows, shares = np.zeros((count, int(widths.sum()))), np.zeros((count, len(made)))
+    row = 0
+    for group in groups:
+        here = slice(row, row + len(group.rows))
+        column = 0
+        for block in group.blocks:
+            width = int(starts[block + 1] - starts[block])
+            rows[here, offset[block] : offset[block] + width] = group.rows[:, column : column + width]
+            column += width
+        shares[here, np.searchsorted(made, group.made)] = group.shares
+        row += len(group.rows)
+    return _Group(tuple(blocks.tolist()), rows, made, shares)
+
+
+def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Array, Array]]) -> tuple[_Given, _Group | None]:
+    """A body's coordinates from its rows, and the rows in which it does not occur; those that vanish are states of self-stress."""
+    width = int(starts[block + 1] - starts[block])
+    others = group.blocks[1:]
+    if not len(group.rows):
+        every = np.arange(width)
+        return _Given(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
+    turn, triangle, order = pivoted_qr(group.rows[:, :width])
+    rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
+    rest, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
+    upper = triangle[:rank, :rank]
+    solved = -np.linalg.solve(upper, np.concatenate([triangle[:rank, rank:], rest[:rank]], axis=1)) if rank else np.zeros((0, 0))
+    free = width - rank
+    given = _Given(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
+    vanished = np.max(np.abs(rest[rank:]), axis=1, initial=0.0) < _RANK
+    stresses += [(group.made, share) for share in shares[rank:][vanished]]
+    kept = rest[rank:][~vanished]
+    return given, _Group(others, kept, group.made, shares[rank:][~vanished]) if len(kept) else None
+
+
+def _solved(
+    groups: list[_Group], given: dict[int, _Given], stresses: list[tuple[Array, Array]], *, scale: Array, starts: Array, bodies: int
+) -> Solved:
+    kept = [0, *range(bodies, len(starts) - 1)]
+    columns = np.concatenate([np.arange(starts[block], starts[block + 1]) for block in kept])
+    whole = _join(groups, None, starts)
+    rows = np.zeros((len(whole.rows), len(columns)))
+    own = np.concatenate([np.arange(starts[block], starts[block + 1]) for block in whole.blocks]) if whole.blocks else columns[:0]
+    rows[:, np.searchsorted(columns, own)] = whole.rows
+    if len(rows):
+        sizes = np.linalg.norm(rows, axis=1)
+        sizes = np.where(sizes > 0.0, sizes, 1.0)
+        stresses += [(whole.made, state @ whole.shares) for state in null_space((rows / sizes[:, None]).T).T / sizes]
+    last = eliminate(rows / scale[columns], scale[columns], keep=tuple(range(6)))
+    wanted = np.zeros((len(scale), last.basis.shape[1]))
+    wanted[columns] = last.basis / scale[columns, None]
+    for block in reversed(given):
+        found = given[block]
+        if len(found.others):
+            seen = np.concatenate([wanted[starts[other] : starts[other + 1]] for other in found.others])
+            wanted[starts[block] + found.bound] = found.rest @ seen
+    return Solved(last, wanted * scale[:, None], tuple(_idle_motions(given, starts, scale)), _named(stresses))
+
+
+def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
+    """A motion for every free coordinate: those that follow from it, and from these, move with it."""
+    names = list(given)
+    place = {block: number for number, block in enumerate(names)}
+    follow: dict[int, list[int]] = {}
+    for block, found in given.items():
+        for other in found.others:
+            follow.setdefault(other, []).append(block)
+    motions: list[Sparse] = []
+    for block, found in given.items():
+        if not len(found.free):
+            continue
+        moved = {block: np.zeros((int(starts[block + 1] - starts[block]), len(found.free)))}
+        moved[block][found.free] = np.eye(len(found.free))
+        moved[block][found.bound] = found.own
+        heap = [-place[each] for each in follow.get(block, ())]
+        heapq.heapify(heap)
+        while heap:
+            each = names[-heapq.heappop(heap)]
+            if each in moved:
+                continue
+            motion = _following(given[each], moved, starts, each, len(found.free))
+            if np.any(np.abs(motion) > _RANK):
+                moved[each] = motion
+                for later in follow.get(each, ()):
+                    heapq.heappush(heap, -place[later])
+        columns = np.concatenate([np.arange(starts[each], starts[each + 1]) for each in moved])
+        values = np.concatenate(list(moved.values())) * scale[columns, None]
+        motions += [Sparse(columns, values[:, [number]].T, len(scale)) for number in range(values.shape[1])]
+    return motions
+
+
+def _following(found: _Given, moved: dict[int, Array], starts: Array, block: int, count: int) -> Array:
+    """How a block moves with those that have moved, its own free coordinates at rest."""
+    result = np.zeros((int(starts[block + 1] - starts[block]), count))
+    column = 0
+    for other in found.others:
+        width = int(starts[other + 1] - starts[other])
+        if other in moved:
+            result[found.bound] += found.rest[:, column : column + width] @ moved[other]
+        column += width
+    return result
+
+
+def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
+    """The constraints of each state of self-stress; states that have some in common are parted as far as they can be."""
+    if not stresses:
+        return ()
+    parts: list[tuple[int, ...]] = []
+    for members in _connected([set(made[np.abs(share) > _RANK].tolist()) for made, share in stresses]):
+        made = np.unique(np.concatenate([stresses[member][0] for member in members]))
+        states = np.zeros((len(members), len(made)))
+        for row, member in enumerate(members):
+            states[row, np.searchsorted(made, stresses[member][0])] = stresses[member][1]
+        parts += [tuple(made[np.abs(state) > 1e2 * _RANK].tolist()) for state in echelon(states)]
+    return tuple(parts)
+
+
+def _connected(sets: list[set[int]]) -> list[list[int]]:
+    """Numbers of sets by those that have members in common, directly or by way of others."""
+    owner: dict[int, int] = {}
+    groups: dict[int, list[int]] = {}
+    for number, members in enumerate(sets):
+        met = sorted({owner[each] for each in members if each in owner})
+        whole = [each for group in met for each in groups.pop(group)] + [number]
+        groups[number] = whole
+        for each in (each for one in whole for each in sets[one]):
+            owner[each] = number
+    return [sorted(group) for group in groups.values()]

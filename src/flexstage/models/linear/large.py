@@ -1,0 +1,188 @@
+"""Stiffness and inertia of large stages without their zeros: factors, exact solves and the lowest modes.
+
+K = G^T k G with G the strains of all links. In a long chain K forgets, by rounding, what rigid motion of a part of it costs: nothing. So
+solutions are refined with the forces of the strains themselves, and where that does not converge, strains and motions are unknowns beside
+one another, whose equations know rigid motions exactly (the augmented system of weighted least squares; Bjorck, BIT 7, 1, 1967).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.sparse import Sparse, as_csr, block_diagonal
+
+_SINGULAR = 1e-11
+_DEFINITE = 1e-12
+_EXACT = 1e-13
+_ENOUGH = 1e-9
+_STEPS = 12
+_RATIO = 1e-10
+_MASSLESS = 1e-13
+_LEAST = 32
+"""Modes computed of a large stage; those of the last cluster, which may go on, are left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Quadratic:
+    """A sum of contributions G^T k G by all their rows G (R, n) and laws k (R, R), both sparse."""
+
+    rows: Any
+    law: Any
+
+    @staticmethod
+    def of(operators: Iterable[Sparse], laws: Iterable[Array], size: int) -> Quadratic:
+        """That of operators (r, n) and laws (r, r)."""
+        return Quadratic(as_csr(operators, size), block_diagonal(laws))
+
+    def __matmul__(self, motion: Array) -> Array:
+        """G^T k G times a motion (n, k), by way of the strains."""
+        return self.rows.T @ (self.law @ (self.rows @ motion))
+
+    @cached_property
+    def matrix(self) -> Any:
+        """G^T k G as a sparse symmetric matrix."""
+        total = self.rows.T @ self.law @ self.rows
+        return (0.5 * (total + total.T)).tocsc()
+
+
+@dataclass(frozen=True, eq=False)
+class Solver:
+    """Solves K q = f of a large stage."""
+
+    stiffness: Quadratic
+
+    @cached_property
+    def scale(self) -> Array:
+        """What makes the diagonal of K one."""
+        diagonal = self.stiffness.matrix.diagonal()
+        return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+
+    @cached_property
+    def _factor(self) -> Any:
+        over = scipy.sparse.diags_array(1.0 / self.scale)
+        scaled = (over @ self.stiffness.matrix @ over).tocsc()
+        return scipy.sparse.linalg.splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    @cached_property
+    def _augmented(self) -> tuple[Any, Any, Any]:
+        """Factor of [[1, -B], [B^T k, 0]] for scaled strains and motions; B and B^T k."""
+        law = self.stiffness.law
+        diagonal = np.abs(law.diagonal())
+        root = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        rows = scipy.sparse.diags_array(root) @ self.stiffness.rows @ scipy.sparse.diags_array(1.0 / self.scale)
+        pull = rows.T @ (scipy.sparse.diags_array(1.0 / root) @ law @ scipy.sparse.diags_array(1.0 / root))
+        whole = scipy.sparse.block_array([[scipy.sparse.eye_array(rows.shape[0]), -rows], [pull, None]], format="csc")
+        return scipy.sparse.linalg.splu(whole), rows, pull
+
+    def definite(self) -> bool:
+        """Whether K is positive definite, told from its pivots: none is small beside its diagonal."""
+        try:
+            pivots = self._factor.U.diagonal()
+        except RuntimeError:  # exactly singular
+            return False
+        return bool(np.min(pivots) > _SINGULAR)
+
+    def solve(self, load: Array) -> Array:
+        """q (n, k) for loads (n, k). Raises `DesignError` where the digits that computers carry do not suffice."""
+        try:
+            motion, left = self._refined(load, self._direct, self._missing)
+        except RuntimeError:
+            motion, left = load, np.inf
+        if not left <= _ENOUGH:
+            motion, left = self._with_strains(load)
+        if not left <= _ENOUGH:
+            what = (
+                f"its equations are known to {left:.1g} of their solution only: rounding hides how stiff a large part of it is as a whole"
+            )
+            raise refuse("stage", what, "Look for stiffnesses out of all proportion, or read parts of the stage")
+        return motion
+
+    def _direct(self, load: Array) -> Array:
+        over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
+        return self._factor.solve(load / over) / over
+
+    def _missing(self, load: Array, motion: Array) -> Array:
+        return load - self.stiffness @ motion
+
+    def _with_strains(self, load: Array) -> tuple[Array, float]:
+        factor, rows, pull = self._augmented
+        over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
+        whole = np.concatenate([np.zeros((rows.shape[0], *load.shape[1:])), load / over])
+        count = rows.shape[0]
+
+        def missing(wanted: Array, found: Array) -> Array:
+            strain, motion = found[:count], found[count:]
+            return np.concatenate([wanted[:count] - strain + rows @ motion, wanted[count:] - pull @ strain])
+
+        found, left = self._refined(whole, factor.solve, missing)
+        return found[count:] / over, left
+
+    @staticmethod
+    def _refined(load: Array, solve: Any, missing: Any) -> tuple[Array, float]:
+        """A solution refined until it stands, and how much it changed last, as a share."""
+        found = solve(load)
+        last = np.inf
+        for _ in range(_STEPS):
+            step = solve(missing(load, found))
+            size = float(
+                np.max(np.linalg.norm(step, axis=0) / np.maximum(np.linalg.norm(found, axis=0), np.finfo(float).tiny), initial=0.0)
+            )
+            if not size < 0.5 * last:
+                break
+            found, last = found + step, size
+            if size < _EXACT:
+                break
+        return found, last
+
+
+def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
+    """Whether every law (6, 6) is positive definite and hangs every body on the ground, number `bodies`: then so is K, without rounding."""
+    distinct = {id(law): law for law in laws}.values()
+    for law in distinct:
+        root = np.sqrt(np.maximum(np.diag(law), np.finfo(float).tiny))
+        if np.min(np.linalg.eigvalsh(law / root / root[:, None])) < _DEFINITE:
+            return False
+    ends = np.array(list(joins)).T
+    graph = scipy.sparse.coo_array((np.ones(ends.shape[1]), (ends[0], ends[1])), (bodies + 1, bodies + 1))
+    return bool(scipy.sparse.csgraph.connected_components(graph, directed=False)[0] == 1)
+
+
+def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Array, Array]:
+    """The lowest eigenvalues (k,) of K phi = lambda M phi and their mass-normalised shapes (n, k), by shift and invert (Lanczos).
+
+    The values are Rayleigh quotients of strains and motions; the start is always the same, and so are the answers.
+    """
+    size = inertia.rows.shape[1]
+    shape = (size, size)
+    stiffness, mass, inverse = (
+        scipy.sparse.linalg.LinearOperator(shape, matvec=each, dtype=float)
+        for each in (lambda motion: solver.stiffness @ motion, lambda motion: inertia.matrix @ motion, solver.solve)
+    )
+    found = scipy.sparse.linalg.eigsh(
+        stiffness, min(count, max(1, size // 3)), mass, sigma=0.0, OPinv=inverse, v0=1.0 + 0.5 * np.cos(np.arange(size)), which="LM"
+    )[1]
+    inverse_values, turn = scipy.linalg.eigh(found.T @ (inertia @ found), found.T @ (solver.stiffness @ found))
+    kept = np.flatnonzero(inverse_values > _MASSLESS * inverse_values[-1])[::-1]
+    return 1.0 / inverse_values[kept], found @ turn[:, kept] / np.sqrt(inverse_values[kept])
+
+
+def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
+    """The least mu (k,) of T x = mu K x, ascending, and their shapes (n, k) of unit energy x^T K x; the start is always the same."""
+    size = taken.rows.shape[1]
+    stiffness, inverse = (
+        scipy.sparse.linalg.LinearOperator((size, size), matvec=each, dtype=float)
+        for each in (lambda motion: solver.stiffness @ motion, solver.solve)
+    )
+    found = scipy.sparse.linalg.eigsh(
+        taken.matrix, min(count, size - 1), stiffness, Minv=inverse, v0=1.0 + 0.5 * np.cos(np.arange(size)), which="SA", tol=_RATIO
+    )[1]
+    values, turn = scipy.linalg.eigh(found.T @ (taken @ found), found.T @ (solver.stiffness @ found))
+    return cast("Array", values), found @ turn
