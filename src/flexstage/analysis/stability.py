@@ -44,6 +44,8 @@ _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
 _LARGE = 600
 """Freedoms above which matrices are kept without their zeros."""
+_DENSE = 3000
+"""Freedoms above which no loaded state is worked out."""
 _SHAPES = 6
 """Shapes looked at of a large stage: of more that repeat, not all bodies are named."""
 
@@ -155,14 +157,14 @@ def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
 
 
 def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
-    """Whether load factors of a stage are worked out without dense matrices, which it has too many freedoms for.
+    """Whether a stage has too many freedoms for the dense matrices of its loaded state.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> is_large(parallelogram(), lumped(parallelogram()))
     False
     """
-    return _pieces(mechanism, model).is_large
+    return _pieces(mechanism, model).size > _DENSE
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
