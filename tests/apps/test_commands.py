@@ -159,7 +159,7 @@ def test_missed_requirements_change_the_exit_code_only_if_strict(flexstage: Comm
     assert "1 of 8 requirements" in strict.err
 
 
-@pytest.mark.parametrize("name", ["double-triangle", "xy-stage-floating", "tilt-stage", "mirror-mount"])
+@pytest.mark.parametrize("name", ["double-triangle", "double-triangle-a", "xy-stage-floating", "mirror-mount", "hexapod"])
 def test_the_short_form_fits_a_screen_and_ends_with_the_verdict(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
     short, whole = (flexstage("analyse", "stage.toml", *full).out for full in ([], ["--full"]))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from itertools import accumulate
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -32,7 +34,8 @@ from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table, unit_table
 
-_CAUTIONS = 8
+_CAUTIONS, _WIDTH = 3, 80
+"""Lines of cautions that the short form shows, of a terminal of that width."""
 
 
 def analyse(  # noqa: PLR0913 (its options)
@@ -110,12 +113,19 @@ def _short_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[T
 def _short_caveats(analysis: Analysis) -> Iterator[str]:
     known = caveats(analysis.mechanism)
     if known.cautions:
-        rest = len(known.cautions) - _CAUTIONS
+        shown = _first_lines([f"  {each}" for each in known.cautions])
+        rest = len(known.cautions) - len(shown)
         more = [f"  {rest} more: --full"] if rest > 0 else []
-        yield "\n".join(["Cautions", "", *(f"  {each}" for each in known.cautions[:_CAUTIONS]), *more])
+        yield "\n".join(["Cautions", "", *shown, *more])
     taken = len(known.defaults_of("analyse"))
     if taken:
         yield f"{taken} value{'' if taken == 1 else 's'} taken by default: --full."
+
+
+def _first_lines(texts: list[str]) -> list[str]:
+    """The first of some texts, at least one, as long as they leave room for the rest on a screen of 80 columns."""
+    used = accumulate(math.ceil(len(each) / _WIDTH) for each in texts)
+    return [each for place, (each, lines) in enumerate(zip(texts, used, strict=True)) if place == 0 or lines <= _CAUTIONS]
 
 
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:

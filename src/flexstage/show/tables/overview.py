@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
@@ -20,6 +22,8 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 
 _DIGITS = 4
 _ROWS = 8
+_LOSS = 3
+"""Columns of the table of lost motion up to the loss."""
 _NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [require] in the design file."
 
 
@@ -58,10 +62,14 @@ def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
     """Requirements, the platform's axes and modes, lost motion, and what its parts bear."""
     yield verdict_table(analysis.verdicts)
     yield load_line(analysis)
-    yield axis_table(analysis)
+    yield _without_notes(axis_table(analysis))
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
+
+
+def _without_notes(table: Table | None) -> Table | None:
+    return None if table is None else replace(table, notes=())
 
 
 def axis_table(analysis: Analysis) -> Table | None:
@@ -146,7 +154,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     if not modes.platform:
         return None
     frequencies, shares = first_design(modes.frequencies, 1), first_design(modes.share, 1)
-    texts = align_numbers([float(frequencies[index]) for index in modes.platform], _DIGITS)
+    texts = [f"{each} Hz" for each in align_numbers([float(frequencies[index]) for index in modes.platform], _DIGITS)]
     rows = [
         (Cell(str(index + 1), Mark.STRONG), Cell(text), Cell(modes.names[index]), Cell(percent(float(shares[index]), 3)))
         for index, text in zip(modes.platform, texts, strict=True)
@@ -156,14 +164,26 @@ def _platform_modes(modes: Modes) -> Table | None:
         f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {each} Hz."
         for each in beside
     ]
-    return make_table("Platform modes", [Column("mode"), Column("frequency", "Hz"), "name", Column("platform's share")], rows, notes=notes)
+    heads = [Column("mode"), Column("frequency"), "name", Column("platform's share")]
+    return make_table("Platform modes", heads, _merge(rows, slice(1, None), ", ".join), notes=notes)
 
 
 def _first_rows(table: Table) -> Table:
-    """The table without its notes, and without rows beyond some; how many those are is said."""
-    rest = len(table.rows) - _ROWS
+    """Actuator, gain, loss and largest contribution; those that lose alike in one row. How many rows are left out is said."""
+    rows = _merge(table.rows, slice(1, -1), lambda names: names[0] if len(names) == 1 else f"{names[0]} (alike: {', '.join(names[1:])})")
+    rest = len(rows) - _ROWS
     notes = (f"{_count(rest, 'further row')}: --full.",) if rest > 0 else ()
-    return Table(table.title, table.columns, table.rows[:_ROWS], notes, table.provenance)
+    shown = tuple((*row[:_LOSS], replace(row[-1], text=row[-1].text.partition(", ")[0])) for row in rows[:_ROWS])
+    return Table(table.title, (*table.columns[:_LOSS], Column("largest contribution", numeric=False)), shown, notes, table.provenance)
+
+
+def _merge(rows: Sequence[tuple[Cell, ...]], alike: slice, name: Callable[[list[str]], str]) -> tuple[tuple[Cell, ...], ...]:
+    """Rows that follow one another and show the same in some columns, as one: its first, under the name of all of their first cells."""
+    found: list[tuple[Cell, ...]] = []
+    for _, group in groupby(rows, lambda row: [cell.text for cell in row[alike]]):
+        first, *others = group
+        found.append((replace(first[0], text=name([first[0].text, *(row[0].text for row in others)])), *first[1:]))
+    return tuple(found)
 
 
 def _strength_text(analysis: Analysis) -> str | None:
