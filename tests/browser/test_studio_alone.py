@@ -10,7 +10,21 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, Route, WebSocketRoute
 
-from flexstage.apps.studio.protocol import Amount, Done, Engine, Judgement, Problem, Refusal, State, Verdicts, Welcome
+from flexstage.apps.studio.protocol import (
+    Amount,
+    Done,
+    Engine,
+    Jobs,
+    JobState,
+    Judgement,
+    Problem,
+    Refusal,
+    Snippet,
+    Snippets,
+    State,
+    Verdicts,
+    Welcome,
+)
 from flexstage.apps.studio.wire import encode
 from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
@@ -35,8 +49,12 @@ class Server:
         page.route_web_socket(f"{HOST.replace('http', 'ws')}/**", self._open)
 
     def _file(self, route: Route) -> None:
-        path = FILES[Path(route.request.url.partition("#")[0]).name]
-        route.fulfill(body=path.read_bytes(), headers={"content-type": KINDS[path.suffix], "content-security-policy": "default-src 'self'"})
+        path = FILES.get(Path(route.request.url.partition("#")[0]).name)
+        if path is None:
+            route.fulfill(body="<!doctype html><p>a report</p>", headers={"content-type": "text/html"})
+        else:
+            headers = {"content-type": KINDS[path.suffix], "content-security-policy": "default-src 'self'"}
+            route.fulfill(body=path.read_bytes(), headers=headers)
 
     def _open(self, socket: WebSocketRoute) -> None:
         self.socket = socket
@@ -52,7 +70,8 @@ class Server:
 
     def answer(self, said: dict[str, Any]) -> None:
         refusal = self.refuses.get(said["kind"])
-        self.say(Done(said["id"], 1) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
+        job = 1 if said["kind"] == "run" else None
+        self.say(Done(said["id"], 1, job) if refusal is None else Refusal(said["id"], refusal.problems, refusal.stale))
 
     def say(self, *messages: Any) -> None:
         assert self.socket is not None
@@ -175,6 +194,42 @@ def test_another_pages_text_is_never_merged_with_what_is_typed(page: Page, serve
     page.get_by_role("button", name="take theirs").click()
     assert "0.7 mm" in page.inner_text("#editor .cm-content")
     assert "# mine" not in page.inner_text("#editor .cm-content")
+
+
+def test_the_report_that_was_asked_for_opens_over_the_page_and_reaches_nothing_of_it(page: Page, server: Server) -> None:
+    page.locator("#commands button", has_text="Report").click()
+    until(page, lambda: bool(server.of("run")))
+    server.say(
+        Jobs(
+            (JobState(1, "analyse", "runs", "computes", 0.4, 3.0, (), None), JobState(2, "verify", "runs", "meshes", None, None, (), None))
+        )
+    )
+    until(page, lambda: "3 s left" in page.inner_text("#jobs"))
+    page.locator("article.job", has_text="verify").get_by_role("button", name="cancel").click()
+    until(page, lambda: [each["job"] for each in server.of("cancel")] == [2])
+    assert page.locator("dialog").count() == 0
+    server.say(Jobs((JobState(1, "analyse", "done", "done", 1.0, None, ("Verdict: met",), "/report/one.html"),)))
+    until(page, lambda: page.locator("dialog iframe").count() == 1)
+    assert page.frame_locator("dialog iframe").locator("p").inner_text() == "a report"
+    assert page.locator("dialog iframe").get_attribute("sandbox") == "allow-scripts allow-downloads allow-modals"
+    page.get_by_role("button", name="close").click()
+    assert page.locator("dialog").count() == 0
+    page.get_by_role("button", name="show the report").click()
+    assert page.locator("dialog iframe").count() == 1
+    page.keyboard.press("Escape")
+
+
+def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, server: Server) -> None:
+    wire = Snippet("wire", "hinge", "A wire", "[parts.{name}]\n", {"name": "wire", "length": "20 mm"})
+    server.holds = {"palette"}
+    page.locator("#tabs button", has_text="Build").click()
+    until(page, lambda: bool(server.of("palette")))
+    server.say(Snippets(server.of("palette")[0]["id"], (wire,)))
+    page.locator("#pane-build summary").click()
+    page.locator("#pane-build input").first.fill("thread")
+    page.get_by_role("button", name="insert").click()
+    until(page, lambda: bool(server.of("insert")))
+    assert server.of("insert")[0]["fields"] == {"name": "thread", "length": "20 mm"}
 
 
 def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:

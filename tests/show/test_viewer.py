@@ -238,6 +238,15 @@ def test_a_stage_that_warms_moves_as_its_drift_says() -> None:
     assert np.allclose(warm.twists[place, 3:], told[3:], rtol=0.0, atol=1e-18)
 
 
+def test_what_is_not_drawn_as_it_is_is_said() -> None:
+    guide = fs.case("parallelogram")
+    hole = fs.Block("aluminium", (5e-3, 5e-3, 1.0), removes=True)
+    platform = guide.bodies["platform"]
+    pierced = replace(guide, bodies={**guide.bodies, "platform": replace(platform, solids={**platform.solids, "hole": hole})})
+    assert still_data(guide).notes == ()
+    assert still_data(pierced).notes == ("drawn without holes: platform.block",)
+
+
 def test_the_data_is_the_same_each_time_and_holds_what_the_page_reads() -> None:
     shown = moving("double-triangle")
     assert shown.text() == stage_data(fs.case("double-triangle")).text()

@@ -87,6 +87,15 @@ def _ring(section: Section, sides: int) -> Array:
     return circle(height, sides) if section.is_round else rectangle(height, width)
 
 
+def simplification(solid: Solid) -> str:
+    """How an outline is drawn that is not drawn as it is; empty of all others.
+
+    >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
+    ''
+    """
+    return "without holes" if isinstance(solid, Pierced) else "as the box around it" if isinstance(solid, Imported) else ""
+
+
 def solid_facets(solid: Solid, paint: Paint) -> list[Facet]:
     """Facets of an outline in its own frame: its centre at the origin, a cylinder's axis along x.
 

@@ -22,6 +22,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.show.scene.facet import Kind
+from flexstage.show.scene.primitives import simplification
 from flexstage.show.scene.stage import Label, Scene, scene
 from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of, thing_kinds
@@ -43,6 +44,7 @@ FORMAT = 1
 _Found = TypeVar("_Found")
 _STEPS = 12
 _MODES = 12
+_NAMED = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +142,7 @@ def stage_data(
     how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
     """
     still = still_data(mechanism, text=text)
-    notes: list[str] = []
+    notes = list(still.notes)
     motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, kinematics=kinematics, found=found))
     return replace(still, motions=motions, notes=tuple(notes))
 
@@ -155,7 +157,17 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
     size, middle = _size(seen, low, high), 0.5 * (low + high)
-    return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), ())
+    notes = tuple(_simplifications(assembly))
+    return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), notes)
+
+
+def _simplifications(assembly: Assembly) -> Iterator[str]:
+    """What is not drawn as it is: holes that outlines leave in others, and outlines that a CAD file holds."""
+    solids = {name: each for body in assembly.bodies.values() for name, each in body.solids.items()} | dict(assembly.ground)
+    found = {name: simplification(placed.solid) for name, placed in solids.items()}
+    for said in dict.fromkeys(filter(None, found.values())):
+        names = [name for name, each in found.items() if each == said]
+        yield f"drawn {said}: {', '.join(names[:_NAMED])}{f' and {len(names) - _NAMED} more' if len(names) > _NAMED else ''}"
 
 
 def _size(seen: Scene, low: Array, high: Array) -> float:

@@ -22,7 +22,7 @@ def pairs_figure(found: Effects) -> Any:
     count, names = len(varying), found.variables
     columns = min(_WIDE if len(names) <= _WIDE else 2, count)
     rows = -(-count // columns)
-    left = 0.15 + text_width(names, 7.0)
+    left = 0.25 + text_width(names, 7.0)
     with style_context():
         figure = canvas(FULL, 0.1 + rows * (0.5 + left + 0.26 * len(names)))
         axes = panels(figure, rows, columns, Margins(left=left, right=0.1, bottom=left + 0.1, top=0.3, across=0.25, down=left + 0.4))
