@@ -59,6 +59,7 @@ HOMES = {
     "models.nonlinear.critical": "critical",
     "models.nonlinear.linearise": "linearise",
     "models.nonlinear.path": "path trace",
+    "models.nonlinear.slopes": "over_designs slopes",
     "models.finite": "forward_kinematics inverse_kinematics",
     "analysis.statics": "freedom_stiffness statics",
     "analysis.mass_matrix": "mass_matrix",

@@ -156,6 +156,10 @@ from flexstage.models.nonlinear.path import (
     path as path,
     trace as trace,
 )
+from flexstage.models.nonlinear.slopes import (
+    over_designs as over_designs,
+    slopes as slopes,
+)
 from flexstage.models.nonlinear.stage import (
     nonlinear as nonlinear,
 )

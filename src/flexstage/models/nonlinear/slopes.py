@@ -1,0 +1,92 @@
+"""Results at large displacements for batches of designs, and how they change with the numbers of a description (docs/nonlinear.md, 31)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.design import design, designs
+from flexstage.mechanism.locate import locate
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.node import NumberNode
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+
+_SHARE = 1e-3
+"""Step over the number, or over the flexures' length where it is zero."""
+_STENCIL: Mapping[float, float] = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
+"""Weights of four points about one, of fourth order."""
+
+Results = Callable[[State], Any]
+"""Numbers or arrays that are read from a state: `State.twist`, frequencies, a critical factor of its model."""
+
+
+def over_designs(
+    mechanism: Mechanism,
+    results: Results,
+    loads: Mapping[str, Number] | None = None,
+    *,
+    hold: Mapping[str, Number] | None = None,
+    weight: Number = 1.0,
+    stated: Number = 1.0,
+) -> Array:
+    """Results (d, ...) of a batch of d designs, a description whose numbers are arrays; of a single design (...).
+
+    Loads and holds are those of `equilibrium`, their cases on the axes after that of designs. Where no equilibrium is found results are
+    NaN, as `results` has them. Leaves of one proportion share their tables.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.address import set_value
+    >>> several = set_value(parallelogram(), "materials.steel.young", np.array([200e9, 210e9]))
+    >>> over_designs(several, State.twist, weight=0.0).shape
+    (2, 6)
+    """
+    count = designs(mechanism)
+    singles = [mechanism] if count is None else [design(mechanism, place) for place in range(count)]
+    found = [np.asarray(results(equilibrium(nonlinear(each), loads, hold=hold, weight=weight, stated=stated))) for each in singles]
+    return found[0] if count is None else np.stack(found)
+
+
+def slopes(
+    mechanism: Mechanism,
+    names: Iterable[str],
+    results: Results,
+    loads: Mapping[str, Number] | None = None,
+    *,
+    hold: Mapping[str, Number] | None = None,
+    weight: Number = 1.0,
+    stated: Number = 1.0,
+) -> Array:
+    """Slopes (a, ...) of results by the numbers at a addresses, per SI unit, loads and holds staying as they are.
+
+    Four equilibria a number, each found from the one at the description, weighed to fourth order: right to about 1e-8 of the result over
+    the number. Slopes are NaN where an equilibrium is not found. Raises `DesignError` for what is not a single number.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> stage = parallelogram()
+    >>> found = slopes(stage, ["materials.steel.young"], lambda state: state.displacement()[0], {"platform.fx": 100.0}, weight=0.0)
+    >>> bool(found[0] < 0.0)
+    True
+    """
+
+    def at(model: Nonlinear, start: State | None) -> State:
+        return equilibrium(model, loads, hold=hold, weight=weight, stated=stated, start=start)
+
+    begin = at(nonlinear(mechanism), None)
+    return np.stack([_slope(mechanism, name, results, (begin, at)) for name in names])
+
+
+def _slope(mechanism: Mechanism, name: str, results: Results, search: tuple[State, Callable[[Nonlinear, State | None], State]]) -> Array:
+    begin, at = search
+    value = get(mechanism, name)
+    if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
+        raise refuse(name, "slopes are taken by single numbers that the description states", "State it, or name another number")
+    step = _SHARE * (abs(float(value)) or begin.model.size)
+    moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
+    found = [weight * np.asarray(results(at(model, begin))) for model, weight in zip(moved, _STENCIL.values(), strict=True)]
+    return np.sum(found, axis=0) / step

@@ -1,0 +1,93 @@
+"""Slopes at large displacements against what dimensions alone say.
+
+What only forces and moduli move depends on their ratio: slopes by the modulus are those by all loads, reversed. A stage whose lengths,
+forces and moments are s, s^2 and s^3 times as large moves s times as far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.mechanism.address import get, set_value
+from flexstage.models.nonlinear.critical import critical
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.slopes import over_designs, slopes
+from flexstage.models.nonlinear.stage import nonlinear
+from flexstage.models.nonlinear.strain import strains
+from tests.laws.test_nonlinear import LEAF, SPACE, UNIT, guide, loads
+from tests.laws.test_nonlinear_extremes import stage, wrenches
+
+SHARES = np.array([[1.0 + 1e-4], [1.0 - 1e-4]])
+
+
+def moved_by_loads(mechanism: fs.Mechanism, wrench: np.ndarray, powers: tuple[int, ...] = (1, 1, 1, 1, 1, 1)) -> np.ndarray:
+    """The slope (6,) of the platform's twist by a factor on the loads, or by its powers."""
+    found = equilibrium(nonlinear(mechanism), loads(wrench * SHARES**powers)).twist()
+    return (found[0] - found[1]) / 2e-4
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 4, 5, 8])
+def test_slopes_by_the_modulus_are_those_by_forces(seed: int):
+    """Leaves, rods and notches anywhere."""
+    rng = np.random.default_rng([11, seed])
+    mechanism = stage(rng)
+    wrench = 0.03 * wrenches(rng, nonlinear(mechanism), 1)[0]
+    (found,) = slopes(mechanism, ["materials.steel.young"], State.twist, loads(wrench))
+    expected = -moved_by_loads(mechanism, wrench)
+    assert found * mechanism.materials["steel"].young == pytest.approx(expected, abs=1e-7 * np.max(np.abs(expected)))
+
+
+LENGTHS = (
+    *(f"parts.leaf.{name}" for name in ("length", "thickness", "width")),
+    *(f"links.{link}.at.{axis}" for link in ("left", "right") for axis in ("x", "y")),
+    *(f"bodies.platform.{place}.x" for place in ("centre", "reference")),
+)
+
+
+def test_slopes_by_all_lengths_are_a_larger_stage():
+    wrench = SPACE * UNIT
+    state = equilibrium(nonlinear(guide()), loads(wrench))
+    found = slopes(guide(), LENGTHS, State.twist, loads(wrench))
+    values = np.array([get(guide(), name) for name in LENGTHS])
+    larger = values @ found + moved_by_loads(guide(), wrench, (2, 2, 2, 3, 3, 3))
+    expected = np.concatenate([state.displacement(), np.zeros(3)])
+    assert larger == pytest.approx(expected, abs=1e-6 * np.max(np.abs(state.twist())))
+
+
+def scaled_by_the_modulus(results: Callable[[State], np.ndarray], powers: list[float]) -> None:
+    """Of a held stage frequencies go with the root of the modulus, forces, stresses and critical loads with the modulus."""
+    held = {"platform.y": 0.01}
+    expected = results(equilibrium(nonlinear(guide()), hold=held))
+    (found,) = slopes(guide(), ["materials.steel.young"], results, hold=held)
+    scale = np.maximum(np.abs(expected), 1e-3 * np.max(np.abs(expected)))
+    assert np.max(np.abs(200e9 * found - np.array(powers) * expected) / scale) < 1e-6
+
+
+def test_slopes_of_frequencies_forces_and_stresses():
+    scaled_by_the_modulus(lambda state: fs.modes(linearise(state)).frequencies[:3], [0.5] * 3)
+    scaled_by_the_modulus(lambda state: np.array([*state.reactions, *state.wrench("left")[:3]]), [1.0] * 4)
+    scaled_by_the_modulus(lambda state: strains(state).stress, [1.0] * 2)
+
+
+@pytest.mark.full
+def test_slopes_of_critical_loads():
+    scaled_by_the_modulus(lambda state: np.array([critical(state.model, {"platform.fx": -1.0}).factor]), [1.0])
+
+
+def test_a_batch_of_designs_is_its_designs():
+    thicknesses = np.array([0.4e-3, 0.5e-3, 0.6e-3])
+    found = over_designs(set_value(guide(), "parts.leaf.thickness", thicknesses), State.twist, loads(SPACE * UNIT * [[1.0], [0.5]]))
+    assert found.shape == (3, 2, 6)
+    alone = equilibrium(nonlinear(set_value(guide(), "parts.leaf.thickness", 0.6e-3)), loads(SPACE * UNIT)).twist()
+    assert found[2, 0] == pytest.approx(alone, abs=1e-14)
+    assert LEAF.thickness == thicknesses[1]
+
+
+def test_slopes_are_by_numbers_that_are_stated():
+    with pytest.raises(fs.DesignError, match="single numbers"):
+        slopes(guide(), ["parts.leaf"], State.twist)
