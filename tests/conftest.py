@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
+from pathlib import Path
 
 # Before numpy is imported; the limit below catches libraries that were loaded earlier all the same.
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
 import pytest
+from _pytest.assertion import rewrite
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.internal.conjecture import providers
 from threadpoolctl import threadpool_limits
@@ -50,6 +53,24 @@ def _own_cache(tmp_path_factory: pytest.TempPathFactory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("FLEXSTAGE_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Processes that collect the same files translate a share of them each beforehand, so that none is translated twice."""
+    given = getattr(session.config, "workerinput", None)
+    if given is None or sys.dont_write_bytecode:
+        return
+    folders = [Path(each.partition("::")[0]) for each in session.config.args]
+    files = sorted({path for folder in folders for path in folder.rglob("test_*.py")})
+    for path in files[int(given["workerid"].removeprefix("gw")) :: given["workercount"]]:
+        _translate(path.resolve(), session.config)
+
+
+def _translate(path: Path, config: pytest.Config) -> None:
+    place = rewrite.get_cache_dir(path) / (path.name[:-3] + rewrite.PYC_TAIL)
+    if rewrite._read_pyc(path, place) is None and rewrite.try_makedirs(place.parent):
+        source, code = rewrite._rewrite_test(path, config)
+        rewrite._write_pyc(config.stash[rewrite.assertstate_key], code, source, place)
 
 
 def pytest_collection_finish() -> None:

@@ -37,6 +37,7 @@ def test_every_command_tells_cautions_in_its_document_and_its_tables(flexstage: 
     assert ended.out.index("Cautions") < ended.out.index(caution["what"])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_cautions_follow_the_verdicts(flexstage: Command, tmp_path: Path) -> None:
     design_in(tmp_path, "parallelogram")
     beyond = ("--set", "envelope.x=1 mm")
@@ -171,6 +172,7 @@ def reported(flexstage: Command, tmp_path: Path) -> Command:
     return flexstage
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(("words", "expected"), REPORTED.items())
 def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_path: Path, words: str, expected: str) -> None:
     if "record" in words:
@@ -183,6 +185,7 @@ def test_every_report_tells_the_cautions_of_the_document(reported: Command, tmp_
     assert expected in told
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("words", "told"),
     [

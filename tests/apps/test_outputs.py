@@ -120,6 +120,7 @@ def test_two_outputs_need_two_files(flexstage: Command) -> None:
     assert "the output of --json" in ended.err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_stdout_holds_one_output_only(flexstage: Command) -> None:
     ended = flexstage("analyse", "stage.toml", "--json", "-", "--report", "-")
     assert ended.code == 2
@@ -249,6 +250,7 @@ def test_reports_stand_alone(flexstage: Command, tmp_path: Path, model: str) -> 
     assert not any(mark in text for mark in ('src="http', 'href="http', "@import", "<script src"))
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("name", ["parallelogram", "tip-tilt-four", "xy-stage-floating"])
 def test_stages_with_locked_or_free_motions_are_reported(flexstage: Command, tmp_path: Path, name: str) -> None:
     # By the mapped model their platform has fewer than six freedoms: no stiffness matrix, no curve of it.
@@ -264,6 +266,7 @@ TOLD_APART = ["gauges", "place"]
 """What the models themselves do without in different ways; of the others the lumped model alone is tried in the quick tests."""
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(
     ("key", "model"),
     [
@@ -293,6 +296,7 @@ def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Co
         assert found["mapping"]["R_a"] is None
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_shows_what_was_set_and_what_that_did(flexstage: Command, tmp_path: Path) -> None:
     design_in(tmp_path, "parallelogram")
     flexstage("analyse", "stage.toml", "--set", "parts.neck.thickness=1.4mm", "--report", "set.html")

@@ -62,14 +62,15 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
         for name, freedoms in simple.items()
         if "/" in name or (name in parts and not isinstance(mechanism.parts[name], Joint))
     }
-    base = _gain(mechanism, known, channel)
+    simplified = restrict(mechanism, known)
+    base = _gain(simplified, channel)
     changes = {
-        f"{name}.{freedom.value}": _gain(mechanism, {**known, name: _with(known[name], freedom)}, channel) - base
+        f"{name}.{freedom.value}": _gain(restrict(simplified, {name: _with(known[name], freedom)}), channel) - base
         for name in known
         for freedom in ALL
         if freedom not in known[name][0]
     }
-    return Omitted(*channel, base, _gain(mechanism, {}, channel), changes)
+    return Omitted(*channel, base, _gain(mechanism, channel), changes)
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
@@ -96,6 +97,5 @@ def _with(kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedo
     return (*elastic, freedom), tuple(item for item in free if item is not freedom)
 
 
-def _gain(mechanism: Mechanism, restrictions: Restrictions, channel: tuple[str, str]) -> float:
-    model = lumped(restrict(mechanism, restrictions))
-    return float(static_gain(model, channel[:1], channel[1:]).values[0, 0])
+def _gain(mechanism: Mechanism, channel: tuple[str, str]) -> float:
+    return float(static_gain(lumped(mechanism), channel[:1], channel[1:]).values[0, 0])

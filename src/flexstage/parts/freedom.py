@@ -22,7 +22,7 @@ class Freedom(Enum):
     @property
     def index(self) -> int:
         """Position in a 6-vector."""
-        return list(Freedom).index(self)
+        return ALL.index(self)
 
 
 ALL = tuple(Freedom)

@@ -24,7 +24,6 @@ from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
 from flexstage.show.matlab import as_mat
-from flexstage.show.report import report as whole_report
 from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
@@ -64,6 +63,8 @@ def analyse(  # noqa: PLR0913 (its options)
     if mat is not None:
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
+        from flexstage.show.report import report as whole_report
+
         save(report, whole_report(analysis, compared), "--report")
     write_csv(csv, "analyse", lambda: _results(analysis))
     write_workbook(xlsx, lambda: _results(analysis), lambda: envelope("analyse", analysis.mechanism, analysis.model, {}))

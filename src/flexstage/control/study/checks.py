@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
 
 from flexstage.base.finding import Finding
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.setup import (
     AmplifierSetup,
     ControllerSetup,
+    FileMotion,
     Floor,
     GaugeSetup,
     HystereticStacks,
@@ -52,6 +54,8 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 
 
 def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
+    if isinstance(found, FileMotion) and not Path(found.file).is_file():
+        yield Finding(found.file, "there is no such file", "Check the path: a CSV table of times and poses")
     if isinstance(found, RasterMotion) and not 1 <= found.lines <= _MOST_LINES:
         yield Finding("trajectory.lines", f"found {found.lines}", f"Give between 1 and {_MOST_LINES}")
     pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
@@ -98,8 +97,6 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
 
 
 def _course_of_file(commanded: FileMotion) -> Course:
-    if not Path(commanded.file).is_file():
-        raise refuse(commanded.file, "there is no such file", "Check the path: a CSV table of times and poses")
     table = from_file(commanded.file)
     return Course("file", table, table.coordinates, table.duration, _plane(table.coordinates))
 
