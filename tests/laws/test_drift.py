@@ -86,6 +86,12 @@ def test_every_case_of_one_material_scales(name):
     assert scaled_stress(found, model) < 1e-8
 
 
+def test_a_model_without_links_is_refused():
+    stage = case("parallelogram")
+    with pytest.raises(fs.DesignError, match="which is none"):
+        drift(stage, fs.mapped(stage), ground="aluminium")
+
+
 def different(mechanism, seed):
     """Stacks, metal and a ground of their own expansion."""
     random = np.random.default_rng(seed)

@@ -94,7 +94,8 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
 
     `ground` names the ground's material (absent: as `ground_of` finds it in the description; `none`: it does not grow). Motions are counted
     from the ground's `datum`. A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states
-    no expansion, where the ground's material is not known, and where locked freedoms cannot follow the growth.
+    no expansion, where the ground's material is not known, where locked freedoms cannot follow the growth, and for a model whose stiffness
+    is not that of links: mapped, or loaded.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -108,6 +109,10 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     fitted = _fit_misfits(thermal.assembly, misfits)
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     size = len(model.coordinates)
+    if other := [name for name in model.stiffness if name not in strains]:
+        raise refuse(
+            "drift", f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none", "Take the lumped model"
+        )
     whole = {name: _without_modes(strains[name], part.law.shape[-1] - 6) for name, part in model.stiffness.items()}
     load = _load(model, whole, size)
     motion = displacement(model, -load)
