@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from flexstage.base.number import Array, Number
@@ -47,6 +49,26 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
     across = turning * thin * thin / 12.0 * (1.0 / shear_factor(slenderness, material.contraction) - 1.0)
     nothing = np.zeros(np.broadcast_shapes(np.shape(rotation), np.shape(arm)))
     return whole + np.stack(np.broadcast_arrays(nothing, arm * arm * rotation + across, nothing, nothing, nothing, rotation), axis=-1)
+
+
+def reinforced_plate(part: ReinforcedLeaf, material: Material) -> Beam:
+    """The beam whose bending is `reinforced_diagonal`'s: the thin ends' flexibility about z is less by what stiffens them as plates.
+
+    Over each thin end it is a + c u^2 times a beam's, u from -1 to 1, with the mean of the plate's turning and the second moment of its
+    shearing.
+    """
+    whole = reinforced_beam(part, material)
+    if part.section is LeafSection.BEAM:
+        return whole
+    thin = part.flexure_length - (0.0 if part.fillet is None else part.fillet)
+    slenderness = thin / part.width
+    mean, second = (1.0 / each(slenderness, material.contraction) for each in (moment_factor, shear_factor))
+    slope = 3.75 * (second - mean)
+    place = (whole.points.position - 0.5 * (part.length - thin)) / (0.5 * thin)
+    share = np.where(np.real(place) >= -1.0, mean + slope * (place * place - 1.0 / 3.0), 1.0)
+    flexible = np.array(whole.flexibility)
+    flexible[..., 5] = flexible[..., 5] * share
+    return replace(whole, flexibility=flexible)
 
 
 def _points(part: ReinforcedLeaf) -> Stations:

@@ -65,6 +65,11 @@ class FlexureLaw:
     rest: Array
 
     @property
+    def line_mass(self) -> Array:
+        """Mean mass per length [kg/m]."""
+        return self.inertia[..., 0] @ gauss(self.inertia.shape[-2]).weights
+
+    @property
     def signature(self) -> tuple[int, ...]:
         """What flexures must share to be computed together: points, modes of curvature, modes of the plate."""
         return (*self.modes.shape[-3:], self.plate.shape[-1])

@@ -8,6 +8,7 @@ from typing import Any
 
 from flexstage.beams.compliance import beam_of
 from flexstage.beams.flexure.law import DEFAULT, STRESSES, FlexureLaw, Resolution, beam_law, leaf_law, natural_curvature
+from flexstage.beams.reinforced_leaf import reinforced_plate
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
@@ -31,12 +32,16 @@ def _of_hinge(part: Notch | Neck, material: Material, resolution: Resolution) ->
     return beam_law(beam_of(part, material), replace(STRESSES, points=resolution.points))
 
 
+def _of_reinforced(part: ReinforcedLeaf, material: Material, resolution: Resolution) -> FlexureLaw:
+    return beam_law(reinforced_plate(part, material), replace(STRESSES, points=resolution.points))
+
+
 _KINDS: Mapping[type, Callable[[Any, Material, Resolution], FlexureLaw]] = {
     Leaf: _of_leaf,
     Rod: _of_rod,
     Notch: _of_hinge,
     Neck: _of_hinge,
-    ReinforcedLeaf: _of_hinge,
+    ReinforcedLeaf: _of_reinforced,
 }
 
 

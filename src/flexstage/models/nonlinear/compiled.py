@@ -158,7 +158,7 @@ def _group(group: Flexures) -> tuple[Mapping[str, int], Mapping[str, Array]] | N
     if counts is None or points > _MOST["points"] or modes > _MOST["modes"] or count > _MOST["fields"] or _unknown(law):
         return None
     rule = gauss(points)
-    weight = np.mean(law.inertia[..., 0], axis=-1) * law.length**3 / law.rigidity
+    weight = law.line_mass * law.length**3 / law.rigidity
     stiff = np.max(np.diagonal(law.form, axis1=-2, axis2=-1), axis=-1)
     scalar = [law.length, law.rigidity, law.trapeze, law.stretch[:, 0], law.stretch[:, 1], weight, stiff]
     arrays: tuple[Array, ...] = (

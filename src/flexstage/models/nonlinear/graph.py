@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.models.nonlinear.condense import Answer, condense, settle
+from flexstage.models.nonlinear.corotated import stiffen_ports
 from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
 from flexstage.models.nonlinear.hinge import Ends, stiffen
 from flexstage.models.nonlinear.hold import Hold, gradients
@@ -69,8 +70,8 @@ def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
 
 
 def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
-    """What links about centres and held coordinates add; `None` where there are neither."""
-    if not model.hinges.names and not len(hold.body):
+    """What links about centres, superelements and held coordinates add; `None` where there are none."""
+    if not model.hinges.names and not model.elements and not len(hold.body):
         return None
     residual, stiffness, kept = _nothing(model, pose, hold)
     _add_rest(model, pose, loads, hold, (residual, stiffness))
@@ -86,6 +87,7 @@ def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array, Ar
 
 def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, into: tuple[Array, Array]) -> None:
     _add_hinges(model, pose, loads, *into)
+    _add_elements(model, pose, loads, into)
     _add_holds(hold, pose, *into, model.freedoms + 6 + len(model.hinges.locked))
 
 
@@ -209,6 +211,18 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, sti
             stiffness[:, columns, size + place] += rows[link, :, freedom, part]
 
 
+def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, into: tuple[Array, Array]) -> None:
+    """Superelements, their weight included (docs/nonlinear.md, 31)."""
+    residual, stiffness = into
+    for element in model.elements:
+        force, own = stiffen_ports(element, pose.position[:, element.bodies], pose.turn[:, element.bodies], loads.gravity)
+        for row, body in enumerate(element.bodies):
+            rows, at = slice(6 * body, 6 * body + 6), slice(6 * row, 6 * row + 6)
+            residual[:, rows] += force[:, at]
+            for column, other in enumerate(element.bodies):
+                stiffness[:, rows, 6 * other : 6 * other + 6] += own[:, at, 6 * column : 6 * column + 6]
+
+
 def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
     """The poses of the bodies of links about centres."""
     first, second = model.hinges.first, model.hinges.second
@@ -295,7 +309,7 @@ def _weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
     """The flexures' weight per length over E I / L^3 in their start frames; `None` without gravity."""
     if not np.any(loads.gravity):
         return None
-    density = np.mean(law.inertia[..., 0], axis=-1) * law.length**3 / law.rigidity
+    density = law.line_mass * law.length**3 / law.rigidity
     return density[:, None, None] * _rotate(_transpose(frame), loads.gravity)
 
 

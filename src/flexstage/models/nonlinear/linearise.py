@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.elimination import eliminate
 from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
+from flexstage.models.nonlinear.corotated import Corotated, moved, stiffen_ports
 from flexstage.models.nonlinear.element import mode_paths
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, end_motion, geometric, hinge_ends, weight_motion
@@ -63,9 +64,13 @@ class _Coordinates:
     def body(self, number: int) -> Array:
         """Selector (6, n) of a body's freedoms, zero of the ground."""
         result = np.zeros((6, self.size))
-        if number < len(self.model.bodies):
+        if 0 <= number < len(self.model.bodies):
             result[:, 6 * number : 6 * number + 6] = np.eye(6)
         return result
+
+    def ports(self, name: str, bodies: Array) -> Array:
+        """Selector (6 p + m, n) of the bodies at a superelement's ports and its own modes."""
+        return np.concatenate([*(self.body(int(each)) for each in bodies), self.link(name, (-1, -1))[12:]])
 
     def link(self, name: str, joins: tuple[int, int]) -> Array:
         """Selector (12 + m, n) of a link's two bodies and its own amplitudes."""
@@ -99,7 +104,7 @@ def linearise(state: State, *, locked: Sequence[str] = ()) -> LinearModel:
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
     links = {name: item for group, bent in zip(model.flexures, whole.bent, strict=True) for name, item in _flexures(group, bent).items()}
-    own = {name: item.mass.shape[-1] - 12 for name, item in links.items()}
+    own = {name: item.mass.shape[-1] - 12 for name, item in links.items()} | {each.name: len(each.squares) for each in model.elements}
     order = _Coordinates(model, own)
     return _assembled(state, order, _joins(model), (links, [state.held.index(name) for name in locked]))
 
@@ -129,6 +134,9 @@ def _assembled(
         select = order.link(name, joins[name])
         stiffness[name] = Contribution(rows[place] @ select, model.hinges.stiffness[place], _loss(model, name))
         bending += select.T @ remains[place] @ select
+    for element in model.elements:
+        stiffness[element.name], rest = _strained(state, order, element)
+        bending += rest
     bending[:, : model.freedoms, : model.freedoms] += _turning(model, state)
     stiffness["geometric"] = Contribution(np.eye(order.size), 0.5 * (bending + np.swapaxes(bending, -1, -2)))
     inertia, seen = _inertia(state, order, joins, links)
@@ -158,7 +166,7 @@ def _assembled(
             damping=model.damping,
             idle=(),
             provenance=f"about a state of the {model.provenance}",
-            unknown=tuple(f"{name}.{force}" for group in model.flexures for name in group.names for force in FORCES),
+            unknown=tuple(f"{name}.{force}" for name in _untold(model) for force in FORCES),
             viscous=_viscous(model),
         ),
     )
@@ -274,6 +282,7 @@ def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tu
     whole = assemble(model, state.pose, state.loads, state.hold)
     inside = [_inside(group, bent) for group, bent in zip(model.flexures, whole.bent, strict=True)]
     own = {name: each.amplitudes.shape[-1] - 12 for group, each in zip(model.flexures, inside, strict=True) for name in group.names}
+    own |= {each.name: len(each.squares) for each in model.elements}
     order, joins, (rows, _) = _Coordinates(model, own), _joins(model), _hinges(state)
     basis, _ = _free(_locked(state, order, rows, [state.held.index(name) for name in locked]), order)
     full = basis.reshape(-1, *basis.shape[-2:])[0] @ shapes
@@ -379,7 +388,41 @@ def _inertia(
         carries = [transport(pose.position[:, number] - centre) for number in joins[name]]
         inertia[name + _SHAKEN] = Contribution(both @ order.link(name, joins[name]), matrix)
         seen[name + _SHAKEN] = both @ np.concatenate(carries, axis=-2)
+    for element in model.elements:
+        twists = _port_twists(state, element)
+        select = order.ports(element.name, element.bodies)
+        inertia[element.name + _SHAKEN] = Contribution(twists @ select, element.inertia)
+        carries = np.concatenate([transport(pose.position[:, body] - centre) for body in element.bodies], axis=-2)
+        still = np.zeros((len(centre), len(element.squares), 6))
+        seen[element.name + _SHAKEN] = twists @ np.concatenate([carries, still], axis=-2)
     return inertia, seen
+
+
+def _strained(state: State, order: _Coordinates, element: Corotated) -> tuple[Contribution, Array]:
+    """A superelement's own stiffness over what strains it and its modes, and all else that it adds (b, n, n)."""
+    position, turn = state.pose.position[:, element.bodies], state.pose.turn[:, element.bodies]
+    rows = element.relative @ moved(element, position, turn).rows
+    _, whole = stiffen_ports(element, position, turn, state.loads.gravity)
+    ports, strained, modes = rows.shape[-1], rows.shape[-2], len(element.squares)
+    select = order.ports(element.name, element.bodies)
+    law, operator = np.zeros((strained + modes,) * 2), np.zeros((len(rows), strained + modes, ports + modes))
+    law[:strained, :strained], law[strained:, strained:] = element.stiffness, np.diag(element.squares)
+    operator[:, :strained, :ports], operator[:, strained:, ports:] = rows, np.eye(modes)
+    rest = select[:ports].T @ (whole - _transpose(rows) @ element.stiffness @ rows) @ select[:ports]
+    return Contribution(operator @ select, law, element.loss), rest
+
+
+def _port_twists(state: State, element: Corotated) -> Array:
+    """The twists of a superelement's ports in their axes, and its modes (b, 6 p + m, 6 p + m), by motions of bodies and modes."""
+    turn = state.pose.turn[:, element.bodies]
+    count, modes = len(element.bodies), len(element.squares)
+    result = np.zeros((len(turn), 6 * count + modes, 6 * count + modes))
+    result[:, 6 * count :, 6 * count :] = np.eye(modes)
+    for port in range(count):
+        own = slice(6 * port, 6 * port + 6)
+        axes = spatial_rotation(turn[:, port] @ element.axes[port])
+        result[:, own, own] = _transpose(axes) @ transport((turn[:, port] @ element.arm[port][..., None])[..., 0])
+    return result
 
 
 def _hinge_twists(state: State, place: int) -> tuple[Array, Array]:
@@ -469,8 +512,15 @@ def _loss(model: Nonlinear, name: str) -> float:
     return 0.0 if value is None else value
 
 
+def _untold(model: Nonlinear) -> Iterator[str]:
+    """Flexures, and ports of superelements: what passes there is not told."""
+    yield from (name for group in model.flexures for name in group.names)
+    yield from (f"{each.name}.{port}" for each in model.elements for port in each.ports)
+
+
 def _viscous(model: Nonlinear) -> dict[str, Array]:
     found = {name: viscous_damping(model.assembly.links[name].part) for name in model.hinges.names}
+    found |= {each.name: each.damping for each in model.elements}
     return {name: damping for name, damping in found.items() if damping is not None}
 
 

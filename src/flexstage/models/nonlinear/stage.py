@@ -15,16 +15,19 @@ from flexstage.beams.compliance import law
 from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
 from flexstage.beams.flexure.of_part import flexure_law
 from flexstage.beams.mass import mass
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.expansion import expansion
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Damping, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import exerted_wrenches, imposed_strokes, input_channels, wrench_places
 from flexstage.models.linear.model import Channel
+from flexstage.models.nonlinear.corotated import Corotated
 from flexstage.models.nonlinear.hinge import Hinges
 from flexstage.models.nonlinear.state import Loads, Pose
+from flexstage.parts.condensation import condense
 from flexstage.parts.part import push_of, span
+from flexstage.spatial.frame import spatial_rotation, transport
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +65,7 @@ class Nonlinear:
     reference: Array
     flexures: tuple[Flexures, ...]
     hinges: Hinges
+    elements: tuple[Corotated, ...]
     inputs: tuple[Channel, ...]
     places: Places
     stated: Array
@@ -76,7 +80,8 @@ class Nonlinear:
     def size(self) -> float:
         """The length that translations are compared with [m]: that of the longest flexure, or the largest arm."""
         lengths = [float(np.max(group.law.length)) for group in self.flexures]
-        arms = [np.max(np.abs(each), initial=0.0) for each in (self.hinges.arm_first, self.hinges.arm_second)]
+        places = (self.hinges.arm_first, self.hinges.arm_second, *(each.place - each.place[0] for each in self.elements))
+        arms = [np.max(np.abs(each), initial=0.0) for each in places]
         return max(lengths) if lengths else float(max(*arms, 1e-3))
 
     @cached_property
@@ -131,9 +136,9 @@ class _Growth:
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
 
-    Leaves, rods, notches and necks bend; all other links are their 6x6 in a frame that turns with them. Valid for small strains in the
-    flexures. Superelements, and batches of designs, are refused. `temperature` is a uniform change [K]: every body and part grows freely
-    by its expansion, the `ground` (of this material; absent: as `drift` finds it) about the stage's origin, and what does not fit bends.
+    Leaves, rods, notches and necks bend; all other links are their 6x6, and superelements their matrices, in a frame that turns with them.
+    Valid for small strains in the flexures. Batches of designs are refused. `temperature` is a uniform change [K]: bodies and parts grow
+    freely by their expansion, the `ground` (of this material; absent: as `drift` finds it) about the origin; what does not fit bends.
     Moduli stay. What states no expansion is then refused.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -141,9 +146,6 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     [('left', 'right'), ('B/back', 'B/front')]
     """
     assembly = expand(mechanism)
-    if assembly.superelements:
-        names = ", ".join(assembly.superelements)
-        raise refuse(names, "superelements at large displacements are not known", "Use the lumped model, or draw the part")
     bodies = layout(assembly).bodies
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
     laws = {name: flexure_law(link.part, link.material, resolution) for name, link in assembly.links.items()}
@@ -159,6 +161,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         reference=reference,
         flexures=flexures,
         hinges=_hinges(assembly, centred, number, (reference, growth)),
+        elements=tuple(_element(item, number, reference) for item in assembly.superelements.values()),
         inputs=input_channels(assembly),
         places=Places(places.body, places.arm * growth.bodies[places.body, None]),
         stated=stated,
@@ -241,6 +244,42 @@ def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping
         thrust=np.array([thrusts.get(name, none) for name in links]).reshape(count, 6, inputs),
         push=np.array([[0.0 if push is None else push, 0, 0, 0, 0, 0] for push in pushes], dtype=float).reshape(count, 6),
         locked=np.array([(place, freedom.index) for place, item in enumerate(laws) for freedom in item.locked], dtype=int).reshape(-1, 2),
+    )
+
+
+def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: Array) -> Corotated:
+    """A superelement by its matrices, its ports' motions in the stage's axes."""
+    found = condense(placed.part, f"parts.{placed.link.part}")
+    bodies = np.array([number[port.body] for port in placed.ports.values()], dtype=int)
+    place = np.stack([_one(port.frame.position, placed.name) for port in placed.ports.values()])
+    turns = np.stack([port.frame.rotation for port in placed.ports.values()])
+    count = len(bodies)
+    into = np.zeros((6 * count, 6 * count))
+    relative = np.zeros((6 * count - 6, 6 * count))
+    for port in range(count):
+        own, rows = slice(6 * port, 6 * port + 6), slice(6 * port - 6, 6 * port)
+        into[own, own] = spatial_rotation(turns[port]).T
+        if port:
+            relative[rows, own] = into[own, own]
+            relative[rows, :6] = -into[own, own] @ transport(place[port] - place[0])
+    whole = np.tile(np.eye(6)[:, :3], (count, 1))
+    inertia, loss = found.inertia[: 6 * count, : 6 * count], placed.part.loss_factor
+    return Corotated(
+        name=placed.name,
+        ports=tuple(placed.ports),
+        bodies=bodies,
+        arm=place - reference[bodies],
+        axes=turns,
+        place=place,
+        relative=relative,
+        stiffness=found.stiffness,
+        squares=found.squares,
+        inertia=found.inertia,
+        damping=found.damping,
+        loss=0.0 if loss is None else float(loss),
+        mass=found.mass,
+        centre=placed.frame.point(found.centre),
+        share=into.T @ inertia @ into @ whole,
     )
 
 

@@ -1,0 +1,49 @@
+"""Laws of parts of all kinds at large displacements: at rest they are the linear model's, and so is what their own weight does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.linear.static import displacement, static_gain
+from flexstage.parts.part import Part
+from flexstage.spatial.frame import COMPONENTS, FORCES
+from tests.show.zoo import PARTS
+
+STEEL = fs.Material(young=200e9, poisson=0.3, density=7750.0)
+MEMBRANE = fs.Membrane("steel", 8e-3, 30e-3, 0.2e-3, mass=0.01)
+GIVEN = fs.Given(compliance=tuple(tuple(row) for row in np.diag([1e-7, 1e-6, 1e-6, 1e-2, 1e-2, 1e-2]).tolist()), free=(), mass=0.03)
+KINDS: dict[str, Part] = {**PARTS, "membrane": MEMBRANE, "given": GIVEN, "stack": fs.Piezo(60e-6, 50e6, 0.04, 0.01, mass=0.05)}
+LOOSE = ("ball", "coil", "spring")
+"""Kinds that hold a body in some directions only: they are tried between a body and the ground that others hold too."""
+NAMES = tuple(f"platform.{each}" for each in COMPONENTS), tuple(f"platform.{each}" for each in FORCES)
+
+
+def stage(part: Part, kind: str) -> Mechanism:
+    """A part to the right of the ground, a heavy body at its end; loose parts beside a rod."""
+    body = fs.Body(mass=0.2, inertia=fs.Inertia(1e-4, 2e-4, 3e-4), centre=(0.03, 0.01, 0.005), reference=(0.02, 0.0, 0.0))
+    links = {"own": Link(("ground", "platform"), "own", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))}
+    parts: dict[str, Part] = {"own": part}
+    if kind in LOOSE:
+        parts["rod"] = fs.Rod("steel", 0.03, 0.003)
+        links["rod"] = Link(("ground", "platform"), "rod", (0.0, 0.02, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))
+    return Mechanism("kind", materials={"steel": STEEL}, parts=parts, bodies={"platform": body}, links=links, gravity=(1.0, -9.0, 3.0))
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_at_rest_and_under_its_weight_it_is_the_linear_models(kind: str) -> None:
+    whole = stage(KINDS[kind], kind)
+    linear, model = fs.lumped(whole), fs.nonlinear(whole)
+    near = fs.linearise(fs.equilibrium(model, weight=0.0, stated=0.0))
+    gains = [static_gain(each, *NAMES).values for each in (near, linear)]
+    size, leafy = np.sqrt(np.outer(*[np.abs(np.diag(gains[1]))] * 2)), 4e-3 if kind in {"leaf", "cross", "wheel", "folded"} else 1e-6
+    assert np.max(np.abs(gains[0] - gains[1]) / size) < leafy
+    share = 1e-5
+    load = dead_loads(whole, linear)["own weight"]
+    sag = linear.output[linear.output_index(NAMES[0])] @ displacement(linear, load[..., None])[:, 0]
+    found = fs.equilibrium(model, weight=share, stated=0.0).twist() / share
+    scale = np.sqrt(np.diag(gains[1]) * np.max(sag**2 / np.diag(gains[1])))
+    assert np.max(np.abs(found - sag) / scale) < max(leafy, 1e-3)
