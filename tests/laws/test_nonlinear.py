@@ -171,9 +171,9 @@ def test_tangents_are_the_slopes_of_reactions(swap: bool):
 
 
 def on_matrices(*, swap: bool = False) -> Nonlinear:
-    """The guide on two given 6x6 in place of leaves, on which its platform turns far."""
+    """The guide on two given 6x6 in place of leaves, on which its platform turns far, its weight off its reference."""
     part = Matrix(tuple(map(tuple, np.diag(1.0 / np.array([4e3, 9e2, 2e3, 0.4, 0.9, 0.6])))), free=())
-    return nonlinear(replace(guide(swap=swap), parts={"leaf": part}))
+    return nonlinear(replace(guide(swap=swap, gravity=(2.0, -4.0, 1.0), centre=AWAY), parts={"leaf": part}))
 
 
 def test_what_holds_a_rotation_is_the_moment_of_its_component():
