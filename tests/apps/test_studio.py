@@ -21,6 +21,7 @@ from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio import solids
 from flexstage.apps.studio.helper import Urgency
+from flexstage.apps.studio.palette import insert, snippets
 from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
@@ -30,6 +31,7 @@ from flexstage.base.unit import show
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import set_value
+from flexstage.mechanism.checks import check
 from flexstage.mechanism.contact import gaps
 from flexstage.mechanism.store import dumps, loads, patch
 from flexstage.models.ideal import ideal
@@ -415,6 +417,14 @@ async def test_what_the_palette_inserts_is_a_design_again(page, studio):
     assert "stay" in page.state.links
     assert isinstance(await page.ask(say.Insert, snippet="wire", fields={"name": "thread"}), say.Refusal)
     assert isinstance(await page.ask(say.Insert, snippet="wire", fields={"name": 'a"\n[x'}), say.Refusal)
+
+
+@pytest.mark.parametrize("snippet", snippets(), ids=lambda each: each.name)
+def test_every_snippet_is_sound_as_it_is_offered(snippet):
+    """Under a name that is free, and a part that is there."""
+    own = {"name": f"own{snippet.name}", "part": "neck", "names": "C1-C3"}
+    written = insert(TEXT, snippet.name, {name: own.get(name, text) for name, text in snippet.fields.items()})
+    assert check(loads(written)) == ()
 
 
 def test_strangers_are_refused(studio):
