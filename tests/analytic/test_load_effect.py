@@ -87,3 +87,15 @@ def test_nothing_is_said_where_nothing_weighs():
     found = load_effect(replace(parallelogram(), gravity=(0.0, 0.0, 0.0)))
     assert found is not None
     assert not found.text
+
+
+def test_the_second_order_of_a_stroke_is_told():
+    """A parallelogram's leaves of length L bend by x: x^2 / (2 L^2), against what its exact kinematics leave out of x."""
+    stage = replace(parallelogram(), requirements={"stroke.x": "at least 50 um"})
+    found = fs.analyse(stage).second_order
+    assert found is not None
+    leaves_of = [part for part in stage.parts.values() if isinstance(part, fs.Leaf)]
+    length = min(float(np.asarray(part.length)) for part in leaves_of)
+    assert found.error == pytest.approx(0.5 * (50e-6 / length) ** 2, rel=1e-3)
+    assert found.link in stage.links
+    assert "bends by" in found.text

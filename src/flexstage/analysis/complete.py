@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,9 +26,10 @@ from flexstage.analysis.units import UnitResult, units
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.reach import ForceReach
 from flexstage.analysis.workspace.reach import reach as reach_of
+from flexstage.analysis.workspace.small import SecondOrder, small_motion
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
-from flexstage.base.number import Table
+from flexstage.base.number import Number, Table
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
@@ -52,9 +53,9 @@ class Analysis:
     ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
     the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. `loaded` says what
     the dead load changes; where it is felt, statics, modes, responses and their verdicts are those of the loaded stage (`felt`), all else
-    and `linear` are of the drawn one. The error budget is that of the required strokes, or of all single-axis strokes at once, and of one
-    kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of the platform
-    belong to the statics.
+    and `linear` are of the drawn one. `second_order` is the error of small displacements over the required strokes, or those reached. The
+    error budget is that of the required strokes, or of all single-axis strokes at once, and of one kelvin. `freedoms` (stiffness along
+    the motions left and along what links hold; None where six are left) and `mass` of the platform belong to the statics.
     """
 
     mechanism: Mechanism
@@ -78,6 +79,7 @@ class Analysis:
     freedoms: FreedomStiffness | None = None
     mass: MassMatrix | None = None
     loaded: LoadEffect | None = None
+    second_order: SecondOrder | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -158,8 +160,16 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
+        second_order=_second_order(mechanism, kinematics, command if command or reach is None else reach.command),
         missing=Table(attempt.missing),
     )
+
+
+def _second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
+    """The error of small displacements over a box of motions; None where nobody asks for one."""
+    if not command or not kinematics.coordinates:
+        return None
+    return replace(small_motion(mechanism, kinematics).second_order(command), held_twice=bool(kinematics.redundant))
 
 
 def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:

@@ -96,7 +96,8 @@ def analysis_body(analysis: Analysis) -> Document:
     reasons = {_KEYS.get(name, name): reason for name, reason in analysis.missing.items() if name != "deflection"}  # see stiffness
     documents = {name: None if found is None else plain(found) for name, found in analysis_results(analysis).items()}
     loading = None if analysis.loaded is None else plain(analysis.loaded)
-    told = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, **documents}
+    small = None if analysis.second_order is None else plain(analysis.second_order)
+    told = {"requirements": requirements_body(analysis.verdicts), "loaded": loading, "second_order": small, **documents}
     return told | ({"reasons": reasons} if reasons else {})
 
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
+from flexstage.base.quantity import RATIO
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
@@ -23,6 +25,30 @@ from flexstage.parts.shape import Shaped
 
 ERROR = 0.01
 """Relative error of second order that linear models may have."""
+
+
+@dataclass(frozen=True)
+class SecondOrder:
+    """By how much linear models may be off over a box of motions: the relative `error` of second order, of the part `link`, and why."""
+
+    error: Annotated[float, RATIO]
+    link: str
+    why: str
+    held_twice: bool = False
+
+    @property
+    def text(self) -> str:
+        """What is said of it; where constraints are redundant, that they may stretch flexures, which stiffens them besides.
+
+        >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text
+        'Over the strokes small-displacement theory is off by up to 0.02 % (left bends by 0.02 of its length).'
+        """
+        more = ": flexstage stroke tells them at large displacements" if self.error >= ERROR else ""
+        besides = (
+            "; redundant constraints may stretch flexures besides, which flexstage stroke tells" if self.held_twice and not more else ""
+        )
+        what = f"Over the strokes small-displacement theory is off by up to {100.0 * self.error:.2g} %"
+        return f"{what} ({self.link} {self.why}){more}{besides}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +71,15 @@ class SmallMotion:
         shares = np.maximum((self.turn @ half) / self.limit, (self.bend @ half) / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
         return float(shares[worst]), self.names[worst]
+
+    def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
+        """The largest theta^2 / 2 of a part that turns, or of a deflection over a length, over a box of commands (half widths)."""
+        half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
+        turned, bent = self.turn @ half, self.bend @ half
+        worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
+        bends = bent[worst] > turned[worst]
+        why = f"bends by {bent[worst]:.3g} of its length" if bends else f"turns by {1e3 * turned[worst]:.3g} mrad"
+        return SecondOrder(0.5 * float(max(turned[worst], bent[worst])) ** 2, self.names[worst], why)
 
     def doubt(self, command: Mapping[str, Number]) -> str:
         """Why linear models do not answer for a box of commands; empty where they do."""

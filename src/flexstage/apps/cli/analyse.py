@@ -28,7 +28,7 @@ from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
 from flexstage.show.tables.modes import mode_table
-from flexstage.show.tables.overview import closing_text, load_line, overview_tables, stage_text
+from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table, unit_table
@@ -133,6 +133,7 @@ def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table |
     yield stage_text(analysis)
     yield verdict_table(analysis.verdicts)
     yield load_line(analysis)
+    yield small_line(analysis)
     yield from list_caveats("analyse", analysis.mechanism)
     yield from _change_tables(analysis, compared)
     yield from _analysis_tables(analysis)
