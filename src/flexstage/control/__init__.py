@@ -18,6 +18,7 @@ HOMES = {
     "controllers.prefilter": "Prefilter",
     "controllers.loops": "actuator_loops modal_loops platform_loops",
     "controllers.decentralised": "Decentralised",
+    "tuning.aim": "Aim",
     "tuning.goal": "Goal",
     "trajectory.step": "Step",
     "trajectory.raster": "Raster",
@@ -35,8 +36,8 @@ HOMES = {
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
     "study.setup": (
-        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup HystereticStacks LoopNumbers LoopSetup Motion NotchAt PrefilterAt "
-        "RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
+        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup GoalSetup HystereticStacks LoopNumbers LoopSetup Motion NotchAt "
+        "PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
     "study.study": "loop_study",

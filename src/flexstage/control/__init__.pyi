@@ -103,6 +103,7 @@ from flexstage.control.study.setup import (
     FileMotion as FileMotion,
     Floor as Floor,
     GaugeSetup as GaugeSetup,
+    GoalSetup as GoalSetup,
     HystereticStacks as HystereticStacks,
     LoopNumbers as LoopNumbers,
     LoopSetup as LoopSetup,
@@ -135,6 +136,9 @@ from flexstage.control.trajectory.spiral import (
 )
 from flexstage.control.trajectory.step import (
     Step as Step,
+)
+from flexstage.control.tuning.aim import (
+    Aim as Aim,
 )
 from flexstage.control.tuning.goal import (
     Goal as Goal,

@@ -33,6 +33,7 @@ from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.control.tuning.aim import Aim
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
@@ -63,6 +64,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = None,
     bandwidth: Annotated[
         str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: the highest that the margin allows.")
+    ] = None,
+    goal: Annotated[
+        Aim | None,
+        word_option("--goal", Aim, "Search for laws and notches that are best at this. Default: no search.", show_default=False),
     ] = None,
     sensitivity: Annotated[
         str | None, text_option("--sensitivity", "NUMBER", "Highest peak of the sensitivity S that tuning allows.")
@@ -162,6 +167,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             {
                 "kind": controller,
                 "coordinates": coordinates,
+                "goal": None if goal is None else _override(given.controller.goal or forms.GoalSetup(), {"aim": goal}),
                 "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),
                 "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
             },

@@ -7,7 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from flexstage.base.finding import Finding
-from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.choices import Compensation, ControllerKind, Notching
 from flexstage.control.study.setup import (
     AmplifierSetup,
     ControllerSetup,
@@ -28,7 +28,7 @@ from flexstage.mechanism.grammar import node_of
 _MOST_BITS = 32
 _HIGHEST_ORDER = 20
 _MOST_LINES = 100_000
-_TUNED = ("bandwidth", "sensitivity")
+_TUNED = ("bandwidth", "sensitivity", "goal")
 
 
 def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
@@ -122,6 +122,7 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
     elif tuned and gains:
         what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
         yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
+    yield from _goal(found)
     yield from _loops(found)
     if "derivative" in gains and found.law is not ControllerKind.PID:
         yield Finding("controller.derivative", f"a controller of kind {found.law.value} has none", "Take kind pid, or leave it out")
@@ -130,6 +131,20 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
     if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
+
+
+def _goal(found: ControllerSetup) -> Iterator[Finding]:
+    """What a goal does not go with."""
+    if found.goal is None:
+        return
+    if found.law in (ControllerKind.RESONANT, ControllerKind.LQG):
+        yield Finding(
+            "controller.goal", f"a controller of kind {found.law.value} is not searched for", "Take kind pi or pid, or leave it out"
+        )
+    if found.bandwidth is not None:
+        yield Finding("controller.goal", "a bandwidth is given too, and a search finds its own", "Leave one of them out")
+    if found.notches or found.notching is Notching.NONE:
+        yield Finding("controller.goal", "notches are stated, and a search places its own", "Leave notches and notching out")
 
 
 def _loops(found: ControllerSetup) -> Iterator[Finding]:

@@ -24,11 +24,13 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.control.study.setup import GAINS, ControllerSetup, LoopNumbers, NotchAt, PrefilterAt
+from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchAt, PrefilterAt
 from flexstage.control.system import System, static
 from flexstage.control.tuning.attempt import Task
+from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.goal import Goal, Kind, Tuning
 from flexstage.control.tuning.tune import tune
+from flexstage.control.tuning.wish import Wish
 
 _KINDS: Mapping[ControllerKind, Kind] = MappingProxyType(
     {
@@ -114,6 +116,9 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.stated:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
+    if asked.goal is not None:
+        sought = find(given.plant, loops, Asked(_KINDS[asked.law], _wish(asked, asked.goal), given.floor, forward))
+        return Control(sought.controller.system(given.step), sought.controller, sought, gains)
     task = Task(
         kind=_KINDS[asked.law],
         goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
@@ -124,6 +129,20 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     )
     found = tune(given.plant, loops, task)
     return Control(found.controller.system(given.step), found.controller, found, gains)
+
+
+def _wish(asked: ControllerSetup, goal: GoalSetup) -> Wish:
+    return Wish(
+        aim=goal.aim,
+        sensitivity=asked.sensitivity or _SENSITIVITY,
+        spread=goal.spread,
+        gain=goal.gain,
+        delay_margin=goal.delay_margin or 0.0,
+        overshoot=goal.overshoot,
+        rejection=goal.rejection,
+        settling=goal.settling,
+        prefilter=goal.prefilter,
+    )
 
 
 def _open_loop(given: ResolvedSetup, gains: Array) -> System:

@@ -31,10 +31,12 @@ from flexstage.base.quantity import (
     Bound,
 )
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, StackKind
+from flexstage.control.tuning.aim import Aim
 from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
+_OVER, _SPREAD = Bound(low=0.02, high=1.0), Bound(low=0.0, high=0.3)
 _CREEP = Bound(low=-0.2, high=0.2)
 GAINS = ("proportional", "integral", "derivative")
 """Keys of a law's gains."""
@@ -143,13 +145,33 @@ class LoopNumbers:
 
 
 @dataclass(frozen=True)
+class GoalSetup:
+    """What a search for the controller is after: its `aim`, and what every loop shall keep.
+
+    `rejection` is the least frequency up to which disturbances are made smaller, `settling` the longest time to 2 % of a step, `overshoot`
+    the most of it, `delay_margin` the least; absent: as good as it gets. The peak of S holds with all modes up to `spread` and all gains up
+    to `gain` off. With `prefilter` what is commanded is shaped too.
+    """
+
+    aim: Aim = Aim.BALANCE
+    rejection: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    settling: Annotated[float, TIME, POSITIVE] | None = None
+    overshoot: Annotated[float, RATIO, _OVER] = 0.2
+    delay_margin: Annotated[float, TIME, POSITIVE] | None = None
+    spread: Annotated[float, RATIO, _SPREAD] = 0.02
+    gain: Annotated[float, RATIO, _SPREAD] = 0.0
+    prefilter: bool = False
+
+
+@dataclass(frozen=True)
 class ControllerSetup:
     """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
 
     Without a kind it is PI, where forces drive the stage PID (unless numbers are given). What it shall reach: `bandwidth` (where the open
     loop's gain passes 1; absent: the highest that `sensitivity` allows) and `sensitivity`, the highest peak of S. Its numbers:
     `proportional` (strokes or motion per error), `integral` rate, `derivative` time and its `filter` corner, of all loops; `loops` state
-    those of single ones. `notches` besides those placed by themselves. `prefilter` shapes what is commanded.
+    those of single ones. `notches` besides those placed by themselves. `prefilter` shapes what is commanded. With
+    a `goal` laws and notches are searched for instead, within `sensitivity`.
     """
 
     kind: ControllerKind | None = None
@@ -164,6 +186,7 @@ class ControllerSetup:
     notches: tuple[NotchAt, ...] = ()
     loops: tuple[LoopNumbers, ...] = ()
     prefilter: PrefilterAt | None = None
+    goal: GoalSetup | None = None
 
     @property
     def stated(self) -> tuple[str, ...]:

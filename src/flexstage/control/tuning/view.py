@@ -54,8 +54,8 @@ class View:
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
 
 
-def view(plant: Plant, loops: Loops, spread: float) -> View:
-    """The plant by its loops.
+def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
+    """The plant by its loops; at other `offsets`, the first 0, where they are given.
 
     A plant whose modes all lie by s above is the same with time running faster: that of samples (1 + s) T apart, called T.
 
@@ -66,7 +66,8 @@ def view(plant: Plant, loops: Loops, spread: float) -> View:
     >>> found.offsets, found.responses.shape[0], found.static.round(2).tolist()
     ((0.0, -0.02, 0.02), 3, [[0.99]])
     """
-    offsets = (0.0, -spread, spread) if spread else (0.0,)
+    if offsets is None:
+        offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(_scale_modes(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
     responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])

@@ -1,0 +1,18 @@
+"""What a search for a controller is after. Light: the command line names the choices without loading more."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Aim(Enum):
+    """What a controller shall be best at, within the margins that are asked for."""
+
+    BALANCE = "balance"
+    """Rejection and settling together, and with what is left of freedom noise."""
+    REJECTION = "rejection"
+    """Disturbances are made smaller up to the highest frequency."""
+    NOISE = "noise"
+    """The least motion at rest, of what the floor and the gauges do."""
+    SETTLING = "settling"
+    """The shortest time until steps stay within 2 %."""

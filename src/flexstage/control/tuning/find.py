@@ -1,0 +1,161 @@
+"""A controller found by search: the best there is for a goal, judged on the whole sampled loop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.analysis.random_response import Spectrum
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.loops import Loops
+from flexstage.control.controllers.prefilter import Prefilter
+from flexstage.control.plants import Plant
+from flexstage.control.tuning.goal import Goal, Judgement, Kind, Tuning
+from flexstage.control.tuning.judge import closed_growth, judge_loop
+from flexstage.control.tuning.search import Field, Found, coupled_sensitivities, excess, field, rejects_to, search, variants
+from flexstage.control.tuning.view import View, view
+from flexstage.control.tuning.wish import STABLE, Wish, wish_findings
+
+_KINDS = (Kind.PI, Kind.PID)
+_TIGHTER = (1.0, 0.97, 0.93)
+_UNMET = 0.02
+_CORNERS, _DAMPINGS, _LEADS = np.geomspace(0.3, 12.0, 14), (0.6, 0.8, 1.0, 1.4, 2.0, 3.5), (0.7, 1.2, 2.0, 4.0, np.inf)
+_CALM, _BAND = 1.03, 0.019
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What is searched for: kind and wish, the floor's spectra by input, and the strokes (n, f) by which references are fed forward."""
+
+    kind: Kind
+    wish: Wish
+    floor: Mapping[str, Spectrum]
+    feedforward: Array | None = None
+
+
+def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
+    """The controller that a search finds for a wish.
+
+    Law and notches of every loop are free, width and depth too, and a loop may pass 1 beyond a mode where margins hold with it moved. What
+    was found is judged by eigenvalues and by the coupled peak of S of the sampled loop, with all modes off by the spread. Raises
+    `DesignError` for a plant that is unstable by itself, wishes that contradict one another, and what is not reached, with what is.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, Wish(), {}))
+    >>> found.judgement.stable, bool(found.judgement.peak <= 2.0)
+    (True, True)
+    """
+    require(_findings(plant, asked))
+    wish = asked.wish
+    seen = view(plant, loops, wish.spread, tuple(dict.fromkeys(each.offset for each in variants(wish))))
+    require(_growth_findings(seen))
+    for tighter in _TIGHTER:
+        within = field(seen, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0)), asked.floor)
+        found = search(seen, within, asked.kind)
+        if found is None:
+            break
+        controller = _controller(loops, within, found, asked)
+        judged = _judge(seen, wish, controller)
+        if judged.stable and judged.peak <= wish.sensitivity:
+            require(_unmet(seen, within, found))
+            goal = Goal(None, wish.sensitivity, wish.spread)
+            return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
+    advice = "Allow a higher peak of S, a smaller spread of the modes, or take another kind"
+    raise DesignError([Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g} was found", advice)])
+
+
+def _findings(plant: Plant, asked: Asked) -> Iterator[Finding]:
+    yield from wish_findings(asked.wish, plant.hardware.step)
+    if asked.kind not in _KINDS:
+        what = f"there is no search for {asked.kind.value}"
+        yield Finding("controller.goal", what, "Take pi or pid, or leave the goal out: then it is tuned to the highest bandwidth")
+
+
+def _growth_findings(seen: View) -> Iterator[Finding]:
+    growth = seen.systems[0].growth
+    if growth >= 0.0:
+        what = f"the stage by itself is unstable: it grows by {growth:.3g} 1/s"
+        yield Finding("plant", what, "A search begins with loops that are stable when open: support what gives way, or state the gains")
+
+
+def _judge(seen: View, wish: Wish, controller: Decentralised) -> Judgement:
+    """Peak and bandwidths within the spread; stability also beyond it."""
+    near = [place for place, offset in enumerate(seen.offsets) if abs(offset) <= 1.001 * wish.spread]
+    system = controller.system(seen.step)
+    systems = tuple(seen.systems[place] for place in near)
+    judged = judge_loop(
+        replace(seen, systems=systems, offsets=tuple(seen.offsets[each] for each in near), responses=seen.responses[near]), system
+    )
+    far = [closed_growth(each, system) for place, each in enumerate(seen.systems) if place not in near]
+    return replace(judged, growth=max(judged.growth, *far)) if far else judged
+
+
+def _controller(loops: Loops, within: Field, found: Found, asked: Asked) -> Decentralised:
+    notches = found.notches if any(found.notches) else ()
+    filters = prefilters(within, found) if asked.wish.prefilter else ()
+    return Decentralised(loops, found.laws, notches, asked.feedforward, filters)
+
+
+def prefilters(within: Field, found: Found) -> tuple[Prefilter, ...]:
+    """By loop, the prefilter of a grid whose step settles soonest at the worst of the modes' offsets, with at most 3 % of overshoot."""
+    lines = within.lines[1:]
+    whole = coupled_sensitivities(within.slow[:, 1:], found, lines)
+    chosen: dict[int, Prefilter] = {}
+    for loop, first in enumerate(within.alike):
+        chosen[loop] = chosen[first] if first in chosen else _soonest(within, 1.0 - whole[..., loop, loop], rejects_to(within, found, loop))
+    return tuple(chosen.values())
+
+
+def _soonest(within: Field, following: Array, frequency: float) -> Prefilter:
+    best, least = Prefilter(frequency), (np.inf, np.inf)
+    for ratio in _CORNERS:
+        for damping in _DAMPINGS:
+            for lead in _LEADS:
+                corner = float(0.3 * ratio * frequency)
+                tried = Prefilter(corner, damping, None if np.isinf(lead) else float(lead * corner))
+                score = _settling(within, following, tried)
+                if score < least:
+                    best, least = tried, score
+    return best
+
+
+def _settling(within: Field, following: Array, tried: Prefilter) -> tuple[float, float]:
+    """How much too high steps go, and when they are settled [s]."""
+    s = 2j * np.pi * within.lines[1:]
+    omega = 2.0 * np.pi * tried.frequency
+    response = (1.0 + (0.0 if tried.lead is None else s / (2.0 * np.pi * tried.lead))) / (
+        1.0 + 2.0 * tried.damping * s / omega + (s / omega) ** 2
+    )
+    steps = np.cumsum(np.fft.irfft(np.pad(following * response, ((0, 0), (1, 0)), constant_values=1.0), axis=-1), axis=-1)
+    outside = np.flatnonzero(np.any(np.abs(steps - 1.0) > _BAND, axis=0))
+    return max(float(np.max(steps)), _CALM - 0.01), float(outside[-1]) if len(outside) else 0.0
+
+
+def _unmet(seen: View, within: Field, found: Found) -> Iterator[Finding]:
+    """What was asked for and is not reached."""
+    wish, far = within.wish, excess(within, found)
+    stated = {"rejection": wish.rejection, "settling": wish.settling, "delay margin": wish.delay_margin or None}
+    wanted = [name for name, value in stated.items() if value is not None]
+    if far > _UNMET and wanted:
+        reached = ", ".join(f"{name} {rejects_to(within, found, loop):.4g} Hz" for loop, name in enumerate(seen.loops.names))
+        kept = f"{' and '.join(wanted)} with an overshoot of {100.0 * wish.overshoot:g} % at most are not kept at once"
+        what = f"{kept}: the nearest misses by {100.0 * far:.2g} %, and rejects to {reached}"
+        yield Finding("controller.goal", what, "Ask for less of them, allow a higher peak of S, or sample faster")
+
+
+def _sentence(seen: View, within: Field, found: Found, kind: Kind, judged: Judgement) -> str:
+    reached = ", ".join(f"{name} {rejects_to(within, found, loop):.3g}" for loop, name in enumerate(seen.loops.names))
+    wish = within.wish
+    peak = (
+        f"the peak of S is {judged.peak:.3g}, modes up to {100.0 * wish.spread:g} % off included"
+        if wish.spread
+        else f"the peak of S is {judged.peak:.3g}"
+    )
+    beyond = f", stable up to {100.0 * STABLE * wish.spread:g} %" if wish.spread else ""
+    return f"{kind.value} by search for {wish.aim.value}: disturbances are rejected up to {reached} Hz; {peak}{beyond}"

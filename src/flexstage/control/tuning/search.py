@@ -1,0 +1,531 @@
+"""A search for the best law and notches of every loop, robust to where the modes lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy
+
+from flexstage.analysis.random_response import Spectrum
+from flexstage.base.number import Array
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import select
+from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.fit import STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.goal import Kind
+from flexstage.control.tuning.shape import Shape
+from flexstage.control.tuning.view import View, resonances
+from flexstage.control.tuning.wish import STABLE, Wish
+
+_INSIDE = 0.97
+"""Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
+_LOOSER, _LATER = 1.5, 8.0
+_SETTLED = 4.5
+"""Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced."""
+_NEAR, _MOST_NOTCHES = 4.0, 3
+_ZEROS = (0.2, 0.8)
+_LOOSE = 1.35
+_DRIFT = 1e-9
+"""Amplitude density [m/Hz^0.5] at 1 Hz of what is taken to disturb every loop where no floor is stated: it falls with the frequency."""
+_POLE_DAMPINGS, _ZERO_DAMPINGS = (0.8, 2.4), (0.04, 0.12)
+_SCALES = np.geomspace(0.01, 20.0, 40)
+_RATIO, _FINEST, _TRIES, _FITS, _LONG, _STARTS = 1.4, 1.1, 6, 6, 40, 3
+_SHORT = 12
+_CALM, _LEFT, _SLOWEST = 0.05, 0.015, 0.1
+_COUPLED = 0.5
+_QUIET_AT_LAST = 0.3
+_AMBITION, _BACK = 1.0, 0.8
+_QUIET = 0.05
+_SHARES = (0.95, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
+_SAME = 1e-6
+_CORNER, _OF_RATE = 10.0, 0.4
+_PERIODS, _LEAST_LINES, _MOST_LINES = 20.0, 10, 13
+_PLAIN, _AROUND = 110, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Where the plant may be: modes by `offset` off, commands `gain` times as large, `later` [s]; and the `limit` of |S| there."""
+
+    offset: float
+    gain: float
+    later: float
+    limit: float
+
+
+def variants(wish: Wish) -> tuple[Variant, ...]:
+    """The plants at which a wish is judged, the model's first.
+
+    >>> [each.offset for each in variants(Wish(spread=0.02))]
+    [0.0, -0.02, 0.02, -0.01, 0.01, -0.05, 0.05]
+    """
+    limit, spread = wish.sensitivity, wish.spread
+    near = (-spread, spread, -0.5 * spread, 0.5 * spread) if spread else ()
+    far = (-STABLE * spread, STABLE * spread) if spread else ()
+    gains = (1.0 - wish.gain, 1.0 + wish.gain) if wish.gain else ()
+    delays = (0.5 * wish.delay_margin, wish.delay_margin) if wish.delay_margin else ()
+    return (
+        *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
+        *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
+        *(Variant(0.0, gain, 0.0, limit) for gain in gains),
+        *(Variant(0.0, 1.0, 1.03 * later, _LATER) for later in delays),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """What is searched on: plants (v, f, k, k) between loops at `frequencies` (v, f), (w, h, k, k) at the even `lines` (h,) of steps.
+
+    Each plant has its own frequencies, those of the model by its offset higher: its modes then stand at the same places.
+
+    `disturbed` (f, k, d) is the amplitude of each loop's pose by each motion of the floor, `heard` (f, k) that of the gauges' noise,
+    weighted for sums of squares over the frequencies. `alike` gives each loop the first one that is the same.
+    """
+
+    wish: Wish
+    variants: tuple[Variant, ...]
+    frequencies: Array
+    plants: Array
+    lines: Array
+    slow: Array
+    disturbed: Array
+    heard: Array
+    alike: tuple[int, ...]
+
+
+def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum]) -> Field:
+    """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant."""
+    drive, cases, sense = seen.loops.drive, variants(wish), seen.loops.sense
+    systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
+    own = _frequencies(seen, max(each.offset for each in cases))
+    frequencies = np.stack([own * (1.0 + each.offset) for each in cases])
+    plants = np.stack([_moved(sense @ systems[each.offset].at(at) @ drive, at, each) for each, at in zip(cases, frequencies, strict=True)])
+    lines = _lines(seen)
+    slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -wish.spread, wish.spread) if wish.spread else (0.0,))])
+    weights = np.sqrt(np.gradient(own))[:, None]
+    return Field(
+        wish=wish,
+        variants=cases,
+        frequencies=frequencies,
+        plants=plants,
+        lines=lines,
+        slow=slow,
+        disturbed=_disturbed(seen, own, floor) * weights[:, :, None],
+        heard=_heard(seen) * weights,
+        alike=tuple(_first_alike(plants, loop) for loop in range(len(seen.loops.names))),
+    )
+
+
+def _moved(plants: Array, frequencies: Array, case: Variant) -> Array:
+    return plants * (case.gain * np.exp(-2j * np.pi * frequencies * case.later))[:, None, None]
+
+
+def _lines(seen: View) -> Array:
+    """Even frequencies [Hz] from 0 to half the rate, so many that a step lasts some periods of the lowest mode."""
+    rate = 40.0 * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1]) if seen.step is None else 1.0 / seen.step
+    power = int(np.clip(np.ceil(np.log2(_PERIODS * rate / float(seen.modes[0]))), _LEAST_LINES, _MOST_LINES))
+    return np.linspace(0.0, 0.5 * rate, 2 ** (power - 1) + 1)
+
+
+def _frequencies(seen: View, highest: float) -> Array:
+    """Evenly in the logarithm, and densely around the modes; up to where all plants' own end below half the rate."""
+    top = 20.0 * float(seen.modes[-1]) if seen.step is None else 0.5 / seen.step
+    top *= 0.999 / (1.0 + highest)
+    plain = np.geomspace(0.01 * float(seen.modes[0]), top, _PLAIN)
+    single = np.append(True, np.diff(seen.modes) > 0.1 * seen.ratios[1:] * seen.modes[1:])
+    around = seen.modes[single, None] * (1.0 + seen.ratios[single, None] * _AROUND)
+    every = np.unique(np.append(plain, around))
+    return every[(every > 0.0) & (every <= top)]
+
+
+def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) -> Array:
+    names = [f"relative.{name}" for name in seen.loops.coordinates.names]
+    if not floor:
+        return _DRIFT * np.eye(len(names))[None] / frequencies[:, None, None]
+    moved = resolvent(select(seen.plant.system, list(floor), names)).at(frequencies)
+    shaken = np.sqrt(np.stack([spectrum.at(frequencies) for spectrum in floor.values()], axis=-1))
+    return seen.loops.sense @ moved * shaken[:, None, :]
+
+
+def _heard(seen: View) -> Array:
+    """Amplitude density (k,) of the gauges' noise and steps in each loop."""
+    step, plant = seen.step or 0.0, seen.plant
+    sensors = [plant.hardware.sensors.get(name) for name in plant.gauges]
+    squares = [0.0 if each is None else (each.noise_density or 0.0) ** 2 + each.resolution**2 * step / 6.0 for each in sensors]
+    rows = seen.loops.sense @ plant.coordinates.pose
+    return np.sqrt(np.sum(rows**2 * np.array(squares), axis=1))
+
+
+def _first_alike(plants: Array, loop: int) -> int:
+    """The first loop that is the same, by itself and beside the others: a symmetric stage has several."""
+    for other in range(loop):
+        if np.max(np.abs(plants[:, :, other, other] - plants[:, :, loop, loop])) < _SAME * np.max(np.abs(plants[:, :, loop, loop])):
+            return other
+    return loop
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a search found, by loop: shape, point, and the frequency `reached` [Hz] to which the aim was brought, 0 where it is none."""
+
+    shapes: tuple[Shape, ...]
+    points: tuple[Array, ...]
+    reached: tuple[float, ...]
+
+    def responses(self, frequencies: Array) -> Array:
+        """C (..., k) of the loops at frequencies (...)."""
+        every = [shape.response(point, frequencies)[0] for shape, point in zip(self.shapes, self.points, strict=True)]
+        return np.stack(every, axis=-1)
+
+    @property
+    def laws(self) -> tuple[PI | PID, ...]:
+        """Laws by loop."""
+        return tuple(shape.law(point) for shape, point in zip(self.shapes, self.points, strict=True))
+
+    @property
+    def notches(self) -> tuple[tuple[Notch, ...], ...]:
+        """Notches by loop."""
+        return tuple(shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
+
+
+def search(seen: View, within: Field, kind: Kind) -> Found | None:
+    """The best loops, those that are coupled together, then all at once; `None` where none is stable.
+
+    The search is the same every time: no random numbers, starts on a grid.
+    """
+    shapes = tuple(_shape(seen, kind, loop) for loop in range(len(within.alike)))
+    points: list[Array] = [np.zeros(0)] * len(shapes)
+    reached = [0.0] * len(shapes)
+    for block in _blocks(within):
+        grids = [_grid(shapes[loop], _places(seen, loop), _first_place(seen, loop)) for loop in block]
+        least = [_AMBITION * _first_place(seen, loop) for loop in block]
+        found = _best(_part(within, block), tuple(shapes[loop] for loop in block), list(zip(*grids, strict=True)), least)
+        if found is None:
+            return None
+        for place, loop in enumerate(block):
+            first = within.alike[loop]
+            points[first], reached[first] = found.points[place], found.reached[place]
+    for loop, first in enumerate(within.alike):
+        points[loop], reached[loop] = points[first], reached[first]
+    return _together(within, Found(shapes, tuple(points), tuple(reached)))
+
+
+def _blocks(within: Field) -> list[tuple[int, ...]]:
+    """Loops that are coupled strongly, one set of those that are the same as others."""
+    own = np.einsum("vfkk->vfk", within.plants)
+    both = np.abs(within.plants * np.swapaxes(within.plants, -1, -2) / (own[..., :, None] * own[..., None, :]))
+    count, owners = scipy.sparse.csgraph.connected_components(np.max(both, axis=(0, 1)) > _COUPLED)
+    blocks = [tuple(np.flatnonzero(owners == owner).tolist()) for owner in range(count)]
+    kinds = {tuple(sorted(within.alike[loop] for loop in block)): block for block in reversed(blocks)}
+    return list(kinds.values())
+
+
+def _part(within: Field, block: tuple[int, ...]) -> Field:
+    """The field of some loops, the others open."""
+    chosen = list(block)
+    firsts = [within.alike[loop] for loop in block]
+    return replace(
+        within,
+        plants=within.plants[..., chosen, :][..., chosen],
+        slow=within.slow[..., chosen, :][..., chosen],
+        disturbed=within.disturbed[:, chosen],
+        heard=within.heard[:, chosen],
+        alike=tuple(firsts.index(first) for first in firsts),
+    )
+
+
+def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> Found | None:
+    """From a grid of starts, those that reject farthest made calm, and the calmest brought as far as it goes; `least` [Hz] is wanted."""
+    starts = [start for points in grid if (start := _highest_stable(within, Found(shapes, points, (0.0,) * len(points)))) is not None]
+    if not starts:
+        return None
+    order = sorted(range(len(starts)), key=lambda each: -_far(within, starts[each]))
+    calm = [_fit_together(within, starts[each], _all_bounds(within, [0.0] * len(shapes)), _CALM) for each in order[:_STARTS]]
+    calm = sorted(
+        ((found, passed) for found, passed in calm if np.isfinite(passed)),
+        key=lambda each: sum(np.log(_rms(_beside(within, each[0], loop), each[0].points[loop])) for loop in range(len(shapes))),
+    )
+    begun = [found for found, _ in calm[:1]] + ([starts[each] for each in order[:2]] if len(shapes) == 1 else [])
+    climbs = [_climb(within, each, _wanted(within, each, least)) for each in begun]
+    return max(climbs, key=lambda each: float(np.prod(each.reached)), default=None)
+
+
+def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
+    """Nearly what loops reject already, or part of what they should at `least` [Hz]."""
+    far = [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(far, least, strict=True)]
+
+
+def _far(within: Field, found: Found) -> float:
+    """How far loops reject, the geometric mean."""
+    each = [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+    return float(np.exp(np.mean(np.log(each))))
+
+
+def _climb(within: Field, start: Found, wanted: list[float]) -> Found:
+    """From the first start that keeps what frequencies ask for: all farther, then each by itself, by ever smaller ratios."""
+    best, reached, begun = start, None, [start]
+    for _ in range(_TRIES):
+        tried = [_fit_together(within, each, _all_bounds(within, wanted), _QUIET, 3 if len(wanted) < 3 else 1) for each in begun]
+        nearest, passed = min(tried, key=lambda each: each[1])
+        if keeps(passed):
+            best, reached = nearest, wanted
+            break
+        begun = [start, *([nearest] if np.isfinite(passed) else [])]
+        wanted = [one / _RATIO for one in wanted]
+    if reached is None or within.wish.aim is Aim.NOISE:
+        return replace(best, reached=(0.0,) * len(wanted))
+    ratio, groups = _RATIO, sorted(set(within.alike))
+    for _ in range(_FITS):
+        for moved in [groups, *([[group] for group in groups] if len(groups) > 1 else [])]:
+            farther = [one * (ratio if first in moved else 1.0) for one, first in zip(reached, within.alike, strict=True)]
+            there, passed = _fit_together(within, best, _all_bounds(within, farther), _QUIET)
+            if keeps(passed):
+                best, reached = there, farther
+                break
+        else:
+            ratio = np.sqrt(ratio)
+            if ratio < _FINEST:
+                break
+    return replace(best, reached=tuple(reached))
+
+
+def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
+    return [_bounds(within.wish, frequency) for frequency in frequencies]
+
+
+def _together(within: Field, found: Found) -> Found:
+    """All loops at once: the largest share of what was reached that all keep, and with that the least noise."""
+    tried, last = found, np.inf
+    for share in _SHARES:
+        tried, last = _fit_together(within, tried, _all_bounds(within, [share * one for one in found.reached]), _QUIET_AT_LAST)
+        if keeps(last):
+            break
+    return tried
+
+
+def _fit_together(within: Field, found: Found, bounds: list[Bounds], quiet: float, times: int = 1) -> tuple[Found, float]:
+    """All loops' numbers at once, from those that were found, and by how much bounds are passed at worst."""
+    joint = _Joint(within, found, tuple(bounds), quiet)
+    start = np.concatenate([found.points[loop] for loop in joint.parts])
+    limits = [found.shapes[loop].bounds(found.points[loop]) for loop in joint.parts]
+    low, high = (np.concatenate([pair[side] for pair in limits]) for side in (0, 1))
+    best = joint.moved(descend(joint.at, start, low, high, times * max(_SHORT, _LONG // max(1, len(within.alike) - 1))))
+    return best, joint.passed(best)
+
+
+@dataclass(frozen=True, eq=False)
+class _Joint:
+    """All loops together: what passes their bounds and the coupled peak of S. Loops that are the same have the same numbers."""
+
+    within: Field
+    found: Found
+    bounds: tuple[Bounds, ...]
+    quiet: float
+
+    @cached_property
+    def parts(self) -> Mapping[int, slice]:
+        """Where the numbers of each different loop stand."""
+        different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
+        ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
+        return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
+
+    @cached_property
+    def misfits(self) -> Mapping[int, Misfit]:
+        """Of each different loop, its noise relative to that at the start."""
+        begun = {loop: _beside(self.within, self.found, loop) for loop in self.parts}
+        return {loop: Misfit(one, self.bounds[loop], self.quiet / _rms(one, self.found.points[loop])) for loop, one in begun.items()}
+
+    def moved(self, point: Array) -> Found:
+        """The loops of a point."""
+        return replace(self.found, points=tuple(point[self.parts[first]] for first in self.within.alike))
+
+    def at(self, point: Array) -> Squares | None:
+        """The sum of squares; `None` where a plant is unstable."""
+        within, found = self.within, self.moved(point)
+        whole = coupled_sensitivities(within.plants, found, within.frequencies)
+        if not _is_stable(whole):
+            return None
+        slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
+        slopes, slow_slopes = self._slopes(found, within.frequencies), self._slopes(found, within.lines[None, 1:])
+        terms = [_coupled(within, whole, slopes)]
+        for loop, misfit in self.misfits.items():
+            following = np.pad(1.0 - slow[..., loop, loop], ((0, 0), (1, 0)), constant_values=1.0)
+            own = _by_all(whole, slopes, loop), _by_all(slow, slow_slopes, loop)
+            terms += misfit.rest(whole[..., loop, loop], own[0], following, own[1])
+        return sum_squares(terms, len(point))
+
+    def _slopes(self, found: Found, frequencies: Array) -> Array:
+        """d ln C (p, v, f, k) of all loops by all numbers."""
+        slopes = np.zeros((self.parts[max(self.parts)].stop, *frequencies.shape, len(self.within.alike)), complex)
+        for loop, first in enumerate(self.within.alike):
+            slopes[self.parts[first], ..., loop] = found.shapes[loop].response(found.points[loop], frequencies)[1]
+        return slopes
+
+    def passed(self, found: Found) -> float:
+        """The largest relative excess."""
+        within = self.within
+        if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
+            return np.inf
+        own = [Misfit(_beside(within, found, loop), self.bounds[loop], 0.0).passed(found.points[loop], sized=False) for loop in self.parts]
+        return max(*own, coupled_peak(within, found) / within.wish.sensitivity / _INSIDE - 1.0)
+
+
+def _rms(one: OneLoop, point: Array) -> float:
+    return max(float(np.sqrt(one.noise(point))), 1e-300)
+
+
+def _by_all(whole: Array, slopes: Array, loop: int) -> Array:
+    """What stands for d ln C of a loop where all controllers change: dS_ii = -sum_j T_ij S_ji dlnC_j."""
+    rest = (np.arange(whole.shape[-1]) == loop) - whole[..., loop, :]
+    shares = rest * whole[..., :, loop] / (rest * whole[..., :, loop])[..., [loop]]
+    return np.einsum("...k,p...k->p...", shares, np.broadcast_to(slopes, (len(slopes), *shares.shape)))
+
+
+def _is_stable(whole: Array) -> bool:
+    """Nyquist's criterion for all loops: det(I + L) turns by as much as integrators begin, each loop by itself at the lowest frequency."""
+    turned = np.unwrap(-np.angle(np.linalg.det(whole)), axis=-1)
+    begun = np.sum(np.angle(1.0 / np.einsum("vkk->vk", whole[:, 0])), axis=-1)
+    return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
+
+
+def _beside(within: Field, found: Found, loop: int) -> OneLoop:
+    return _one_loop(within, found.shapes[loop], loop, _Left.beside(within, found, loop), 1.0)
+
+
+def _coupled(within: Field, whole: Array, slopes: Array) -> tuple[Array, Array]:
+    """Singular values of S above their limits: d sigma = -Re(sum_j u^H T_j S_j v dlnC_j), u and v its directions."""
+    limits = np.array([each.limit for each in within.variants])[:, None] * _INSIDE * np.ones(whole.shape[:2])
+    over = np.linalg.norm(whole, axis=(-2, -1)) > limits  # the sum of all squared is above the largest
+    left, values, right = np.linalg.svd(whole[over])
+    high = values[:, 0] > limits[over]
+    chosen, limit, value = whole[over][high], limits[over][high], values[high, 0]
+    u, v = np.conj(left[high, :, 0]), np.conj(right[high, 0, :])
+    gains = (u - np.einsum("ri,rij->rj", u, chosen)) * np.einsum("rji,ri->rj", chosen, v)
+    changes = -np.real(np.einsum("rk,prk->pr", gains, slopes[:, over][:, high])) / limit
+    return STIFF * (value / limit - 1.0), STIFF * changes
+
+
+@dataclass(frozen=True, eq=False)
+class _Left:
+    """What the other loops leave to one: its `plants` (v, f), `slow` (w, h), and `shares` (f, k) of what disturbs each of them."""
+
+    plants: Array
+    slow: Array
+    shares: Array
+
+    @staticmethod
+    def beside(within: Field, found: Found, loop: int) -> _Left:
+        """The others closed: C g = 1/S_ii - 1, and S_ij/S_ii of what disturbs loop j, none of which depends on C."""
+        whole = coupled_sensitivities(within.plants, found, within.frequencies)
+        slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])[..., loop, loop]
+        own, response = whole[..., loop, loop], found.responses(within.frequencies)[..., loop]
+        left = (1.0 / slow - 1.0) / found.responses(within.lines[1:])[:, loop]
+        return _Left((1.0 / own - 1.0) / response, np.pad(left, ((0, 0), (1, 0))), whole[0, :, loop] / own[0, :, None])
+
+
+def _one_loop(within: Field, shape: Shape, loop: int, left: _Left, share: float) -> OneLoop:
+    shaken = np.einsum("fj,fjd->fd", np.broadcast_to(left.shares, within.disturbed.shape[:2]), within.disturbed)
+    return OneLoop(
+        shape=shape,
+        frequencies=within.frequencies,
+        plants=left.plants,
+        limits=np.array([each.limit for each in within.variants]) * share,
+        lines=within.lines,
+        slow=left.slow,
+        disturbed=np.sum(np.abs(shaken) ** 2, axis=-1),
+        heard=np.abs(within.heard[:, loop]) ** 2,
+    )
+
+
+def _shape(seen: View, kind: Kind, loop: int) -> Shape:
+    corner = None
+    if kind is Kind.PID:
+        corner = _CORNER * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+        corner = corner if seen.step is None else min(corner, _OF_RATE / seen.step)
+    return Shape(len(_places(seen, loop)), seen.step, corner, _SLOWEST * 2.0 * np.pi * _first_place(seen, loop))
+
+
+def _places(seen: View, loop: int) -> list[float]:
+    """Frequencies [Hz] of the first modes that stand out of a loop."""
+    found = [each.frequency for each in resonances(seen, loop)]
+    return [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
+
+
+def _first_place(seen: View, loop: int) -> float:
+    return next(iter(_places(seen, loop)), float(seen.modes[0]))
+
+
+def _grid(shape: Shape, places: list[float], first: float) -> Iterator[Array]:
+    for zero in _ZEROS:
+        for poles in _POLE_DAMPINGS if places else (1.0,):
+            for zeros in _ZERO_DAMPINGS if places else (1.0,):
+                notches = tuple(
+                    Notch(place, zeros / poles, poles) if not number else Notch(place, 0.6, 0.05) for number, place in enumerate(places)
+                )
+                turning = 2.0 * np.pi * first
+                law = PI(1.0, zero * turning) if shape.corner is None else PID(1.0, zero * turning, 0.5 / turning, shape.corner)
+                yield shape.point(law, notches)
+
+
+def _highest_stable(within: Field, found: Found) -> Found | None:
+    """The loops at the highest gains, all by the same factor, near the peak allowed; `None` where there are none.
+
+    From above: beyond a mode there may be gains that keep it where lower ones do not.
+    """
+    for scale in _SCALES[::-1]:
+        moved = replace(found, points=tuple(_louder(point, np.log(scale)) for point in found.points))
+        whole = coupled_sensitivities(within.plants, moved, within.frequencies)
+        limit = _LOOSE * within.wish.sensitivity
+        if np.max(np.abs(whole[0])) <= limit and _is_stable(whole) and coupled_peak(within, moved) <= limit:
+            return moved
+    return None
+
+
+def _louder(point: Array, factor: float) -> Array:
+    return point + factor * (np.arange(len(point)) == 0)
+
+
+def rejection(one: OneLoop, point: Array) -> float:
+    """The frequency [Hz] where |S| of the model first rises through 1, straight in the logarithms."""
+    sizes = np.abs(one.sensitivities(point)[0])
+    above = np.flatnonzero(sizes >= 1.0)
+    if not len(above) or not above[0]:
+        return float(one.frequencies[0, -1 if not len(above) else 0])
+    ends = slice(int(above[0]) - 1, int(above[0]) + 1)
+    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(one.frequencies[0, ends]))))
+
+
+def _bounds(wish: Wish, frequency: float) -> Bounds:
+    """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
+    far = frequency if wish.aim in (Aim.BALANCE, Aim.REJECTION) else 0.0
+    soon = _SETTLED / frequency if wish.aim in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
+    return Bounds(max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT)
+
+
+def coupled_sensitivities(plants: Array, found: Found, frequencies: Array) -> Array:
+    """S (v, f, k, k) of all loops together."""
+    return np.linalg.inv(np.eye(plants.shape[-1]) + plants * found.responses(frequencies)[..., None, :])
+
+
+def coupled_peak(within: Field, found: Found) -> float:
+    """The highest singular value of S over all plants, over its limit, times the sensitivity allowed."""
+    whole = coupled_sensitivities(within.plants, found, within.frequencies)
+    limits = np.array([each.limit for each in within.variants])
+    return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.wish.sensitivity)
+
+
+def rejects_to(within: Field, found: Found, loop: int) -> float:
+    """The frequency [Hz] up to which a loop rejects, the others closed."""
+    return rejection(_beside(within, found, loop), found.points[loop])
+
+
+def excess(within: Field, found: Found) -> float:
+    """By how much at worst, relative, what was asked for is passed."""
+    return _Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)

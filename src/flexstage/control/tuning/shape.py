@@ -1,0 +1,115 @@
+"""A loop's law and notches as a point in the space of their numbers, with the response's derivatives by all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+
+_GAIN = 1e4
+_MOVED = 2.5
+_DEEPEST, _NARROWEST, _WIDEST = 1e-3, 0.03, 6.0
+_BELOW = 0.45
+
+
+@dataclass(frozen=True)
+class Shape:
+    """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
+
+    A point is the logarithms of k_p, k_i/k_p [1/s], of a PID k_d/k_p [s], and of each notch's frequency [Hz], depth and damping. k_i/k_p is
+    `slowest` [1/s] at least: what an integrator takes back is then taken back in the time of its zero.
+    """
+
+    count: int
+    step: float | None
+    corner: float | None = None
+    slowest: float = 1e-6
+
+    @property
+    def gains(self) -> int:
+        """How many numbers the law has."""
+        return 2 if self.corner is None else 3
+
+    def law(self, point: Array) -> PI | PID:
+        """The law of a point."""
+        proportional, *ratios = np.exp(point[: self.gains]).tolist()
+        gains = [proportional * ratio for ratio in ratios]
+        return PI(proportional, gains[0]) if self.corner is None else PID(proportional, gains[0], gains[1], self.corner)
+
+    def notches(self, point: Array) -> tuple[Notch, ...]:
+        """The notches of a point."""
+        return tuple(Notch(*map(float, np.exp(each))) for each in self._notch_points(point))
+
+    def point(self, law: PI | PID, notches: tuple[Notch, ...]) -> Array:
+        """The point of a law and its notches."""
+        others = [law.integral, *([law.derivative] if isinstance(law, PID) else [])]
+        gains = [law.proportional, *(each / law.proportional for each in others)]
+        numbers = [number for each in notches for number in (each.frequency, each.depth, each.damping)]
+        return np.log(np.maximum([*gains, *numbers], 1e-12))
+
+    def bounds(self, start: Array) -> tuple[Array, Array]:
+        """Between which points lie, around a start: notches stay near where they begin, and below half the sampling rate."""
+        low, high = start - np.log(_GAIN), start + np.log(_GAIN)
+        low[1] = np.log(self.slowest)
+        for number in range(self.count):
+            at = self.gains + 3 * number
+            highest = np.inf if self.step is None else np.log(_BELOW / self.step)
+            low[at : at + 3] = start[at] - np.log(_MOVED), np.log(_DEEPEST), np.log(_NARROWEST)
+            high[at : at + 3] = min(start[at] + np.log(_MOVED), highest), 0.0, np.log(_WIDEST)
+        return low, high
+
+    def response(self, point: Array, frequencies: Array) -> tuple[Array, Array]:
+        """C (f,) from error to command as it is sampled, and d ln C (p, f) by the point's numbers; infinite at rest.
+
+        >>> shape = Shape(1, 1e-4)
+        >>> start = shape.point(PI(0.5, 100.0), (Notch(106.0, 0.1, 0.5),))
+        >>> value, slopes = shape.response(start, np.array([30.0]))
+        >>> moved, _ = shape.response(start + 1e-6 * np.eye(5)[3], np.array([30.0]))  # by the depth
+        >>> bool(np.isclose(np.log(moved / value)[0] / 1e-6, slopes[3, 0], rtol=1e-5))
+        True
+        """
+        turned, rate = self._turned(frequencies)
+        value, parts = self._law(point, 1j * rate * turned)
+        slopes = [part / value for part in parts]
+        for frequency, depth, damping in np.exp(self._notch_points(point)):
+            own, further = _notch(turned / self._turned(np.array([frequency]))[0][0], depth, damping)
+            value, slopes = value * own, [*slopes, further[0] * self._warp(frequency), *further[1:]]
+        return value, np.array(slopes)
+
+    def _law(self, point: Array, s: Array) -> tuple[Array, list[Array]]:
+        """The law's response, and its derivatives by the gains' logarithms."""
+        gains = np.exp(point[: self.gains])
+        parts = [gains[0] * gains[1] / s]
+        if self.corner is not None:
+            parts.append(gains[0] * gains[2] * s / (1.0 + s / (2.0 * np.pi * self.corner)))
+        whole = gains[0] + np.sum(parts, axis=0)
+        return whole, [whole, *parts]
+
+    def _notch_points(self, point: Array) -> Array:
+        return np.reshape(point[self.gains :], (self.count, 3))
+
+    def _turned(self, frequencies: Array) -> tuple[Array, float]:
+        """tan(pi f T), and what makes it omega: Tustin's rule; without samples omega itself."""
+        if self.step is None:
+            return 2.0 * np.pi * frequencies, 1.0
+        return np.tan(np.pi * frequencies * self.step), 2.0 / self.step
+
+    def _warp(self, frequency: float) -> float:
+        """d ln q / d ln f of q = omega over a notch's, prewarped."""
+        if self.step is None:
+            return -1.0
+        angle = 2.0 * np.pi * frequency * self.step
+        return -angle / float(np.sin(angle))
+
+
+def _notch(q: Array, depth: float, damping: float) -> tuple[Array, tuple[Array, Array, Array]]:
+    """N at q = omega/omega_n, and d ln N by ln q, ln depth and ln damping."""
+    above, below = 2j * depth * damping * q, 2j * damping * q
+    zeros, poles = 1.0 - q**2 + above, 1.0 - q**2 + below
+    by_q = (above - 2.0 * q**2) / zeros - (below - 2.0 * q**2) / poles
+    return zeros / poles, (by_q, above / zeros, above / zeros - below / poles)

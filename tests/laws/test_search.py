@@ -1,0 +1,136 @@
+"""Controllers by search: what is found keeps what was asked for, by other computations than the search's, and the same every time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.base.finding import DesignError
+from flexstage.base.number import first_design
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.control.closed import Cut, Loop, loop
+from flexstage.control.controllers.decentralised import Decentralised, loop_systems
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.controllers.notch import Notch
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
+from flexstage.control.example import integral_loop
+from flexstage.control.noise import noise_budget
+from flexstage.control.plants import Plant
+from flexstage.control.stability import verdict
+from flexstage.control.stability_margins import bandwidths, margins, peaks
+from flexstage.control.study.choices import Criterion
+from flexstage.control.study.control import make_controller
+from flexstage.control.study.resolve import ResolvedSetup, resolve
+from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopNumbers, LoopSetup, NotchAt, VibrationSetup
+from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.goal import Kind, Tuning
+from flexstage.control.tuning.shape import Shape
+from flexstage.control.tuning.wish import Wish
+
+
+def moved(plant: Plant, offset: float) -> Plant:
+    """The plant with all its modes off, made from its matrices: a hold that lasts longer and a delay that does so too."""
+    given = plant.hardware
+    return replace(plant, hardware=replace(given, rate=given.rate / (1.0 + offset), delay=given.delay * (1.0 + offset)))
+
+
+def closed(plant: Plant, tuned: Tuning, offset: float) -> Loop:
+    one = moved(plant, offset)
+    return loop(one, replace(tuned.controller.system(plant.hardware.step), step=one.hardware.step))
+
+
+@cache
+def found(wish: Wish) -> tuple[Plant, Tuning]:
+    plant = integral_loop().plant
+    return plant, find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, wish, {}))
+
+
+@pytest.mark.parametrize("law", [PI(0.7, 300.0), PID(0.7, 300.0, 1e-3, 900.0)])
+def test_a_point_is_its_law_and_its_notches(law):
+    notches = (Notch(106.0, 0.1, 0.7), Notch(173.0, 0.5, 0.2))
+    shape = Shape(2, 1e-4, 900.0 if isinstance(law, PID) else None)
+    point = shape.point(law, notches)
+    frequencies = np.geomspace(3.0, 4900.0, 40)
+    value, slopes = shape.response(point, frequencies)
+    plant = integral_loop().plant
+    (system,) = loop_systems(Decentralised(platform_loops(plant.coordinates), (shape.law(point),), (shape.notches(point),)), 1e-4)
+    assert value == pytest.approx(system.transfer(frequencies)[:, 0, 0], rel=1e-9)
+    for number, slope in enumerate(slopes):
+        step = 1e-6 * np.eye(len(point))[number]
+        ends = [shape.response(point + sign * step, frequencies)[0] for sign in (1.0, -1.0)]
+        assert slope == pytest.approx((ends[0] - ends[1]) / value / 2e-6, rel=1e-5, abs=1e-7)
+
+
+def test_the_peak_of_s_is_kept_at_every_offset_of_the_modes():
+    """The exact peak (no grid of frequencies), at offsets that the search did not look at."""
+    plant, tuned = found(Wish())
+    assert tuned.judgement.stable
+    for offset in np.linspace(-0.02, 0.02, 7):
+        assert peaks(closed(plant, tuned, offset), Cut.POSE).sensitivity.value < 2.005
+    assert all(verdict(closed(plant, tuned, offset)).stable for offset in (-0.05, 0.05))
+
+
+def test_a_delay_margin_is_held():
+    plant, tuned = found(Wish(delay_margin=1e-3))
+    assert margins(closed(plant, tuned, 0.0), Cut.POSE).of("x").delay.value > 1e-3
+
+
+def test_the_same_search_finds_the_same():
+    plant, tuned = found(Wish())
+    again = find(plant, platform_loops(plant.coordinates), Asked(Kind.PI, Wish(), {}))
+    assert (again.controller.laws, again.notches) == (tuned.controller.laws, tuned.notches)
+
+
+def test_what_cannot_be_had_at_once_is_said():
+    with pytest.raises(DesignError, match=r"rejection with an overshoot of 20 % at most"):
+        found(Wish(rejection=4000.0))
+    with pytest.raises(DesignError, match="no loop that rejects so far bears it"):
+        found(Wish(rejection=500.0, delay_margin=1e-3))
+
+
+def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:
+    floor = VibrationSetup(criterion=Criterion.VC_D)
+    given = resolve(double_triangle(), LoopSetup(floor=Floor(floor, floor, floor), controller=controller))
+    return given, np.real(first_design(np.asarray(lost_motion(given.kinematics, given.model).correction.values), 2))
+
+
+def judged(given: ResolvedSetup, wired: Loop) -> tuple[np.ndarray, np.ndarray]:
+    names = tuple(f"relative.{name}" for name in given.plant.coordinates.names)
+    budget = noise_budget(wired, given.floor, (0.1, 5000.0), names)
+    return bandwidths(wired).rejection, np.sqrt(budget.by_kind.values[:, list(budget.by_kind.columns).index("floor")])
+
+
+@pytest.mark.full
+def test_numbers_stated_by_axis_give_what_was_measured_with_them():
+    """Gains that somebody else found by search on the shipped stage, with what came of them."""
+    rows = (
+        LoopNumbers(("x", "y"), 4.85, 676.0, notches=(NotchAt(103.5, 0.0409, 2.37), NotchAt(174.4, 0.424, 0.321))),
+        LoopNumbers(("z",), 7.0, 893.0, notches=(NotchAt(113.5, 0.0439, 1.94),)),
+        LoopNumbers(("rx", "ry"), 6.54, 1340.0, notches=(NotchAt(98.39, 0.063, 2.58), NotchAt(175.9, 0.644, 0.0341))),
+        LoopNumbers(("rz",), 7.0, 934.0, notches=(NotchAt(129.8, 0.0361, 1.85),)),
+    )
+    given, gains = shipped(ControllerSetup(loops=rows))
+    wired = loop(given.plant, make_controller(given, gains).system)
+    far, floor = judged(given, wired)
+    assert far[[0, 2, 3, 5]] == pytest.approx([304.0, 206.0, 131.0, 239.0], abs=0.6)
+    assert floor[[0, 2, 3]] == pytest.approx([3.6e-9, 2.9e-9, 15.5e-9], rel=0.02)
+    assert peaks(wired, Cut.POSE).sensitivity.value == pytest.approx(1.92, abs=0.005)
+    assert min(each.delay.value for each in margins(wired, Cut.POSE).channels) == pytest.approx(0.16e-3, rel=0.02)
+
+
+@pytest.mark.full
+def test_the_shipped_stage_is_brought_farther_than_by_hand():
+    given, gains = shipped(ControllerSetup(goal=GoalSetup()))
+    tuned = make_controller(given, gains).tuning
+    far, floor = judged(given, closed(given.plant, tuned, 0.0))
+    assert np.all(far[[0, 2, 3, 5]] >= [240.0, 190.0, 120.0, 215.0])
+    assert np.all(floor[[0, 2, 3]] <= [4e-9, 3.2e-9, 17e-9])
+    for offset in (-0.02, -0.01, 0.01, 0.02):
+        assert peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0
+    assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])
+    assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.05, 0.05))
