@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.strained import left_out
 from flexstage.analysis.workspace.load import dead_loads
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Link, Mechanism, Stop
+from flexstage.mechanism.pattern import Pose
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS, FORCES
@@ -47,3 +51,17 @@ def test_at_rest_and_under_its_weight_it_is_the_linear_models(kind: str) -> None
     found = fs.equilibrium(model, weight=share, stated=0.0).twist() / share
     scale = np.sqrt(np.diag(gains[1]) * np.max(sag**2 / np.diag(gains[1])))
     assert np.max(np.abs(found - sag) / scale) < max(leafy, 1e-3)
+
+
+def test_contacts_that_lift_and_stops_that_are_passed_are_told() -> None:
+    """A ball is pressed on its seat or pulled off it; a rod's end goes less and more than 0.1 mm to a stop, and away from it."""
+    ball = fs.nonlinear(stage(KINDS["ball"], "ball"))
+    assert list(left_out(fs.equilibrium(ball, {"platform.fx": -100.0}, weight=0.0))) == []
+    assert [each.where for each in left_out(fs.equilibrium(ball, {"platform.fx": 400.0}, weight=0.0))] == ["own"]
+    whole = stage(KINDS["rod"], "rod")
+    stop = Stop("platform", Pose(at=(0.02, 0.0, 0.0), along=(0.0, 1.0, 0.0)), gap=1e-4)
+    model = fs.nonlinear(replace(whole, stops={"end": stop}))
+    flexible = static_gain(fs.lumped(whole), *NAMES).values[1, 1]
+    for goes, told in ((0.9e-4, []), (-1.5e-4, []), (1.5e-4, ["end"])):
+        state = fs.equilibrium(model, {"platform.fy": goes / flexible}, weight=0.0)
+        assert [each.where for each in left_out(state)] == told

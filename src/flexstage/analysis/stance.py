@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.strained import strain_cautions
+from flexstage.analysis.strained import left_out, strain_cautions
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -52,7 +52,7 @@ class Stance(InNotebook):
     @property
     def cautions(self) -> tuple[Finding, ...]:
         """What is beyond the theory there, and drives that do nothing."""
-        return (*self.doubts, *strain_cautions(strains(self.state)))
+        return (*self.doubts, *strain_cautions(strains(self.state)), *left_out(self.state))
 
 
 def stance(

@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.stance import coordinate
-from flexstage.analysis.strained import strain_cautions
+from flexstage.analysis.strained import left_out, strain_cautions
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -42,12 +42,13 @@ class Stroke(InNotebook):
     along: Matrix
     sag: Matrix | None
     strained: Annotated[Strains, INNER]
+    doubts: Annotated[tuple[Finding, ...], INNER]
     provenance: str
 
     @property
     def cautions(self) -> tuple[Finding, ...]:
         """What is beyond the theory, or not found."""
-        return tuple(_cautions(self))
+        return (*_cautions(self), *self.doubts)
 
 
 def stroke(path: Path, rest: State | None = None) -> Stroke:
@@ -70,7 +71,7 @@ def stroke(path: Path, rest: State | None = None) -> Stroke:
     rows = tuple(str(number + 1) for number in range(len(path.values)))
     units = tuple(tuple(unit for _, unit in columns.values()) for _ in rows)
     sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
-    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, about.provenance)
+    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, tuple(left_out(path.state)), about.provenance)
 
 
 def _columns(path: Path, about: LinearModel, strained: Strains, rest: State | None) -> Iterator[tuple[str, tuple[Array, str]]]:
