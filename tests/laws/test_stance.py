@@ -130,3 +130,26 @@ def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: 
 def test_drives_that_do_nothing_are_told():
     stage = parallelogram()
     assert [each.where for each in stance(stage, loads={"platform.fy": 0.0}).cautions] == ["platform.fy"]
+
+
+def test_a_traced_load_keeps_what_is_held():
+    """A guide whose platform cannot turn, pushed by a force as traced, is the one that holds it there finds."""
+    model, held = fs.nonlinear(guide()), {"platform.rz": 1e-4}
+    found = fs.trace(model, {"platform.fy": 1.0}, hold=held, step=0.02, points=4, weight=0.0)
+    assert found.locked == ("platform.rz",)
+    assert found.state.rotation()[:, 2] == pytest.approx(1e-4, rel=1e-9)
+    again = fs.equilibrium(model, {"platform.fy": found.values}, hold=held, weight=0.0)
+    assert found.values[-1] > 1.0
+    assert found.state.twist() == pytest.approx(again.twist(), abs=1e-9)
+    assert found.state.reactions == pytest.approx(again.reactions, rel=1e-6, abs=1e-8)
+
+
+def test_a_force_off_the_reference_turns_with_its_arm():
+    """Held at a point far from the reference, or loaded there by the force that was found: one stage."""
+    body = replace(guide().bodies["platform"], points={"tip": (0.5, 0.3, 0.2)})
+    model = fs.nonlinear(replace(guide(), bodies={"platform": body}))
+    state = fs.equilibrium(model, hold={"tip.y": 0.02})
+    loaded = fs.equilibrium(model, {"tip.fy": float(state.reactions[0])})
+    found, expected = compliance(fs.linearise(state)), compliance(fs.linearise(loaded))
+    scale = np.sqrt(np.diag(expected))
+    assert np.max(np.abs(found - expected) / scale / scale[:, None]) < 1e-7

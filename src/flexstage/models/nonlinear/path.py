@@ -13,7 +13,7 @@ from flexstage.models.nonlinear.condense import solve
 from flexstage.models.nonlinear.critical import Kind, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
 from flexstage.models.nonlinear.graph import advance, assemble, exerted_by
-from flexstage.models.nonlinear.hold import nothing
+from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.newton import USUAL, Found, join, lack, motion
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
@@ -108,14 +108,15 @@ def trace(
     step: float = 0.02,
     points: int = 60,
     rest: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
     weight: float = 1.0,
     effort: Effort = USUAL,
 ) -> Path:
     """Equilibria along the factor on `load`, by arc length: past limits, where the load turns and the stage goes on.
 
     `step` is the length of a step in the motion of the bodies, over the flexures' length and in radians; `points` how many steps at most.
-    The path ends where no further equilibrium is found. After E. Riks (Int. J. Solids Structures 15, 1979), steps normal to the first of
-    each.
+    Coordinates in `hold` stay locked at their values. The path ends where no further equilibrium is found. After E. Riks (Int. J. Solids
+    Structures 15, 1979), steps normal to the first of each.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -123,7 +124,7 @@ def trace(
     >>> found.values.size, bool(found.state.converged.all())
     (3, True)
     """
-    start = equilibrium(model, rest or {}, weight=weight)
+    start = equilibrium(model, rest or {}, hold=hold, weight=weight)
     if not bool(start.converged):
         raise refuse("stage", "it has no equilibrium without the load", "Look at its weight and its stated forces")
     names = [channel.name for channel in model.inputs]
@@ -131,7 +132,7 @@ def trace(
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
     rate = Loads(np.array([[load.get(name, 0.0) for name in names]]), np.zeros((1, 3)), np.zeros(1))
-    tracing = _Tracing(model, start.loads, rate, effort)
+    tracing = _Tracing(model, start.loads, rate, start.hold, effort)
     found, factors, last = [Found(start.pose, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))], [0.0], None
     for _ in range(points):
         after = _step(tracing, found[-1].pose, factors[-1], last, step)
@@ -143,8 +144,9 @@ def trace(
     whole, count = join(found), len(factors)
     inputs = start.loads.inputs + np.array(factors)[:, None] * rate.inputs
     loads = Loads(inputs, np.repeat(start.loads.gravity, count, axis=0), np.repeat(start.loads.constant, count))
-    states = state(model, loads, nothing(count), whole, ((count,), ()))
-    return Path("factor", np.array(factors), states, unstable_motions(states))
+    held = replace(start.hold, value=np.repeat(start.hold.value, count, axis=0))
+    states = state(model, loads, held, whole, ((count,), start.held))
+    return Path("factor", np.array(factors), states, unstable_motions(states), start.held)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +154,7 @@ class _Tracing:
     model: Nonlinear
     rest: Loads
     rate: Loads
+    hold: Hold
     effort: Effort
 
     def loads(self, factor: float) -> Loads:
@@ -161,12 +164,15 @@ class _Tracing:
 def _step(tracing: _Tracing, pose: Pose, factor: float, last: Array | None, length: float) -> tuple[Found, float, Array] | None:
     """The next point: its pose, factor and the step (n,) to it; `None` where none is found."""
     model, effort = tracing.model, tracing.effort
-    scale = np.concatenate([np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), np.zeros(len(model.hinges.locked))])
+    scale = np.concatenate(
+        [np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), np.zeros(len(model.hinges.locked) + len(tracing.hold.body))]
+    )
     whole, sign = np.zeros(len(scale)), 1.0
     with np.errstate(all="ignore"):
         for iteration in range(effort.iterations):
-            system = assemble(model, pose, tracing.loads(factor), nothing(1))
-            right = np.stack([-system.residual[0], exerted_by(model, pose, tracing.rate)[0]], axis=-1)
+            system = assemble(model, pose, tracing.loads(factor), tracing.hold)
+            pushed = np.append(exerted_by(model, pose, tracing.rate)[0], np.zeros(len(tracing.hold.body)))
+            right = np.stack([-system.residual[0], pushed], axis=-1)
             own, along = solve(system.stiffness, right[None])[0].T
             if iteration == 0:
                 sign = 1.0 if last is None or (along * scale) @ (last * scale) >= 0.0 else -1.0
