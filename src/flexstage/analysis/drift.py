@@ -29,7 +29,7 @@ from flexstage.models.linear.model import LinearModel, strain_forces
 from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
-from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, spatial_rotation, transport
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, cross_matrix, spatial_rotation, transport
 
 FIELDS = ("uniform", "gradient.x", "gradient.y", "gradient.z")
 _FIELD_UNITS = ("K", "K/m", "K/m", "K/m")
@@ -58,6 +58,10 @@ class Drift(InNotebook):
     def of(self, point: str = PLATFORM) -> Matrix:
         """The six rows of one point."""
         return self.motion.part(tuple(f"{point}.{name}" for name in COMPONENTS), FIELDS)
+
+
+_ABOUT = cross_matrix(np.eye(3))
+"""By axis, what makes the cross product of its unit vector with another one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +161,7 @@ def _growth(arm: Array, origin: Array) -> Array:
     for axis in range(3):
         slope = np.eye(3)[axis]
         shift = (origin[..., axis, None] + arm[..., axis, None]) * arm - 0.5 * square[..., None] * slope
-        columns.append(np.concatenate([shift, np.cross(slope, arm)], axis=-1))
+        columns.append(np.concatenate([shift, (_ABOUT[axis] @ arm[..., None])[..., 0]], axis=-1))
     return np.stack(columns, axis=-1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedS
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
 from flexstage.parts.body import PlacedSolid
-from flexstage.parts.part import is_actuator
+from flexstage.parts.part import Part, is_actuator
 from flexstage.show.scene.facet import SHARP, Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle
 from flexstage.show.scene.inner import outer
 from flexstage.show.scene.order import Partition, partition
@@ -244,10 +244,32 @@ def _link(link: PlacedLink, first: Array, second: Array, size: float, steps: int
     carriers = link.joins if forward else (link.joins[1], link.joins[0])
     kind, fineness = (Kind.DRIVE, 1) if is_actuator(link.part) else (Kind.HINGE, steps)
     paint = Paint(kind, carriers, link.name)
-    facets = [_place(facet, frame) for facet in part_facets(link.part, paint, _MARKER * size, steps=fineness)]
+    facets = _place_all(_drawn_part(link.part, _MARKER * size, fineness), frame, paint)
     if GROUND in link.joins:
         facets += _foot(link, first if link.joins[0] == GROUND else second, _MARKER * size)
     return facets
+
+
+@lru_cache(maxsize=64)
+def _drawn_part(part: Part, marker: float, steps: int) -> tuple[tuple[Facet, ...], Array, Array]:
+    """Facets of a part in its own frame, and all their points and edges (n, 3) that are no sharp ones: links share parts."""
+    facets = tuple(part_facets(part, Paint(Kind.HINGE, (GROUND, GROUND), ""), marker, steps=steps))
+    edges = [edge for facet in facets for edge in facet.edges if edge is not None and edge is not SHARP]
+    return facets, np.concatenate([facet.points for facet in facets]), np.array(edges).reshape(-1, 3)
+
+
+def _place_all(drawn: tuple[tuple[Facet, ...], Array, Array], frame: Frame, paint: Paint) -> list[Facet]:
+    """The facets of a part where a link stands, in its paint."""
+    facets, points, edges = drawn
+    points, turned = points @ frame.rotation.T + frame.position, iter(edges @ frame.rotation.T)
+    placed: list[Facet] = []
+    start = 0
+    for facet in facets:
+        stop = start + len(facet.points)
+        own = tuple(edge if edge is None or edge is SHARP else next(turned) for edge in facet.edges)
+        placed.append(Facet(points[start:stop], own, paint, facet.share, facet.whole))
+        start = stop
+    return placed
 
 
 def _superelement(element: PlacedSuperelement, size: float) -> list[Facet]:

@@ -110,8 +110,12 @@ def _corners(facets: Sequence[Facet], counts: Array) -> _Corners:
 
 def _distinct(rows: Array) -> tuple[Array, Array]:
     """The different rows (n, k) in ascending order, and where each one went."""
-    found, places = np.unique(rows, axis=0, return_inverse=True)
-    return found, np.asarray(places).reshape(-1)
+    order = np.lexsort(rows.T[::-1])
+    ascending = rows[order]
+    first = np.concatenate([np.ones(min(len(rows), 1), dtype=bool), np.any(ascending[1:] != ascending[:-1], axis=1)])
+    places = np.zeros(len(rows), dtype=int)
+    places[order] = np.cumsum(first) - 1
+    return ascending[first], places
 
 
 def _carriers(corners: _Corners, bodies: Sequence[str]) -> Array:
@@ -140,12 +144,10 @@ def _stations(corners: _Corners, rigid: Array, bends: Mapping[str, Bend], straig
 
 def _triangles(starts: Array, counts: Array) -> Array:
     """Fans of all polygons: places of their corners, three a triangle."""
-    fans = [
-        start + np.column_stack([np.zeros(count - 2, dtype=int), np.arange(1, count - 1), np.arange(2, count)]).ravel()
-        for start, count in zip(starts, counts, strict=True)
-        if count > 2
-    ]
-    return np.concatenate([np.zeros(0, dtype=int), *fans])
+    fans = np.maximum(counts - 2, 0)
+    facet = np.repeat(np.arange(len(counts)), fans)
+    corner = np.arange(len(facet)) - np.repeat(np.cumsum(fans) - fans, fans)
+    return (starts[facet][:, None] + np.column_stack([np.zeros_like(corner), corner + 1, corner + 2])).ravel()
 
 
 def _edges(facets: Sequence[Facet], starts: Array, vertex: Array) -> Array:
