@@ -41,6 +41,8 @@ from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported, seldo
 from tests.show.widths import broken, printed
 
 TITLES = {
+    "loaded": "Weight, payloads and forces change",
+    "second_order": "Over the strokes",
     "kinematics": "Actuator mapping R_a",
     "statics": "Stiffness at platform",
     "mass": "Mass at platform, whole stage",

@@ -49,6 +49,8 @@ def mode_section(analysis: Analysis, seen: Scene) -> Section | None:
     )
     if analysis.loaded is not None and analysis.loaded.text:
         text = f"{text} {analysis.loaded.text}"
+    if analysis.second_order is not None:
+        text = f"{text} {analysis.second_order.text}"
     spectrum = to_svg(spectrum_figure(modes), "spectrum", "Modes over frequency and the platform's share of each")
     shapes = tuple(_shapes(modes, model, analysis.kinematics, seen))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
