@@ -78,6 +78,7 @@ def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyP
     page = (tmp_path / "stage.html").read_text(encoding="utf-8")
     assert page.count("data:image/png;base64,") == 7  # six platform modes and the stress
     assert not re.search(r"(src|href)=.?https?:|url\(.?https?:", page)
+    assert "mode fea 1" in page  # beside its partner of theory
 
 
 def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

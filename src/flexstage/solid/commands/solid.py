@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import typer
 
+from flexstage.analysis.pairing import Pair
 from flexstage.analysis.standing import require_standing
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
@@ -32,6 +34,7 @@ from flexstage.show.page import Headline, Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
+from flexstage.show.viewer.motions import Motion
 from flexstage.solid import calibration, verification
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Reduction
@@ -98,13 +101,14 @@ class _Request:
 
 @dataclass(frozen=True)
 class _Result:
-    """Results of the solid model that stand in one document, their tables; headline and sections of a report; cautions about them."""
+    """Results of the solid model in one document, their tables; headline, sections and motions of a report; cautions about them."""
 
     said: Headline
     results: tuple[Any, ...]
     tables: Callable[[], Iterator[Table | None]]
     sections: Callable[[], Iterator[Section | None]]
     cautions: tuple[Finding, ...]
+    motions: Callable[[], tuple[Motion, ...]] = tuple
 
 
 def solid(  # noqa: PLR0913 (its options)
@@ -133,7 +137,7 @@ def solid(  # noqa: PLR0913 (its options)
     with progress_bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
-        save(report, solid_report(mechanism, found.said, found.sections(), found.cautions), "--report")
+        save(report, solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
     answer(
         "solid",
         mechanism,
@@ -320,12 +324,17 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
         yield block_table(stage)
         yield None if stage.stress is None else stress_table("Highest stress over the strokes", stage.stress)
 
+    @cache
+    def paired() -> tuple[Mapping[int, Pair], Section | None]:
+        return paired_with_theory(mechanism, stage)
+
     return _Result(
         said=_accuracy_headline(found, asked.resolution),
         results=(found, stage),
         tables=tables,
-        sections=lambda: iter([stage_solid_section(found)]),
+        sections=lambda: iter([stage_solid_section(found), paired()[1]]),
         cautions=_accuracy_cautions("stage", found, asked.resolution),
+        motions=lambda: solid_motions(mechanism, stage, paired()[0]),
     )
 
 
