@@ -148,6 +148,12 @@ def test_a_chain_has_the_sum_of_its_compliances(count):
     assert np.max(np.abs(found - expected)) <= 1e-9 * np.max(np.abs(expected))
 
 
+def test_a_chain_of_wires_leaves_its_platform_all_motions():
+    stage = stage_of([*range(1, 80), -1], helix(80)[::-1])
+    found = ideals.ideal(stage)
+    assert (found.mobility, len(found.idle), found.redundant) == (6, 6 * 79 - 80, ())
+
+
 def test_a_straight_chain_is_a_row_of_springs_though_rounding_hides_its_stiffness():
     count = 1500 if FULL else 600
     stage = stage_of([*range(1, count), -1], STEP * np.outer(np.arange(count, 0, -1), [1.0, 0.0, 0.0]))

@@ -115,7 +115,7 @@ def _group(row: Sparse, number: int, scale: Array, starts: Array) -> _Group:
 def _places(blocks: Array, starts: Array) -> tuple[Array, Array]:
     """Widths of blocks, and where each begins when they stand side by side."""
     widths = starts[blocks + 1] - starts[blocks]
-    return widths, np.concatenate([[0], np.cumsum(widths)[:-1]]).astype(int)
+    return widths, (np.cumsum(widths) - widths).astype(int)
 
 
 def _degree(groups: dict[int, _Group], numbers: set[int]) -> int:

@@ -23,6 +23,8 @@ _SINGULAR = 1e-11
 _DEFINITE = 1e-12
 _EXACT = 1e-13
 _ENOUGH = 1e-9
+_USABLE = 1e-6
+"""What loads in balance with one another, as of growing parts, may leave: their own rounding says no more."""
 _STEPS = 12
 _RATIO = 1e-10
 _MASSLESS = 1e-13
@@ -98,7 +100,7 @@ class Solver:
             motion, left = load, np.inf
         if not left <= _ENOUGH:
             motion, left = self._with_strains(load)
-        if not left <= _ENOUGH:
+        if not left <= _USABLE:
             what = (
                 f"its equations are known to {left:.1g} of their solution only: rounding hides how stiff a large part of it is as a whole"
             )
