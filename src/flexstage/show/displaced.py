@@ -81,6 +81,7 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     words = f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
     figure = to_svg(stroke_figure(curves, beyond), "misalign", "What a misalignment does")
     sections = (
+        stage_section(seen),
         section("Over the misalignment", [Picture(figure, to_typography(f"{words}. Shaded: the stage gives way."))]),
         caveat_section(mechanism, found.cautions),
         section("Point by point", [*result_tables(found)]),
@@ -88,6 +89,21 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     )
     good = not bool(np.any(beyond))
     return _page(mechanism, "A misalignment", found.provenance, (Headline(to_typography(words), good), sections), still_data(mechanism))
+
+
+def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
+    """What each copy bears, as a page of HTML."""
+    seen, borne = scene(mechanism), found.critical.values[~np.isnan(found.critical.values)]
+    least = f"the first gives way at {format_value(float(min(borne)), 'rad', 4)}" if len(borne) else "none gives way up to 0.1 rad"
+    words = f"{len(found.critical.rows)} copies misaligned one by one: {least}"
+    sections = (
+        stage_section(seen),
+        section("Copy by copy", misalignment_tables(found)),
+        caveat_section(mechanism),
+        drawing_section(mechanism, seen),
+    )
+    provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
+    return _page(mechanism, "Misalignments", provenance, (Headline(to_typography(words)), sections), still_data(mechanism))
 
 
 def critical_text(found: Misaligned) -> str:

@@ -24,7 +24,13 @@ from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import Load, loads_of
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import save
-from flexstage.show.displaced import buckling_report, misalign_report, misalignment_tables, stroke_report
+from flexstage.show.displaced import (
+    buckling_report,
+    misalign_report,
+    misalignment_tables,
+    misalignments_report,
+    stroke_report,
+)
 from flexstage.show.table import result_tables
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -154,8 +160,12 @@ def misalign(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     if not copy:
+        if ignored := next((option for option, given in (("--about", about), ("--along", shift), ("--size", size)) if given), ""):
+            raise refuse(ignored, "it says how one copy is misaligned, and none is named", "Name it: --copy NAME")
         told = Misalignments(critical_misalignments(mechanism))
-        answer("misalign", mechanism, lambda: told, lambda: misalignment_tables(told), json=json, csv=csv, xlsx=xlsx)
+        if report is not None:
+            save(report, misalignments_report(mechanism, told), "--report")
+        answer("misalign", mechanism, lambda: told, lambda: misalignment_tables(told), json=json, csv=csv, xlsx=xlsx, beside=(report,))
         return
     axis = _axis(about, shift)
     quantity = ANGLE if axis.startswith("r") else LENGTH
