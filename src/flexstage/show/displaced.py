@@ -23,7 +23,6 @@ from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, make_table, matrix_table, result_tables
 from flexstage.show.viewer.course import buckling_data, curves_of, limits, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
-from flexstage.show.viewer.motions import Curve
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
@@ -32,7 +31,7 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
     seen, data = scene(mechanism), stroke_data(mechanism, path, found)
     said = limits(found)
     beyond = [each for each in said if each]
-    figure = stroke_figure(curves_of(found), _flags(said))
+    figure = stroke_figure(curves_of(found.along), _flags(said))
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
     sections = (
         stage_section(
@@ -71,11 +70,7 @@ def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     """What a misaligned copy does, as a page of HTML: loads, frequencies and stress over the misalignment."""
     seen = scene(mechanism)
-    curves = [
-        Curve(name, unit, values)
-        for name, unit, values in zip(found.along.columns, found.along.unit[0], found.along.values.T, strict=True)
-        if name != "unstable"
-    ]
+    curves = curves_of(found.along)
     beyond = found.along.values[:, -1] != 0.0
     kind = "about" if found.axis.startswith("r") else "along"
     words = f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"

@@ -7,6 +7,9 @@ import { floats } from "./unpack";
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDE, HIGH] = [100, 40];
 
+/** What changes by less than this share of itself is rounding of what is sent, and drawn flat. */
+const ROUNDING = 3e-6;
+
 const STYLE = `
 :host { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: 2px 12px; padding: 8px 12px; font: 12px/1.35 system-ui, sans-serif; color: CanvasText; }
 :host([hidden]) { display: none; }
@@ -36,16 +39,17 @@ class Small {
   constructor(private readonly curve: Curve, said: string[], private readonly along: (share: number) => void) {
     this.values = floats(curve.values);
     const known = [...this.values].filter(Number.isFinite), low = Math.min(...known), high = Math.max(...known);
+    const large = Math.max(Math.abs(low), Math.abs(high)), span = high - low > ROUNDING * large ? high - low : 0;
     const svg = document.createElementNS(SVG, "svg"), path = document.createElementNS(SVG, "path");
     svg.setAttribute("viewBox", `0 0 ${WIDE} ${HIGH}`);
     svg.setAttribute("preserveAspectRatio", "none");
-    path.setAttribute("d", this.outline(low, high - low));
+    path.setAttribute("d", this.outline(low, span));
     svg.append(...this.bands(said), line("axis", { x1: 0, x2: WIDE, y1: HIGH, y2: HIGH }), path, this.cursor);
     const caption = document.createElement("figcaption"), name = document.createElement("span"), range = document.createElement("div");
     name.textContent = curve.name;
     caption.append(name, this.told);
     range.className = "range";
-    range.append(...(known.length ? [low, high] : []).map((each) => Object.assign(document.createElement("span"), { textContent: written(each) })));
+    range.append(...(known.length ? [low, high] : []).map((each) => Object.assign(document.createElement("span"), { textContent: written(Math.abs(each) > ROUNDING * large ? each : 0) })));
     this.element.append(caption, svg, range);
     this.listen(svg);
   }

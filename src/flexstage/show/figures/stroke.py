@@ -12,7 +12,9 @@ from flexstage.show.figures.style import FAIL, FULL, SERIES, Margins, canvas, pa
 from flexstage.show.viewer.motions import Curve
 
 _ACROSS = 3
-_HEIGHT = 1.35
+_HEIGHT = 1.45
+_LEAST_SPAN = 1e-3
+"""Of the largest value: what changes by less is drawn as the nearly straight line that it is."""
 
 
 def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
@@ -22,11 +24,13 @@ def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
     >>> len(stroke_figure(curves, np.array([False, True])).axes)
     3
     """
+    from matplotlib.ticker import MaxNLocator
+
     along, shown = curves[0], curves[1:]
     rows = -(-len(shown) // _ACROSS)
     with style_context():
         figure = canvas(FULL, _HEIGHT * rows + 0.3)
-        axes = panels(figure, rows, _ACROSS, Margins(left=0.62, across=0.62, down=0.34, bottom=0.42)).ravel()
+        axes = panels(figure, rows, _ACROSS, Margins(left=0.62, across=0.75, down=0.46, bottom=0.42)).ravel()
         for each in axes[len(shown) :]:
             each.set_visible(False)
         for each, curve in zip(axes, shown, strict=False):
@@ -36,7 +40,17 @@ def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
             each.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name, fontsize=7)
             each.set_xlabel(f"{along.name} [{along.unit}]", fontsize=7)
             each.tick_params(labelbottom=True)
+            each.xaxis.set_major_locator(MaxNLocator(4))
+            each.yaxis.set_major_locator(MaxNLocator(4))
+            each.yaxis.get_major_formatter().set_useOffset(False)
+            each.set_ylim(*_span(each.get_ylim()))
     return figure
+
+
+def _span(limits: tuple[float, float]) -> tuple[float, float]:
+    """Limits of an axis, wide enough for short tick labels."""
+    middle, half = 0.5 * (limits[0] + limits[1]), 0.5 * max(limits[1] - limits[0], _LEAST_SPAN * max(map(abs, limits)))
+    return middle - half, middle + half
 
 
 def _around(place: Array, point: int) -> tuple[float, float]:

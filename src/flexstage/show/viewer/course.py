@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.stance import Stance
 from flexstage.analysis.stroke import Stroke
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.nonlinear.critical import Critical
@@ -62,17 +63,17 @@ def _along(still: StageData, path: Path, found: Stroke) -> Motion:
     poses = _poses(still, path.state)
     most = max(2, _BYTES // (24 * poses.shape[1]))
     frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
-    curves = curves_of(found)
+    curves = curves_of(found.along)
     numbers = {thing.name: number for number, thing in enumerate(still.things)}
     course = Course(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
     return Motion(Group.PATH, path.drive, f"{path.drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
 
 
-def curves_of(found: Stroke) -> tuple[Curve, ...]:
-    """What is told of every point, in display units: the drive first."""
-    unit, columns = found.along.unit, found.along.columns
+def curves_of(along: Matrix) -> tuple[Curve, ...]:
+    """What is told of every point, a row a point, in display units: the drive first."""
+    unit, columns = along.unit, along.columns
     units = (unit,) * len(columns) if isinstance(unit, str) else unit[0]
-    values = np.moveaxis(found.along.values, -1, 0)
+    values = np.moveaxis(along.values, -1, 0)
     return tuple(_curve(*each) for each in zip(columns, values, units, strict=True) if each[0] != "unstable")
 
 
