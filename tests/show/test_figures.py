@@ -16,6 +16,7 @@ from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
+from flexstage.show.tables.lost_motion import budget_table
 from tests.show.stages import analysed
 
 
@@ -55,6 +56,19 @@ def test_bars_add_up_to_the_losses() -> None:
         for row, bar in enumerate(container):
             ends[row] = ends.get(row, 0.0) + bar.get_width()
     assert np.allclose([ends[row] for row in range(6)], 100.0 * np.diagonal(lost.loss.values), rtol=1e-12)
+
+
+def test_bars_name_the_links_of_other_units_as_the_table_does() -> None:
+    """A horizontal actuator loses to hinges of the vertical ones, each with a colour of its own."""
+    lost = analysed("double-triangle").lost_motion
+    assert lost is not None
+    figure = loss_figure(lost)
+    told = [text.get_text() for text in figure.legends[0].get_texts()]
+    table = budget_table(lost)
+    assert table is not None
+    assert {name for name in told if "/" in name} == {row[0] for row in table.texts() if "/" in row[0]} != set()
+    colours = [container[0].get_facecolor() for container in figure.axes[0].containers]
+    assert len(set(colours)) == len(told)
 
 
 def test_the_polar_plot_shows_principal_axes() -> None:

@@ -13,17 +13,18 @@ from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, number, percent, to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context, text_width
 from flexstage.show.table import first_design
-from flexstage.show.tables.lost_motion import ELSEWHERE, energy_shares, own_budget
+from flexstage.show.tables.lost_motion import energy_shares, foreign_links, named_budget
 
 _REST = "rest"
 _COLOURED = 6
-_ACROSS = 8
 _LEGEND = {"handlelength": 0.9, "handleheight": 0.9, "columnspacing": 1.4, "borderaxespad": 0.0}
-_OTHER_COLOUR, _REST_COLOUR = "#9aa5b1", "#ccd3da"
+_REST_COLOUR = "#ccd3da"
+_TINTS = (0.4, 0.66, 0.53, 0.79)
+"""How much white is in the colours of another unit's links, one after the other."""
 
 
 def loss_figure(lost: LostMotion) -> Any:
-    """Every actuator's lost motion divided among the links and axes of its unit, as a matplotlib Figure [% of stroke].
+    """Every actuator's lost motion divided among the links and axes of its unit and links of others, as a Figure [% of stroke].
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -31,7 +32,7 @@ def loss_figure(lost: LostMotion) -> Any:
     >>> len(loss_figure(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).axes)
     1
     """
-    budgets = {name: own_budget(lost, name) for name in lost.loss.rows}
+    budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
     totals = {name: percent(sum(shares.values()), 3) for name, shares in budgets.items()}
     return _share_figure(budgets, totals, "lost motion [% of the stroke]")
 
@@ -54,35 +55,36 @@ def energy_figure(lost: LostMotion) -> Any:
 
 def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str, str], label: str) -> Any:
     parts = _largest_parts(shares)
+    colours = _colours(parts)
+    across = max(1, int(FULL / (text_width(parts, 7.5) + 0.24)))
     with style_context():
-        top = 0.1 + 0.16 * -(-len(parts) // _ACROSS)
+        top = 0.1 + 0.16 * -(-len(parts) // across)
         figure = canvas(FULL, 0.5 + top + 0.27 * len(shares))
         axes = panels(figure, 1, 1, Margins(left=0.15 + text_width(shares), top=top))[0, 0]
         left, right = np.zeros(len(shares)), np.zeros(len(shares))
         names = list(shares)
-        for index, part in enumerate(parts):
+        for part in parts:
             widths = 100.0 * np.array([_share(shares[name], part, parts) for name in names])
-            colour = _colour(index, part)
             starts = np.where(widths >= 0.0, right, left)
-            axes.barh(names, widths, left=starts, height=0.62, color=colour, label=part, linewidth=0.0)
+            axes.barh(names, widths, left=starts, height=0.62, color=colours[part], label=part, linewidth=0.0)
             right, left = right + np.maximum(widths, 0.0), left + np.minimum(widths, 0.0)
         for row, name in enumerate(names):
             _place_beside(axes, (right[row], row), totals[name], INK)
         _format_axes(axes, label)
         _widen_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
-            figure.legend(loc="upper left", ncols=_ACROSS, **_LEGEND)
+            figure.legend(loc="upper left", ncols=across, **_LEGEND)
     return figure
 
 
 def _largest_parts(shares: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """The parts that get a colour, largest first; then other units and the rest."""
+    """The parts that get a colour, largest first: the unit's own, then those of others that the tables name; then the rest."""
     parts = dict.fromkeys(part for each in shares.values() for part in each)
     size = {part: max(abs(each.get(part, 0.0)) for each in shares.values()) for part in parts}
     least = 2e-3 * max(size.values(), default=0.0)
-    ranked = sorted((part for part in parts if part != ELSEWHERE and size[part] > least), key=lambda part: -round(size[part], 12))
-    chosen = ranked[:_COLOURED]
-    return [*chosen, *([ELSEWHERE] if size.get(ELSEWHERE, 0.0) > least else []), *([_REST] if len(parts) > len(chosen) else [])]
+    ranked = sorted((part for part in parts if size[part] > least), key=lambda part: -round(size[part], 12))
+    chosen = [*[part for part in ranked if "/" not in part][:_COLOURED], *sorted(foreign_links(ranked, shares))]
+    return [*chosen, *([_REST] if len(parts) > len(chosen) else [])]
 
 
 def _share(shares: Mapping[str, float], part: str, parts: Sequence[str]) -> float:
@@ -91,8 +93,26 @@ def _share(shares: Mapping[str, float], part: str, parts: Sequence[str]) -> floa
     return shares.get(part, 0.0)
 
 
-def _colour(index: int, part: str) -> str:
-    return {ELSEWHERE: _OTHER_COLOUR, _REST: _REST_COLOUR}.get(part, SERIES[index % len(SERIES)])
+def _colours(parts: Sequence[str]) -> dict[str, str]:
+    """Full colours for the unit's own links; for those of others a hue a unit, lighter link by link."""
+    own = [part for part in parts if "/" not in part and part != _REST]
+    units = list(dict.fromkeys(part.partition("/")[0] for part in parts if "/" in part))
+    links = {unit: [part for part in parts if part.startswith(f"{unit}/")] for unit in units}
+    return {
+        **{part: SERIES[index % len(SERIES)] for index, part in enumerate(own)},
+        **{
+            part: _tinted(SERIES[index % len(SERIES)], _TINTS[place % len(_TINTS)])
+            for index, unit in enumerate(units)
+            for place, part in enumerate(links[unit])
+        },
+        _REST: _REST_COLOUR,
+    }
+
+
+def _tinted(colour: str, white: float) -> str:
+    """A colour mixed with so much white."""
+    parts = (int(colour[start : start + 2], 16) for start in (1, 3, 5))
+    return "#" + "".join(f"{round(part + white * (255 - part)):02x}" for part in parts)
 
 
 def _format_axes(axes: Any, label: str) -> None:

@@ -11,7 +11,6 @@ from flexstage.base.labelled import NOISE, Matrix
 from flexstage.show.display import number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table
 
-ELSEWHERE = "other units"
 _SHOWN = 1e-4
 _LARGEST = 3
 _NAMED, _MOST_NAMED = 0.02, 16
@@ -39,7 +38,7 @@ def _loss_row(lost: LostMotion, name: str) -> tuple[Cell, ...]:
     own = _zero_if_noise(float(line[index]))
     others = np.delete(np.abs(line), index)
     least = max(NOISE, 0.02 * abs(own))
-    ranked = _named_budget(lost, name).items()
+    ranked = named_budget(lost, name).items()
     largest = ", ".join(f"{part} {percent(share, 3)}" for part, share in list(ranked)[:_LARGEST] if abs(share) > least)
     gain = float(first_design(lost.transfer.values, 2)[index, index])
     return (
@@ -56,20 +55,6 @@ def _zero_if_noise(share: float) -> float:
     return 0.0 if abs(share) < NOISE else share
 
 
-def own_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
-    """An actuator's loss by link and axis of its own unit, largest first, the links of other units added up as `other units`.
-
-    >>> import flexstage as fs
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> stage = double_triangle()
-    >>> next(iter(own_budget(fs.lost_motion(fs.ideal(stage), fs.lumped(stage)), "B4")))
-    'pivot.rz'
-    """
-    shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
-    gathered = name_links(shares, actuator, lambda _: ELSEWHERE)
-    return dict(sorted(gathered.items(), key=lambda item: -abs(round(item[1], 12))))
-
-
 def budget_table(lost: LostMotion) -> Table | None:
     """Every actuator's loss divided among links: its unit's by axis, other units' by name; each column adds up to its loss.
 
@@ -83,7 +68,7 @@ def budget_table(lost: LostMotion) -> Table | None:
     """
     if not lost.budget:
         return None
-    budgets = {name: _named_budget(lost, name) for name in lost.loss.rows}
+    budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
     notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones give back what others take."]
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)
 
@@ -91,8 +76,15 @@ def budget_table(lost: LostMotion) -> Table | None:
 _OWN_AND_OTHERS = "Links without a unit's name are those of the actuator's own unit, those with one another unit's"
 
 
-def _named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
-    """An actuator's loss by link and axis of its own unit and by link of the others, largest first."""
+def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
+    """An actuator's loss by link and axis of its own unit and by link of the others, largest first.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> next(iter(named_budget(fs.lost_motion(fs.ideal(stage), fs.lumped(stage)), "B4")))
+    'pivot.rz'
+    """
     shares = {name: float(first_design(np.asarray(value)[..., None], 1)[0]) for name, value in lost.of(actuator).items()}
     found = name_links(shares, actuator, lambda name: name.rpartition(".")[0] or name)
     return dict(sorted(found.items(), key=lambda item: -abs(round(item[1], 9))))
@@ -118,7 +110,7 @@ def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
     ranked = sorted(parts, key=lambda part: -round(size[part], 9))
-    foreign = [part for part in ranked if "/" in part and _matters(part, columns)][:_MOST_NAMED]
+    foreign = foreign_links(ranked, columns)
     kept = [part for part in ranked if size[part] >= _SHOWN and ("/" not in part or part in foreign)]
     small = [part for part in ranked if part not in kept and size[part] >= NOISE]
     rows = [_share_row(part, [shares.get(part) for shares in columns.values()]) for part in kept]
@@ -127,6 +119,15 @@ def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[
         rows.append(_share_row(label, [sum(shares.get(part, 0.0) for part in small) for shares in columns.values()]))
     sums = [_zero_if_noise(sum(shares.values())) for shares in columns.values()]
     return [*rows, (Cell(total, Mark.STRONG), *(Cell(percent(value), Mark.STRONG) for value in sums))]
+
+
+def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """The links of other units that are named, of all by size, with the shares by actuator.
+
+    >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
+    ['B2/front']
+    """
+    return [part for part in ranked if "/" in part and _matters(part, columns)][:_MOST_NAMED]
 
 
 def _matters(part: str, columns: Mapping[str, Mapping[str, float]]) -> bool:
@@ -218,7 +219,7 @@ def energy_table(lost: LostMotion) -> Table:
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
-    """By actuator and part of its unit, the share of strain energy.
+    """By actuator and part of its unit or another one, the share of strain energy.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -228,7 +229,7 @@ def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
     """
     values = first_design(lost.energy.values, 2)
     shares = {name: _shares(lost.energy, values[:, column]) for column, name in enumerate(lost.energy.columns)}
-    return {name: name_links(own, name, lambda _: ELSEWHERE) for name, own in shares.items()}
+    return {name: name_links(own, name, str) for name, own in shares.items()}
 
 
 def _shares(energy: Matrix, column: np.ndarray) -> dict[str, float]:
