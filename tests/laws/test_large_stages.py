@@ -13,8 +13,10 @@ from flexstage.analysis import stability as stabilities
 from flexstage.analysis.drift import drift
 from flexstage.analysis.modes import modes
 from flexstage.analysis.statics import statics
-from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import DesignError
+from flexstage.base.sparse import Rows
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
@@ -32,6 +34,7 @@ from tests.laws.test_mechanisms import METRE, platform_compliance, rounding
 
 STEEL = Material(young=200e9, poisson=0.3, density=7800.0, expansion=1.1e-5)
 STEP = 0.03
+NO_STROKES = StrokeLimits((), np.zeros(0), np.zeros(0))
 EXAMPLES = 1000 if FULL else 20
 
 
@@ -200,6 +203,19 @@ def test_what_needs_dense_matrices_is_refused_with_the_size():
     model = lumpeds.lumped(stage_of([*range(1, count), -1], helix(count)[::-1]))
     with pytest.raises(DesignError, match="3,060 freedoms"):
         _ = model.stiffness_matrix
+
+
+def test_what_all_links_feel_takes_no_dense_rows():
+    count = 80
+    stage = replace(stage_of([*range(1, count), -1], helix(count)[::-1]), gravity=(0.0, 0.0, -9.81))
+    links = tuple(stage.links)
+    with patch.object(lumpeds, "LARGE", count + 1):
+        expected = corner_wrenches(stage, lumpeds.lumped(stage), NO_STROKES, links)
+    model = lumpeds.lumped(stage)
+    with patch.object(Rows, "__getitem__", side_effect=MemoryError), patch.object(Rows, "__array__", side_effect=MemoryError):
+        found = corner_wrenches(stage, model, NO_STROKES, links)
+    weight = count * 0.1 * 9.81
+    np.testing.assert_allclose(found, expected, atol=1e-6 * weight)
 
 
 def test_a_part_that_hangs_on_nothing_is_found():

@@ -47,6 +47,6 @@ def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFOR
     causes = dead_loads(mechanism, model)
     motion = displacement(model, np.stack(np.broadcast_arrays(*causes.values()), axis=-1))
     rows = tuple(f"{point}.{name}" for name in COMPONENTS)
-    values = model.output[..., model.output_index(rows), :] @ motion
+    values = model.seen(model.output_index(rows), motion)
     unit = tuple((name,) * len(causes) for name in TWIST_UNITS)
     return Deflection(point, Matrix(values, rows, tuple(causes), unit), model.provenance)

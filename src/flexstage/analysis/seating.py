@@ -57,7 +57,7 @@ def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
     require_known(model, rows)
     load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     motion = displacement(model, load[..., None])
-    forces = np.real((model.output[..., model.output_index(rows), :] @ motion)[..., 0])
+    forces = np.real(model.seen(model.output_index(rows), motion)[..., 0])
     wrenches = forces.reshape(*forces.shape[:-1], len(links), 6)
     found: dict[str, Seating] = {}
     for index, (name, link) in enumerate(links.items()):

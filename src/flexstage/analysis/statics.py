@@ -84,7 +84,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     wrench = tuple(f"{load_point}.{name}" for name in FORCES)
     require_unmoved(model, wrench)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
-    values = model.output[..., model.output_index(read), :] @ displacement(model, force)
+    values = model.seen(model.output_index(read), displacement(model, force))
     inverse = _inverse(values)
     return Statics(
         load_point,

@@ -211,7 +211,7 @@ def _stress(
     names = tuple(f"{link}.{force}" for link in sized for force in FORCES)
     per = static_gain(model, names, inputs).values @ per_motion
     load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
-    dead = (model.output[..., model.output_index(names), :] @ displacement(model, load[..., None]))[..., 0]
+    dead = model.seen(model.output_index(names), displacement(model, load[..., None]))[..., 0]
     found = [_yielding(sized, dead, per[..., column]) for column in range(per.shape[-1])]
     yield _YIELD, np.stack(np.broadcast_arrays(*found), axis=-1)
 

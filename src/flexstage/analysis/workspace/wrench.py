@@ -43,4 +43,4 @@ def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, 
     """
     load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     motion = displacement(model, load[..., None])
-    return (model.output[..., model.output_index(outputs), :] @ motion)[..., 0]
+    return model.seen(model.output_index(outputs), motion)[..., 0]

@@ -128,6 +128,10 @@ class LinearModel:
         """M times a motion (..., n, k)."""
         return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
 
+    def seen(self, rows: list[int], motion: Array) -> Array:
+        """Outputs (..., p, k) of some rows for a motion (..., n, k). Rows of a large stage are taken after the product: they are long."""
+        return (self.output @ motion)[rows] if self.is_sparse else self.output[..., rows, :] @ motion
+
     @property
     def designs(self) -> tuple[int, ...]:
         """Shape of the batch axes of K."""

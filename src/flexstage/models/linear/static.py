@@ -34,7 +34,7 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
     require_still(model, outputs)
     require_unmoved(model, inputs)
     motion = displacement(model, model.input_matrix[..., columns])
-    values = model.output[..., rows, :] @ motion + model.feedthrough[..., rows, :][..., columns]
+    values = model.seen(rows, motion) + model.feedthrough[..., rows, :][..., columns]
     return label(model, values, outputs, inputs)
 
 
