@@ -12,6 +12,8 @@ _PRIOR = 0.5
 """Seconds for which the usual pace counts beside what was measured."""
 _TAIL = 0.1
 """Share of its usual time that a job is taken to need still when it has had all of it."""
+_MINUTES, _HOURS = 90.0, 2.0 * 3600.0
+"""From so many seconds on a time is told in minutes, in hours."""
 
 LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
 """Variable of the environment by which a program asks a command for lines, and the word that each of them begins with."""
@@ -34,6 +36,17 @@ class Step:
 
 Progress = Callable[[Step], None]
 """Told of every step, in the process and thread that called the computation; raising there stops it and cleans up."""
+
+
+def duration(seconds: float) -> str:
+    """A time that is known roughly, in words.
+
+    >>> duration(0.2), duration(40.0), duration(90.0), duration(9000.0)
+    ('1 s', '40 s', '2 minutes', '2.5 hours')
+    """
+    if seconds >= _HOURS:
+        return f"{seconds / 3600.0:.1f} hours"
+    return f"{seconds / 60.0:.0f} minutes" if seconds >= _MINUTES else f"{max(seconds, 1.0):.0f} s"
 
 
 def seconds_left(fraction: float, elapsed: float) -> float | None:

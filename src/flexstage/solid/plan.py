@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from flexstage.analysis.units import driven_units
 from flexstage.base.finding import DesignError
 from flexstage.base.memory import gigabytes
-from flexstage.base.progress import time_left
+from flexstage.base.progress import duration, time_left
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
@@ -67,11 +67,7 @@ class Plan:
         largest = max(self.phases, key=lambda phase: phase.memory)
         sizes = f"up to {largest.freedoms:,.0f} unknowns and {gigabytes(largest.memory)} each, " if largest.memory else ""
         known = f" {self.cached} are in the cache." if self.cached else ""
-        return f"to do: {work} ({sizes}{self.lanes} at once); usually {_duration(self.seconds)}.{known}{self.further}"
-
-
-def _duration(seconds: float) -> str:
-    return f"{seconds / 60.0:.0f} minutes" if seconds >= 90.0 else f"{seconds:.0f} s"
+        return f"to do: {work} ({sizes}{self.lanes} at once); usually {duration(self.seconds)}.{known}{self.further}"
 
 
 def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways) -> Plan:

@@ -13,6 +13,7 @@ from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.effects import effects
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings
@@ -45,7 +46,11 @@ def sweep(  # noqa: PLR0913 (its options)
     asked = load_study(study)
     with _resumable(output), progress_bar() as shown:
         results = run_sweep(
-            asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1))
+            asked,
+            output,
+            Run(workers, resume, scheduler),
+            lambda done, of: shown.share(f"{done} of {of} designs", done / max(of, 1)),
+            lambda cost: print_note(str(cost)),
         )
     found = Sweep(asked, results, effects(results, asked.plan))
     if report is not None:

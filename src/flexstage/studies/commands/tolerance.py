@@ -11,6 +11,7 @@ from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler, Study, Workers, Xlsx, output_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
+from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.run import Run
 from flexstage.studies.tolerances.file import load_tolerance
@@ -43,7 +44,11 @@ def tolerance(  # noqa: PLR0913 (its options)
     asked = load_tolerance(study)
     with progress_bar() as shown:
         found = run_tolerance(
-            asked, output, Run(workers, resume, scheduler), lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1))
+            asked,
+            output,
+            Run(workers, resume, scheduler),
+            lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1)),
+            lambda cost: print_note(str(cost)),
         )
     if report is not None:
         save(report, tolerance_report(found), "--report")

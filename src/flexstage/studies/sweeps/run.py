@@ -19,6 +19,7 @@ from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.jobs import cores
 from flexstage.base.number import Array
 from flexstage.base.threads import one_thread
+from flexstage.studies.sweeps.cost import Cost, sweep_cost
 from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.engine import engine_covers, engine_of
 from flexstage.studies.sweeps.evaluate import nominal
@@ -46,6 +47,8 @@ _LEAST = 5.0
 
 Progress = Callable[[int, int], None]
 """Told how many designs are there, and how many there will be."""
+Told = Callable[[Cost], None]
+"""Told what is to do before it begins, where anything is."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,9 @@ DEFAULT = Run()
 
 
 @one_thread
-def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
+def sweep(
+    study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None, told: Told | None = None
+) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
     Pieces (see `piece_size`) are written as they come and gathered into the file from time to time and at the end. Results do not depend
@@ -88,7 +93,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
         require_room(target, study)
         try:
             for count, _ in enumerate(
-                _gather_as_they_come(_pieces(study, ranges, folder, how), target, study, size), 1 + int(np.sum(done))
+                _gather_as_they_come(_pieces(study, ranges, folder, how, told), target, study, size), 1 + int(np.sum(done))
             ):
                 _report_progress(progress, study, size * count)
         except BaseException:
@@ -158,10 +163,12 @@ def _require_ready(target: Path, study: Study, how: Run) -> None:
         raise refuse("workers", f"found {how.workers}", "Give 1 or more")
 
 
-def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run) -> Iterator[int]:
+def _pieces(study: Study, ranges: list[tuple[int, int]], folder: Path, how: Run, told: Told | None) -> Iterator[int]:
     if not ranges:
         return iter(())
     engine = engine_of(study)
+    if told is not None:
+        told(sweep_cost(study, engine, ranges, how.workers or cores(), how.scheduler or ""))
     if how.scheduler is not None:
         from flexstage.studies.sweeps.cluster import compute_on_cluster
 

@@ -9,7 +9,7 @@ from typing import Annotated
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.store import temporary_folder
 from flexstage.studies.sweeps.result import StudyResult
-from flexstage.studies.sweeps.run import DEFAULT, Progress, Run, sweep
+from flexstage.studies.sweeps.run import DEFAULT, Progress, Run, Told, sweep
 from flexstage.studies.tolerances.allowance import Allowance, allowance
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.scatter import Scatter
@@ -82,7 +82,11 @@ class Toleranced(StudyResult):
 
 
 def tolerance(
-    study: Tolerance, path: str | os.PathLike[str] | None = None, how: Run = DEFAULT, progress: Progress | None = None
+    study: Tolerance,
+    path: str | os.PathLike[str] | None = None,
+    how: Run = DEFAULT,
+    progress: Progress | None = None,
+    told: Told | None = None,
 ) -> Toleranced:
     """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `sweep` keeps the designs of any study.
 
@@ -95,8 +99,8 @@ def tolerance(
     """
     if path is None:
         with temporary_folder() as place:
-            return tolerance(study, place / "copies.h5", how, progress)
-    results = sweep(study, path, how, progress)
+            return tolerance(study, place / "copies.h5", how, progress, told)
+    results = sweep(study, path, how, progress, told)
     found = slopes(study)
     said = summary(study, results, found)
     return Toleranced(study, results, found, said, allowance(study, results, found, said))
