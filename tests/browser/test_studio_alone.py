@@ -213,7 +213,7 @@ def test_the_report_that_was_asked_for_opens_over_the_page_and_reaches_nothing_o
     assert page.frame_locator("dialog iframe").locator("p").inner_text() == "a report"
     assert page.locator("dialog iframe").get_attribute("sandbox") == "allow-scripts allow-downloads allow-modals"
     page.get_by_role("button", name="close").click()
-    assert page.locator("dialog").count() == 0
+    until(page, lambda: page.locator("dialog").count() == 0)
     page.get_by_role("button", name="show the report").click()
     assert page.locator("dialog iframe").count() == 1
     page.keyboard.press("Escape")
