@@ -474,7 +474,7 @@ RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid} | {f"case-{name}": pa
 def standing_alone(svg: str) -> str:
     """An SVG that was made to stand inside a page, as a file of its own: with a name space and colours of its own."""
     svg = _OF_THE_PAGE.sub(r"\1", svg)
-    svg = svg.replace('style="max-width', f'style="background:{PAPER};max-width', 1)
+    svg = re.sub(r'style="(?:--width:[^;"]+;)?max-width', f'style="background:{PAPER};max-width', svg, count=1)
     return svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" font-family="DejaVu Sans, Verdana, sans-serif" ', 1)
 
 

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from flexstage.base.number import Array
 from flexstage.cases.double_triangle import SM_REF_A, double_triangle
+from flexstage.cases.registry import case
+from flexstage.mechanism.mechanism import GROUND
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind, Paint, extrude, loft, rectangle
 from flexstage.show.scene.hidden import are_visible
@@ -161,6 +163,19 @@ def test_every_link_body_and_gauge_is_seen(name: str) -> None:
     assert set(assembly.gauges) <= names
     assert {address for placed in assembly.bodies.values() for address in placed.solids} <= names
     assert {label.text for label in scene(mechanism).labels} == {*assembly.actuators, *assembly.gauges}
+
+
+@pytest.mark.parametrize("name", ["voice-coil-xy", "tip-tilt", "steering-mirror"])
+def test_links_stand_on_the_ground_where_they_begin(name: str) -> None:
+    from flexstage.mechanism.expand import expand
+
+    mechanism = case(name)
+    feet = {facet.paint.name: facet.points for facet in scene(mechanism).facets if facet.paint.name.endswith(" foot")}
+    on_ground = {name: link for name, link in expand(mechanism).links.items() if link.joins[0] == GROUND}
+    assert on_ground
+    for link_name, link in on_ground.items():
+        middle = feet[f"{link_name} foot"].mean(axis=0)
+        assert (middle - link.frame.position) @ link.frame.rotation[:, 0] <= 1e-12
 
 
 def test_massless_bodies_are_bars_between_their_joints() -> None:

@@ -153,40 +153,15 @@ def _joints(assembly: Assembly, ends: _Ends) -> dict[str, list[Array]]:
 
 
 def _ends(assembly: Assembly) -> _Ends:
-    """The ends of all links: those nearer to what else each body holds."""
-    held: dict[str, list[str]] = {}
-    for name, link in assembly.links.items():
-        for body in dict.fromkeys(link.joins):
-            held.setdefault(body, []).append(name)
-    places = {body: np.array([_first(assembly.links[name].frame.position) for name in names]) for body, names in held.items()}
-    ranks = {body: {name: rank for rank, name in enumerate(names)} for body, names in held.items()}
-    middles = {
-        (name, body): _middle(assembly, body, np.delete(places[body], ranks[body][name], axis=0))
-        for name, link in assembly.links.items()
-        for body in link.joins
-    }
-    return {name: _link_ends(link, middles[name, link.joins[0]], middles[name, link.joins[1]]) for name, link in assembly.links.items()}
+    """The ends of all links, by the convention that x goes from the first body to the second."""
+    return {name: _link_ends(link) for name, link in assembly.links.items()}
 
 
-def _link_ends(link: PlacedLink, here: Array | None, there: Array | None) -> tuple[Array, Array]:
-    """Where a link meets its first body, whose other links are `here`, and its second, whose others are `there`."""
+def _link_ends(link: PlacedLink) -> tuple[Array, Array]:
+    """Where a link meets its first body and its second."""
     frame = _frame(link.frame)
     half = 0.5 * part_length(link.part) * frame.rotation[:, 0]
-    if there is None and here is None:
-        forward = True
-    elif there is None or here is None:
-        known = there if there is not None else here
-        forward = bool((known - frame.position) @ half > 0.0) == (there is not None)
-    else:
-        forward = bool((there - here) @ half >= 0.0)
-    return (frame.position - half, frame.position + half) if forward else (frame.position + half, frame.position - half)
-
-
-def _middle(assembly: Assembly, body: str, others: Array) -> Array | None:
-    """Mean position of a body's other links, else its reference; None for the ground."""
-    if body == GROUND:
-        return None
-    return np.mean(others, axis=0) if len(others) else _first(assembly.bodies[body].reference)
+    return frame.position - half, frame.position + half
 
 
 def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
@@ -240,13 +215,12 @@ def _legs(points: Array, joints: list[Array], paint: Paint, size: float) -> Iter
 
 def _link(link: PlacedLink, first: Array, second: Array, size: float, steps: int) -> list[Facet]:
     frame = _frame(link.frame)
-    forward = bool((second - first) @ frame.rotation[:, 0] >= 0.0)
-    carriers = link.joins if forward else (link.joins[1], link.joins[0])
     kind, fineness = (Kind.DRIVE, 1) if is_actuator(link.part) else (Kind.HINGE, steps)
-    paint = Paint(kind, carriers, link.name)
+    paint = Paint(kind, link.joins, link.name)
     facets = _place_all(_drawn_part(link.part, _MARKER * size, fineness), frame, paint)
     if GROUND in link.joins:
-        facets += _foot(link, first if link.joins[0] == GROUND else second, _MARKER * size)
+        begins = link.joins[0] == GROUND
+        facets += _foot(link, first if begins else second, -1.0 if begins else 1.0, _MARKER * size)
     return facets
 
 
@@ -282,11 +256,10 @@ def _superelement(element: PlacedSuperelement, size: float) -> list[Facet]:
     ]
 
 
-def _foot(link: PlacedLink, end: Array, depth: float) -> list[Facet]:
-    """A block of ground behind the end of a link, somewhat larger than the link's section."""
+def _foot(link: PlacedLink, end: Array, outward: float, depth: float) -> list[Facet]:
+    """A block of ground behind the end of a link, outward along its x axis or against it, somewhat larger than the link's section."""
     frame = _frame(link.frame)
-    outward = (end - frame.position) @ frame.rotation[:, 0]
-    stations = (0.0, depth) if outward >= 0.0 else (-depth, 0.0)
+    stations = (0.0, depth) if outward > 0.0 else (-depth, 0.0)
     height, width = (max(1.15 * extent, 1.6 * depth) for extent in part_section(link.part))
     rings = extrude(np.array(stations), [rectangle(height, width)] * 2)
     return [_place(facet, Frame(frame.rotation, end)) for facet in loft(rings, Paint(Kind.GROUND, (GROUND, GROUND), f"{link.name} foot"))]
