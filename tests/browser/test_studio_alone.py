@@ -19,6 +19,7 @@ from flexstage.apps.studio.protocol import (
     Judgement,
     Problem,
     Refusal,
+    Scene,
     Snippet,
     Snippets,
     State,
@@ -26,6 +27,8 @@ from flexstage.apps.studio.protocol import (
     Welcome,
 )
 from flexstage.apps.studio.wire import encode
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.show.viewer.data import still_data
 from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
 
@@ -139,6 +142,15 @@ def test_the_first_message_is_the_token_which_leaves_the_address(page: Page, ser
     assert page.url == f"{HOST}/studio.html"
     assert "frequency.1" in page.inner_text("#verdicts")
     assert "+20 %" in page.inner_text("#verdicts")
+
+
+def test_what_is_not_drawn_as_it_is_is_said(page: Page, server: Server) -> None:
+    notes = ["drawn without holes: platform.block", "no drift: no material is stated"]
+    drawn = {**still_data(parallelogram()).document(), "notes": notes}
+    server.say(Scene(1, True, drawn))
+    until(page, lambda: page.inner_text("#told") == notes[0])
+    server.say(Scene(2, False, {"notes": []}))
+    until(page, lambda: not page.is_visible("#told"))
 
 
 def test_of_many_moves_the_server_gets_the_first_and_the_newest(page: Page, server: Server) -> None:

@@ -49,6 +49,7 @@ export class StageView {
     if (this.viewer === null) this.begin(data);
     else if (this.viewer.alive) this.viewer.replace(data);
     this.second?.replace(data);
+    if (this.viewer?.alive) fill(this.told, data.notes.filter((each) => each.startsWith("drawn ")).join("; "));
     this.offerUnits(data);
     this.ghost();
   }
@@ -56,7 +57,6 @@ export class StageView {
   private begin(data: StageData): void {
     const made = this.attempt(data);
     if (made === null || !made.alive) return this.without();
-    fill(this.told);
     this.studio.viewer.set(made);
     this.tools();
     made.onPick((picked) => this.picked(picked));
