@@ -205,6 +205,13 @@ def test_what_needs_dense_matrices_is_refused_with_the_size():
         _ = model.stiffness_matrix
 
 
+def test_a_factor_without_room_is_refused_with_its_size():
+    model = lumpeds.lumped(stage_of([*range(1, 80), -1], helix(80)[::-1]))
+    model.__dict__.pop("solver", None)
+    with patch("scipy.sparse.linalg.splu", side_effect=MemoryError), pytest.raises(DesignError, match=r"480 equations.*memory"):
+        model.solver.solve(np.ones((480, 1)))
+
+
 def test_what_all_links_feel_takes_no_dense_rows():
     count = 80
     stage = replace(stage_of([*range(1, count), -1], helix(count)[::-1]), gravity=(0.0, 0.0, -9.81))

@@ -29,6 +29,7 @@ from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
+from flexstage.models.linear.large import symmetric_factor
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.spatial.frame import COMPONENTS
 
@@ -193,7 +194,7 @@ def _least_deformed(graph: _Graph, wanted: Array, idle: Any, strained: Any) -> A
         return wanted
     weights = scipy.sparse.diags_array(np.tile(_weights(graph.length), len(graph.assembly.links)))
     spun, before = weights @ strained, weights @ (graph.strain @ wanted)
-    return wanted - idle @ scipy.sparse.linalg.splu((spun.T @ spun).tocsc()).solve(spun.T @ before)
+    return wanted - idle @ symmetric_factor((spun.T @ spun).tocsc()).solve(spun.T @ before)
 
 
 def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:

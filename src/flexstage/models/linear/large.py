@@ -7,7 +7,8 @@ one another, whose equations know rigid motions exactly (the augmented system of
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast
@@ -30,6 +31,22 @@ _RATIO = 1e-10
 _MASSLESS = 1e-13
 _LEAST = 32
 """Modes computed of a large stage; those of the last cluster, which may go on, are left out."""
+
+
+@contextmanager
+def _fits(matrix: Any) -> Generator[None]:
+    """Refuses a factor for which there is no memory."""
+    try:
+        yield
+    except MemoryError as error:
+        what = f"the factor of its {matrix.shape[0]:,} equations, with {matrix.nnz:,} coefficients, does not fit into memory"
+        raise refuse("stage", what, "Read parts of the stage, or free memory") from error
+
+
+def symmetric_factor(matrix: Any) -> Any:
+    """The factor of a symmetric sparse matrix, in the order of least degree. Raises `DesignError` where it does not fit into memory."""
+    with _fits(matrix):
+        return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +88,7 @@ class Solver:
     def _factor(self) -> Any:
         over = scipy.sparse.diags_array(1.0 / self.scale)
         scaled = (over @ self.stiffness.matrix @ over).tocsc()
-        return scipy.sparse.linalg.splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        return symmetric_factor(scaled)
 
     @cached_property
     def _augmented(self) -> tuple[Any, Any, Any]:
@@ -82,7 +99,8 @@ class Solver:
         rows = scipy.sparse.diags_array(root) @ self.stiffness.rows @ scipy.sparse.diags_array(1.0 / self.scale)
         pull = rows.T @ (scipy.sparse.diags_array(1.0 / root) @ law @ scipy.sparse.diags_array(1.0 / root))
         whole = scipy.sparse.block_array([[scipy.sparse.eye_array(rows.shape[0]), -rows], [pull, None]], format="csc")
-        return scipy.sparse.linalg.splu(whole), rows, pull
+        with _fits(whole):
+            return scipy.sparse.linalg.splu(whole), rows, pull
 
     def definite(self) -> bool:
         """Whether K is positive definite, told from its pivots: none is small beside its diagonal."""
