@@ -55,7 +55,8 @@ def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
         Fact("kind", found.kind.value, "the load cannot pass it" if found.kind.value == "limit" else "it leaves into another motion"),
         *([Fact("by itself", found.link, "a flexure, its ends at rest")] if found.link else []),
     ]
-    shape = Matrix(found.shape, found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
+    largest = np.max(np.abs(found.shape), initial=0.0) or 1.0  # as the terminal tells it
+    shape = Matrix(found.shape / largest, found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
     sections = (
         stage_section(seen, motion="state buckling", said="The shape has no size of its own: it is drawn as large as the slider says."),
         section("What gives way", [Facts(tuple(facts)), matrix_table("Shape", shape)]),
