@@ -37,7 +37,7 @@ export class VerdictTable {
     return h(
       "tr",
       { className: each.value === null ? "unknown" : each.passed ? "good" : "poor", title, click: () => this.studio.goto(each.line, false) },
-      h("th", { scope: "row" }, h("b", { ariaLabel: each.passed ? "met" : "not met" }, each.value === null ? "?" : each.passed ? "✓" : "✗"), ` ${each.key}`),
+      h("th", { scope: "row" }, h("b", { ariaLabel: each.passed ? "met" : "not met" }, each.value === null ? "?" : each.passed ? "✓" : "✗"), "\u00a0", ...named(each.key)),
       ...(each.value === null ? [h("td", { className: "reason", colSpan: 3 }, `${short(each)}: ${each.reason || "not known"}`)] : this.cells(each)),
     );
   }
@@ -48,6 +48,11 @@ export class VerdictTable {
     const margin = each.margin === null ? "" : percent(each.margin) || "0 %";
     return [h("td", { className: "number" }, shown(each.value, each)), h("td", { className: "quiet limit" }, short(each)), h("td", { className: "number" }, bar, margin)];
   }
+}
+
+/** A key that may break into lines at its dots. */
+function named(key: string): (string | HTMLElement)[] {
+  return key.split(".").flatMap((word, place) => (place ? [".", h("wbr", {}), word] : [word]));
 }
 
 function short(each: Judgement): string {

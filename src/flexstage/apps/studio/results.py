@@ -49,7 +49,7 @@ from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import part_deformation
-from flexstage.show.display import field_unit, preferred_unit
+from flexstage.show.display import display_unit_of, field_unit, preferred_unit
 
 if TYPE_CHECKING:
     from flexstage.show.viewer.data import StageData
@@ -252,9 +252,10 @@ def _with_old(found: Iterable[KeyFigure], kind: str, stored: str, text: str, fil
     rows = tuple(found)
     old = {each.name: each.value for each in (rows if stored == text else _stored_figures(kind, stored, file))}
     for each in rows:
-        form = preferred_unit(each.unit)
+        stood = old.get(each.name)
+        form = display_unit_of(each.unit, abs(stood or each.value or 0.0))
         shown = "" if form.unit == "1" else form.unit
-        yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, old.get(each.name))
+        yield Figure(each.name, each.name.partition(".")[0], each.unit, shown, 1.0 / form.factor, each.value, stood)
 
 
 @lru_cache(maxsize=4)
@@ -285,7 +286,8 @@ def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
 
 def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judgement:
     asked = verdict.requirement
-    form = field_unit(asked.quantity)
+    fitting = display_unit_of(asked.quantity.si, abs(asked.limit))
+    form = fitting if preferred_unit(asked.quantity.si).factor != 1.0 else field_unit(asked.quantity)
     value = _single(verdict.value)
     return Judgement(
         asked.key,
