@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -409,3 +410,92 @@ def test_a_file_damaged_anywhere_is_refused_or_read(form: str, kind: type, tmp_p
                 found = read(path, options)
                 if isinstance(found, Record):
                     examine(found)
+
+
+# --- objects of MATLAB ---
+
+
+def _element(kind: int, content: bytes) -> bytes:
+    return struct.pack("<II", kind, len(content)) + content + b"\x00" * (-len(content) % 8)
+
+
+def _with_object(path: Path, name: str, kind: str) -> Path:
+    """A MAT file of version 5 with the array `gain` and an object of a class, as MATLAB stores one (class 17)."""
+    scipy.io.savemat(path, {"gain": 2.0})
+    head = _element(6, struct.pack("<II", 13, 0)) + _element(5, struct.pack("<ii", 1, 1)) + _element(1, b"")
+    numbers = _element(14, head + _element(6, b"\x00\x00\x00\xdd"))
+    texts = b"".join(_element(1, text.encode()) for text in (name, "MCOS", kind))
+    with path.open("ab") as stream:
+        stream.write(_element(14, _element(6, struct.pack("<II", 17, 0)) + texts + numbers))
+    return path
+
+
+@pytest.mark.parametrize("kind", ["timeseries", "idfrd", "my.Class"])
+def test_objects_of_classes_are_named_with_what_to_save(kind: str, tmp_path: Path) -> None:
+    told = refusal(_with_object(tmp_path / "a.mat", "log", kind))
+    assert f'a.mat: log: it is an object of class "{kind}"' in told
+    expected = {"timeseries": "samples = log.Data", "idfrd": "log.ResponseData", "my.Class": "log's numbers"}
+    assert expected[kind] in told
+    assert "class" in refusal(_with_object(tmp_path / "a.mat", "log", kind), Options(arrays=Arrays(samples=("log",))))
+
+
+def test_objects_in_files_of_version_73_are_named_too(tmp_path: Path) -> None:
+    path = write_version_73(tmp_path / "a.mat", {"gain": np.ones((1, 1))})
+    with h5py.File(path, "r+") as file:
+        file["log"] = np.zeros(6, dtype=np.uint32)
+        file["log"].attrs["MATLAB_class"], file["log"].attrs["MATLAB_object_decode"] = np.bytes_("timetable"), 3
+    assert "seconds(log.Properties.RowTimes)" in refusal(path)
+
+
+# --- GCS arrays ---
+
+GCS = """# REM C-867
+#
+# VERSION = 1
+# TYPE = 1
+# SEPARATOR = {separator}
+# DIM = 2
+# SAMPLE_TIME = 0.000200
+# NDATA = 3
+#
+# NAME0 = Target Position of Axis AXIS:1
+# NAME1 = Actual Position of Axis AXIS:1
+#
+# END_HEADER
+"""
+ROWS = ((5.0, 4.9), (5.5, 5.25), (-6.0e-3, 5.875))
+
+
+def gcs(path: Path, separator: int = 32, end: str = " \n", change: tuple[str, str] = ("", "")) -> Path:
+    lines = (chr(separator).join(f"{value:.6e}" for value in row) + end for row in ROWS)
+    path.write_text(GCS.format(separator=separator).replace(*change) + "".join(lines), newline="")
+    return path
+
+
+@pytest.mark.parametrize("separator", [32, 9, 44])
+@pytest.mark.parametrize("end", ["\n", " \n", " \r\n"])
+def test_gcs_arrays_are_read_as_their_header_says(separator: int, end: str, tmp_path: Path) -> None:
+    found = read(gcs(tmp_path / "rec.dat", separator, end))
+    assert isinstance(found, Record)
+    assert (found.rate, found.name) == (5000.0, "C-867")
+    assert [each.name for each in found.inputs] == ["Target Position of Axis AXIS:1"]
+    assert [each.name for each in found.outputs] == ["Actual Position of Axis AXIS:1"]
+    np.testing.assert_array_equal(found.values, ROWS)
+    assert Allow.UNITS in [fault.kind for fault in examine(found).faults]  # the header states none: they are the user's to say
+
+
+def test_bad_gcs_arrays_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "rec.dat"
+    for change, told in {
+        ("NDATA = 3", "NDATA = 4"): "it has 3 of 4 samples",
+        ("NDATA = 3", "NDATA = 2"): "it has 3 lines of numbers, its header says 2",
+        ("DIM = 2", "DIM = two"): 'DIM: its header says "two"',
+        ("DIM = 2", "DIM = 1"): "names NAME1, its DIM is 1",
+        ("# SAMPLE_TIME = 0.000200", "#"): "SAMPLE_TIME: its header does not say it",
+        ("SEPARATOR = 32", "SEPARATOR = 7"): "the code of no sign",
+    }.items():
+        assert told in refusal(gcs(path, change=change)), change
+    assert len(kept(gcs(path, change=("NDATA = 3", "NDATA = 4")), allowing(Allow.TRUNCATED))) == 2
+    assert read(gcs(path, change=("# SAMPLE_TIME = 0.000200", "#")), Options(rate=10.0)).rate == 10.0  # type: ignore[union-attr]
+    twice = GCS.format(separator=32) + "1 2\n3 4\n"
+    assert "line 17: it has" in refusal(gcs(path, change=("# REM C-867", twice)))

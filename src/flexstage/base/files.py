@@ -121,8 +121,15 @@ def hdf(path: Path) -> Hdf:
     return Hdf(path, *_ask(_Question("look", path), path.stat().st_size))
 
 
-def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...]]]:
-    """Arrays and texts of a MAT file of version 4 or 5, those of structures by their paths (`test.u`). Raises `DesignError`.
+@dataclass(frozen=True)
+class Opaque:
+    """An object of a class in a MAT file: only MATLAB knows what is in it."""
+
+    kind: str
+
+
+def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+    """Arrays, texts and objects of a MAT file of version 4 or 5, those of structures by their paths (`test.u`). Raises `DesignError`.
 
     >>> import scipy.io, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -394,25 +401,34 @@ def _some_texts(question: _Question) -> list[str]:
     return _texts(values[question.column] if question.column else values)
 
 
-def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...]]]:
+def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
     content = scipy.io.loadmat(question.path, appendmat=False)
     flat = [each for name, value in content.items() if not name.startswith("__") for each in _flatten(name, value)]
-    return [(name, tuple(value) if isinstance(value, list) else _numbers(value)) for name, value in flat]
+    return [(name, value if isinstance(value, (tuple, Opaque)) else _numbers(value)) for name, value in flat]
+
+
+def _opaque(name: str, value: Any) -> tuple[str, Opaque]:
+    """An object by its name, which stands within it where it is a variable of its own, and its class."""
+    inner, _, kind = (bytes(value.ravel()[0][key]).decode("latin-1") if key in value.dtype.names else "" for key in ("s0", "s1", "s2"))
+    return inner if name == "None" and inner else name, Opaque(kind)
 
 
 def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays, texts and lists of texts, those of a structure by their paths; sparse arrays in full; nothing of what else there is."""
+    """Arrays, texts, lists of texts and objects, by their paths in structures; sparse arrays in full; nothing of what else there is."""
     sparse = scipy.sparse.issparse(value) and max(value.shape) <= _FULL
     array = value.toarray() if sparse else np.asarray(value)
-    if array.dtype.kind == "U":
-        yield name, [text.rstrip() for text in array.ravel().tolist()] or [""]
+    if isinstance(value, scipy.io.matlab.MatlabOpaque):
+        yield _opaque(name, value)
+    elif array.dtype.kind == "U":
+        yield name, tuple(text.rstrip() for text in array.ravel().tolist()) or ("",)
     elif array.dtype.names and array.size == 1:
         for key in array.dtype.names:
             yield from _flatten(f"{name}.{key}", array.ravel()[0][key])
     elif array.dtype.kind == "O":
+        yield from (_opaque(name, each) for each in array.ravel()[:1] if isinstance(each, scipy.io.matlab.MatlabOpaque))
         members = [np.asarray(each) for each in array.ravel()]
         if members and all(each.dtype.kind == "U" for each in members):
-            yield name, [str(each.ravel()[0]).rstrip() if each.size else "" for each in members]
+            yield name, tuple(str(each.ravel()[0]).rstrip() if each.size else "" for each in members)
     elif array.dtype.kind in "fiubc":
         yield name, array
 

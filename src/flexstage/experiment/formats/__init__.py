@@ -2,6 +2,7 @@
 
 from flexstage.base.register import Register
 from flexstage.experiment.formats.format import Format
+from flexstage.experiment.formats.gcs import GCS
 from flexstage.experiment.formats.hdf import HDF5
 from flexstage.experiment.formats.mat import MAT
 from flexstage.experiment.formats.table import CSV
@@ -14,6 +15,7 @@ FORMATS: Register[Format] = Register(
         "uff-ascii": UFF_ASCII,
         "mat": MAT,
         "hdf5": HDF5,
+        "gcs": GCS,
         "csv": CSV,
     },
 )

@@ -26,6 +26,20 @@ RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """What files written here say of themselves."""
 _BLOCK = 262_144
 _LISTED = 24
+_TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
+_SAVED = {
+    "timeseries": "time = {0}.Time; samples = {0}.Data",
+    "timetable": _TIMED,
+    "table": "samples = {0}.Variables; names = {0}.Properties.VariableNames",
+    "iddata": "samples = [{0}.InputData {0}.OutputData]; step = {0}.Ts",
+    "idfrd": "frequencies = {0}.Frequency (in Hz); responses = permute({0}.ResponseData, [3 1 2])",
+    "frd": "frequencies = {0}.Frequency (in Hz); responses = permute({0}.ResponseData, [3 1 2])",
+    "string": "names = cellstr({0})",
+    "datetime": "time = seconds({0} - {0}(1))",
+    "duration": "time = seconds({0})",
+    "Simulink.SimulationData.Dataset": "time = {0}{{1}}.Values.Time; samples = {0}{{1}}.Values.Data",
+}
+_PLAIN = "{0}'s numbers, time [s] and samples (one column a channel)"
 
 
 class Variable(Protocol):
@@ -90,11 +104,15 @@ class HeldArray:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a file holds: arrays, and what it says in texts, lists of texts and numbers by name; `where` names it."""
+    """What a file holds: arrays, and what it says in texts, lists of texts and numbers by name; `where` names it.
+
+    `objects` are those that only the program that wrote them can read, by name, each with its class.
+    """
 
     where: str
     variables: tuple[Variable, ...]
     said: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
+    objects: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def find(self, names: tuple[str, ...]) -> tuple[Variable, ...]:
         """The arrays that have one of the names or fit one of the patterns, in the order of these."""
@@ -179,11 +197,24 @@ def read_arrays(contents: Contents, options: Options) -> tuple[Record | Response
 def _unknown_names(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
     known = [*(each.name for each in contents.variables), *contents.said]
     for meaning, name in arrays.stated():
-        if not any(matches(each, [name]) for each in known):
+        if any(matches(each, [name]) for each in known):
+            continue
+        held = next((each for each in contents.objects if matches(each, [name])), None)
+        if held is None:
             yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", suggest_nearest(name, known))
+        else:
+            yield _object_finding(contents, held)
+
+
+def _object_finding(contents: Contents, name: str) -> Finding:
+    kind = contents.objects[name]
+    what = f'it is an object of class "{kind}", which only MATLAB can read'
+    return Finding(f"{contents.where}: {name}", what, f"Save what is in it as plain arrays: {_SAVED.get(kind, _PLAIN).format(name)}")
 
 
 def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
+    if contents.objects:
+        return DesignError([_object_finding(contents, name) for name in contents.objects])
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
         'Say which is what (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '

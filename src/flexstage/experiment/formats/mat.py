@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from flexstage.base.files import Hdf, HdfArray, hdf, mat
+from flexstage.base.files import Hdf, HdfArray, Opaque, hdf, mat
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
@@ -38,6 +38,7 @@ def is_mat(start: bytes, suffix: str) -> bool:
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """What a MAT file holds, by the names of its arrays; those of structures by their paths (`test.u`), lists of texts are cells.
 
+    Objects of classes (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: they are named with what to save instead.
     Arrays of version 7.3 stay in the file, others are read at once. Raises `DesignError` where the file is none or breaks off, and as
     `read_arrays` does.
 
@@ -53,22 +54,26 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
         start = stream.read(_HEAD + 8)
     found = list(_version_73(path) if start.startswith(b"MATLAB 7.3") or is_hdf(start[_HEAD:], "") else _version_5(path))
     said = {name: value for name, value in found if isinstance(value, tuple)}
-    return read_arrays(Contents(str(path), tuple(value for _, value in found if not isinstance(value, tuple)), said), options)
+    objects = {name: value.kind for name, value in found if isinstance(value, Opaque)}
+    arrays = tuple(value for _, value in found if not isinstance(value, (tuple, Opaque)))
+    return read_arrays(Contents(str(path), arrays, said, objects), options)
 
 
-def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
+def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
     for name, value in mat(path):
-        yield name, value if isinstance(value, tuple) else HeldArray(name, value)
+        yield name, value if isinstance(value, (tuple, Opaque)) else HeldArray(name, value)
 
 
-def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...]]]:
+def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
     """Arrays and texts as MATLAB stores them in HDF5: axes in the opposite order, texts as numbers, cells as references."""
     file = hdf(path)
     for array in file.arrays.values():
         name = array.name.replace("/", ".")
         if array.name.startswith(_REFERENCES):
             continue
-        if array.kind == "r":
+        if "MATLAB_object_decode" in array.attributes:
+            yield name, Opaque(str(array.attributes.get("MATLAB_class", "")))
+        elif array.kind == "r":
             yield name, tuple(" ".join(_characters(file, file.arrays[each])) for each in array.references if each in file.arrays)
         elif array.attributes.get("MATLAB_class") == "char":
             yield name, _characters(file, array)

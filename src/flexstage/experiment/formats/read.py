@@ -27,7 +27,7 @@ _OTHERS = {
 
 
 def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | Responses:
-    """Read a file of a test: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, or a form that another package offers.
+    """Read a file of a test: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a form that another package offers.
 
     Which it is its content says. Samples stay in the file where its form allows (binary and regular ASCII UFF, MAT v7.3, HDF5, CSV) and are
     read in blocks as they are needed. Units and numbers are those of the file. Raises `DesignError` with all that keeps the file from being

@@ -1,0 +1,131 @@
+"""GCS arrays, the files of data recorders of controllers by Physik Instrumente: ASCII under a header of `# ` lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.experiment.formats.format import Format
+from flexstage.experiment.formats.table.layout import Layout
+from flexstage.experiment.formats.table.values import TableSamples, index_lines
+from flexstage.experiment.options import Allow, Options, assign, number_names, select_names
+from flexstage.experiment.record import Channel, Record, Role
+
+_HEAD = 1 << 18
+_ENTRY = re.compile(r"#\s*(?P<key>[A-Z_]+\d*)\s*=\s*(?P<value>.*?)\s*")
+_MARKS = (b"END_HEADER", b"NDATA", b"SAMPLE_TIME", b"SEPARATOR")
+_SEPARATORS = {32: None, 9: "\t", 44: ",", 59: ";"}
+_DRIVEN = ("commanded", "target", "control ", "open-loop", "voltage of output", "output voltage", "ddl output", "motor output")
+_SEEN = ("actual position", "current position", "real position", "position of", "sensor")
+
+
+def is_gcs(start: bytes, _suffix: str) -> bool:
+    r"""Whether a file begins as GCS arrays do: with comments that state dimension and sampling.
+
+    >>> is_gcs(b"# VERSION = 1 \n# SEPARATOR = 32 \n# DIM = 2 \n# SAMPLE_TIME = 0.0002 \n", ".dat"), is_gcs(b"# time, u1\n", ".dat")
+    (True, False)
+    """
+    return start.lstrip().startswith(b"#") and re.search(rb"#\s*DIM\s*=", start) is not None and any(mark in start for mark in _MARKS)
+
+
+def read_gcs(path: Path, options: Options) -> tuple[Record, ...]:
+    r"""The record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
+
+    The header (`# KEY = value` up to `# END_HEADER`) is that of the general command set, as the maker's library reads it (PIPython,
+    `getgcsheader`): SEPARATOR is the code of the sign between columns, DIM their number, NDATA that of the lines. It states no units:
+    they are those of the axes, and the user's to say. Commanded and control values are inputs, positions and sensors outputs, others are
+    told by their names. Raises `DesignError` for a header without times (if no rate is stated), one that does not fit its columns, and a
+    file that breaks off (what it holds is used where `Allow.TRUNCATED`).
+
+    >>> import tempfile
+    >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "a.dat").write_text(head + "# NAME1 = Actual Position of axis 1\n# END_HEADER\n1.0 2.0 \n3.0 4.0 \n")
+    ...     (found,) = read_gcs(Path(folder) / "a.dat", Options())
+    ...     found.rate, [channel.name for channel in found.outputs], found.values.tolist()
+    (2.0, ['Actual Position of axis 1'], [[1.0, 2.0], [3.0, 4.0]])
+    """
+    lines, start = _header(path)
+    said = {found["key"]: found["value"] for line in lines if (found := _ENTRY.fullmatch(line.strip()))}
+    width = _whole(path, said, "DIM")
+    names = number_names(said.get(f"NAME{number}") or f"column {number + 1}" for number in range(width))
+    require(_column_findings(path, said, width))
+    layout = Layout(names, ("",) * width, _separator(path, said), ".", start, len(lines) + 1, "latin-1", ())
+    samples = _samples(path, said, layout, options)
+    channels = assign([Channel(name, "", _role(name)) for name in names], options, str(path))
+    record = Record(channels, options.rate or _rate(path, said), samples, name=_remark(lines), source=str(path))
+    return (record.select(select_names(record.names, options)) if options.only else record,)
+
+
+def _header(path: Path) -> tuple[list[str], int]:
+    """The lines of the header, and the byte where numbers begin."""
+    with path.open("rb") as stream:
+        raw = stream.read(_HEAD).splitlines(keepends=True)
+    count = next((number for number, line in enumerate(raw) if line.strip() and not line.lstrip().startswith(b"#")), len(raw))
+    ended = next((number + 1 for number, line in enumerate(raw[:count]) if b"END_HEADER" in line), count)
+    return [line.decode("latin-1").strip() for line in raw[:ended]], sum(map(len, raw[:ended]))
+
+
+def _whole(path: Path, said: Mapping[str, str], key: str) -> int:
+    text = said.get(key, "")
+    if text.isdecimal() and 0 < int(text) < 10**9:
+        return int(text)
+    raise refuse(f"{path}: {key}", f'its header says "{text}", where a number of 1 or more is expected', "Save the recorder's answer anew")
+
+
+def _separator(path: Path, said: Mapping[str, str]) -> str | None:
+    text = said.get("SEPARATOR", "32")
+    if text.isdecimal() and int(text) in _SEPARATORS:
+        return _SEPARATORS[int(text)]
+    known = ", ".join(map(str, _SEPARATORS))
+    raise refuse(f"{path}: SEPARATOR", f'its header says "{text}", the code of no sign that is known ({known})', "Save it with blanks (32)")
+
+
+def _column_findings(path: Path, said: Mapping[str, str], width: int) -> Iterator[Finding]:
+    beyond = [key for key in said if re.fullmatch(r"NAME\d+", key) and int(key[4:]) >= width]
+    if beyond:
+        yield Finding(str(path), f"its header names {', '.join(beyond)}, its DIM is {width}", "Save the recorder's answer anew")
+
+
+def _rate(path: Path, said: Mapping[str, str]) -> float:
+    text = said.get("SAMPLE_TIME", "")
+    try:
+        step = float(text)
+    except ValueError:
+        step = 0.0
+    if 0.0 < step < float("inf"):
+        return 1.0 / step
+    found = f'its header says "{text}"' if text else "its header does not say it"
+    raise refuse(f"{path}: SAMPLE_TIME", f"{found}, where the time between lines is expected", "State the rate (rate)")
+
+
+def _samples(path: Path, said: Mapping[str, str], layout: Layout, options: Options) -> TableSamples:
+    """All columns; a file with fewer lines than it says is used where allowed, without its last."""
+    lines = index_lines(path, layout.start)
+    wanted = _whole(path, said, "NDATA") if "NDATA" in said else lines.count
+    whole = TableSamples(path, layout, lines, tuple(range(len(layout.names))), lines.count)
+    if lines.count == wanted > 0:
+        return whole
+    if lines.count > wanted:
+        where, what = f"{path}: line {layout.line + wanted}", f"it has {lines.count} lines of numbers, its header says {wanted}"
+        raise refuse(where, what, "Save one answer of the recorder a file")
+    if Allow.TRUNCATED in options.allow and lines.count > 1:
+        return TableSamples(path, layout, lines, whole.columns, lines.count - 1)
+    advice = f'Save it anew, or allow "truncated" to use the {max(0, lines.count - 1)} samples before'
+    raise refuse(str(path), f"it breaks off: it has {lines.count} of {wanted} samples", advice)
+
+
+def _role(name: str) -> Role:
+    """What a recorded quantity is by the words that controllers call it by."""
+    plain = name.lower()
+    return Role.INPUT if plain.startswith(_DRIVEN) else Role.OUTPUT if plain.startswith(_SEEN) else Role.UNKNOWN
+
+
+def _remark(lines: list[str]) -> str:
+    return next((line.partition("REM")[2].strip() for line in lines if re.match(r"#\s*REM\b", line)), "")
+
+
+GCS = Format((".dat",), is_gcs, read_gcs)
+"""GCS array of a data recorder; only read."""
