@@ -43,7 +43,7 @@ LONG = ("verify", "solid", "calibrate", "identify", "compare", "loop", "buckle",
 EXAMPLES = [
     pytest.param(each.example, marks=pytest.mark.full if each.name in LONG else ())
     for each in COMMANDS
-    if each.name not in ("doctor", "studio")
+    if each.name not in ("doctor", "studio", "serve")
 ]
 
 STUDY = """

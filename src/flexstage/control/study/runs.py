@@ -118,7 +118,7 @@ def runs(
     asked = courses(given.setup.trajectory, loop)
     rest = rest_time(closed, ringing=Compensation.REFERENCE in given.setup.compensate)
     sampled = [sampled_course(each, loop, given.step, given.setup.seconds or _simulated_time(each, rest)) for each in asked]
-    known, units = _ends(given), tuple(each.unit for each in loop.commands())
+    known, units = command_ends(given), tuple(each.unit for each in loop.commands())
     gains = Matrix(control.gains, loop.actuators, loop.names, ratio_units(units, loop.units))
     taken = np.zeros(len(known.actuators)) if offset is None else offset
     limits = StrokeLimits(known.actuators, known.low - taken, known.high - taken)
@@ -135,7 +135,7 @@ def runs(
     )
 
 
-def _ends(given: ResolvedSetup) -> StrokeLimits:
+def command_ends(given: ResolvedSetup) -> StrokeLimits:
     """Strokes around the bias, or the inputs of force actuators."""
     if not given.kinematics.thrusts:
         return stroke_limits(given.mechanism)

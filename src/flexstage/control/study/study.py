@@ -119,7 +119,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: S
     said = _Steps(tell)
     given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there))
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
-    control = said.of(0.05, "tuning", lambda: make_controller(given, _gains(given, lost)))
+    control = said.of(0.05, "tuning", lambda: make_controller(given, pose_gains(given, lost)))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
@@ -179,7 +179,7 @@ class _Steps:
         return action()
 
 
-def _gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
+def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
     """Strokes (n, f) by which poses are commanded; the inputs of forces are those of the elastic model, and lose nothing."""
     if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))

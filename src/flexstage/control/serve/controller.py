@@ -1,0 +1,227 @@
+"""The controller that runs a stage's loop: targets, velocities, wave generators, recorder; no words of any protocol."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.lost_motion import lost_motion
+from flexstage.base.number import Array
+from flexstage.control.closed import loop
+from flexstage.control.serve.errors import Code, CommandError
+from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
+from flexstage.control.serve.running import RunningLoop
+from flexstage.control.simulation.noise import noise_series
+from flexstage.control.stability import require_stable
+from flexstage.control.study.control import make_controller
+from flexstage.control.study.resolve import resolve
+from flexstage.control.study.runs import command_ends, driven_machine, rest_time
+from flexstage.control.study.setup import LoopSetup
+from flexstage.control.study.stacks import stacks_of
+from flexstage.control.study.study import pose_gains
+from flexstage.mechanism.mechanism import Mechanism
+
+_MICRO = 1e6
+_NOISE = 65_536
+_CROSSING = 10.0
+"""Times a second that an axis crosses its travel at the velocity it begins with."""
+_TOLERANCE, _WINDOW = 1e-4, 0.01
+"""On target: within this share of the travel, or two steps of the gauges, for so long [s]."""
+_LARGEST = 1e300
+_UNLIMITED = 1e-3
+"""Travel [m, rad] of an axis whose actuators state no end."""
+
+
+@dataclass
+class Generator:
+    """A wave generator: its `table` (0: none), `cycles` (0: no end), samples to a point, offset, and where it is."""
+
+    table: int = 0
+    cycles: int = 0
+    rate: int = 1
+    is_straight: bool = False
+    offset: float = 0.0
+    at: int | None = None
+
+
+class StageController:
+    """A stage under its loop, in micrometres and microradians; `advance` runs it on.
+
+    Raises `DesignError` as `resolve` and `make_controller` do, and for a loop that is unstable.
+    """
+
+    def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:
+        given = resolve(mechanism, setup or LoopSetup())
+        gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
+        control = make_controller(given, gains)
+        closed = loop(given.plant, control.system)
+        require_stable(closed, "a loop that runs")
+        stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
+        self.name = mechanism.name or "stage"
+        self.running = RunningLoop(driven_machine(given, control, stacks), noise_series(given.plant, given.floor, _NOISE, given.setup.seed))
+        machine = self.running.machine
+        self.axes = tuple(name.replace(".", "_")[:16] for name in machine.names)
+        self.units = tuple("um" if each.unit == "m" else "urad" for each in machine.coordinates)
+        self.step = machine.step
+        ends, reach = command_ends(given), np.where(machine.reach < _LARGEST, machine.reach, np.inf)
+        self._gains = np.vstack([gains, np.linalg.pinv(machine.pose)])
+        self._ends = np.concatenate([ends.low, -reach]), np.concatenate([ends.high, reach])
+        self.low, self.high = _travel(self._gains, *self._ends)
+        self.tolerance = np.maximum(_TOLERANCE * (self.high - self.low), 2.0 * _MICRO * np.abs(machine.pose) @ machine.resolution)
+        count = len(self.axes)
+        self.velocity = _CROSSING * (self.high - self.low)
+        self.is_ramped = np.ones(count, dtype=bool)
+        self.held = np.zeros(count, dtype=bool)
+        self.target, self._wanted, self.position = (np.zeros(count) for _ in range(3))
+        self.tables: dict[int, Array] = {}
+        self.generators = [Generator() for _ in range(count)]
+        self.recorder = Recorder([table % count for table in range(TABLES)], [POSITION if table < count else 0 for table in range(TABLES)])
+        self._off_target = np.zeros(count, dtype=int)
+        self.volts = np.zeros(len(machine.actuators))
+        self.readings = np.zeros(len(machine.gauges))
+        self.is_lost = False
+        """Whether numbers grew beyond bounds since this was last asked of."""
+        self.advance(int(rest_time(closed) / self.step))
+
+    @property
+    def seconds(self) -> float:
+        """Time [s] of the stage."""
+        return self.running.count * self.step
+
+    @property
+    def moving(self) -> Array:
+        """Which axes (f,) are on their way: their commanded motion has not ended."""
+        return np.array([each.at is not None for each in self.generators]) | (self.held & (self._wanted != self.target))
+
+    @property
+    def on_target(self) -> Array:
+        """Which axes (f,) have stayed within `tolerance` of their target for a hundredth of a second."""
+        return self.held & ~self.moving & (self._off_target * self.step >= _WINDOW)
+
+    # --- what is asked of it ---
+
+    def hold(self, axis: int, *, on: bool) -> None:
+        """Switch an axis' servo on, to stay where it is, or off."""
+        if on and not self.held[axis]:
+            self.target[axis] = self._wanted[axis] = self.position[axis]
+        if not on:
+            self.generators[axis].at = None
+        self.held[axis] = on
+
+    def move(self, targets: dict[int, float]) -> None:
+        """Go to these targets [um, urad], all or none."""
+        if any(self.generators[axis].at is not None for axis in targets):
+            raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
+        if not all(self.held[axis] for axis in targets):
+            raise CommandError(Code.SERVO_OFF)
+        wanted = self.target.copy()
+        for axis, value in targets.items():
+            wanted[axis] = value
+        self._require_reach(wanted)
+        self.target = wanted
+
+    def jump(self, axis: int, way: float) -> None:
+        """Step by so much at once, whatever the velocity, and record."""
+        self.move({axis: self.target[axis] + way})
+        self._wanted[axis] = self.target[axis]
+        self.recorder.start()
+
+    def stop(self) -> None:
+        """Stop all axes where they are commanded to be."""
+        for each in self.generators:
+            each.at = None
+        self.target = self._wanted.copy()
+
+    def generate(self, axis: int) -> None:
+        """Start an axis' wave generator."""
+        one = self.generators[axis]
+        if one.table not in self.tables:
+            raise CommandError(Code.NO_WAVE_SELECTED)
+        if not self.held[axis]:
+            raise CommandError(Code.SERVO_OFF)
+        for end in (np.min(self.tables[one.table]), np.max(self.tables[one.table])):
+            wanted = self.target.copy()
+            wanted[axis] = end + one.offset
+            self._require_reach(wanted)
+        one.at = 0
+
+    def _require_reach(self, wanted: Array) -> None:
+        """Refuse a pose that an axis by itself, the strokes together or a gauge do not reach."""
+        low, high = self._ends
+        needed = self._gains @ (wanted / _MICRO)
+        slack = 1e-9 * (self.high - self.low)
+        if np.any(wanted < self.low - slack) or np.any(wanted > self.high + slack):
+            raise CommandError(Code.POSITION_OUT_OF_LIMITS)
+        if np.any(needed < low - 1e-9 * np.abs(low)) or np.any(needed > high + 1e-9 * np.abs(high)):
+            raise CommandError(Code.POSITION_OUT_OF_LIMITS)
+
+    # --- time ---
+
+    def advance(self, count: int) -> None:
+        """Run the loop by so many samples. A loop whose numbers grow beyond bounds is put to rest with its servos off."""
+        if count < 1:
+            return
+        wanted = np.stack([self._course(axis, count) for axis in range(len(self.axes))], axis=-1)
+        try:
+            found = self.running.advance(wanted / _MICRO, self.held)
+        except FloatingPointError:
+            self._lose()
+            return
+        poses, amplifiers = found.pose * _MICRO, self.running.machine.amplifiers
+        self.position, self.readings = poses[-1], found.readings[-1]
+        self._wanted = np.where(self.held, wanted[-1], self.position)
+        self.target = np.where(self.held, self.target, self.position)
+        off = np.abs(poses - self.target) > self.tolerance
+        since = np.argmax(off[::-1], axis=0)
+        self._off_target = np.where(np.any(off, axis=0), since, self._off_target + count)
+        volts = amplifiers.bias + found.given / amplifiers.gain
+        self.volts = volts[-1]
+        self.recorder.take(found, np.full(len(self.axes), _MICRO), volts)
+
+    def _lose(self) -> None:
+        for axis in range(len(self.axes)):
+            self.hold(axis, on=False)
+        for each in (self.target, self._wanted, self.position):
+            each[:] = 0.0
+        self.is_lost = True
+
+    def _course(self, axis: int, count: int) -> Array:
+        """What an axis is commanded to [um, urad] in the next samples."""
+        one = self.generators[axis]
+        if one.at is not None:
+            return self._wave(axis, one, one.at, count)
+        way = self.target[axis] - self._wanted[axis]
+        if way == 0.0 or not self.is_ramped[axis]:
+            return np.full(count, self.target[axis])
+        gone = self.velocity[axis] * self.step * np.arange(1, count + 1)
+        return np.where(gone < abs(way), self._wanted[axis] + np.sign(way) * gone, self.target[axis])
+
+    def _wave(self, axis: int, one: Generator, start: int, count: int) -> Array:
+        points = self.tables[one.table]
+        length = len(points) * one.rate
+        at = start + np.arange(count)
+        if one.cycles:
+            at = np.minimum(at, one.cycles * length - 1)
+        place, between = np.divmod(at % length, one.rate)
+        found = points[place]
+        if one.is_straight:
+            found = found + (points[(place + 1) % len(points)] - found) * between / one.rate
+        one.at = None if one.cycles and start + count >= one.cycles * length else start + count
+        course = found + one.offset
+        self.target[axis] = course[-1]
+        return np.asarray(course)
+
+    def output_is_known(self, option: int) -> bool:
+        """Whether an option of the recorder has numbers: stacks that state no voltage have no volts."""
+        return option != VOLTAGE or bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
+
+
+def _travel(gains: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Ends (f,) [um, urad] of each axis by itself, by the strokes or inputs and the readings (n,) that it takes."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, other = low[:, None] / gains, high[:, None] / gains
+    used = np.abs(gains) > 1e-12 * np.max(np.abs(gains), axis=0)
+    upper = np.min(np.where(used, np.maximum(one, other), np.inf), axis=0)
+    lower = np.max(np.where(used, np.minimum(one, other), -np.inf), axis=0)
+    return (np.where(np.isfinite(lower), lower, -_UNLIMITED) * _MICRO, np.where(np.isfinite(upper), upper, _UNLIMITED) * _MICRO)

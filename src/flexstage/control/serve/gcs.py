@@ -1,0 +1,558 @@
+"""The commands of the General Command Set, syntax version 2.0, that the virtual controller understands.
+
+Written from two manuals of Physik Instrumente: "E-727 user manual", E727T0005, 2019-06-28 (syntax, wave generator, data recorder), and
+"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes). Each command says where it was read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import flexstage
+from flexstage.base.text import printable
+from flexstage.control.serve import recorder, waves
+from flexstage.control.serve.controller import StageController
+from flexstage.control.serve.errors import Code, CommandError
+
+LONGEST = 65_536
+"""Bytes of the longest line."""
+_TABLES = 32
+_UPDATE = 0x0E000200
+"""The parameter "servo update time"."""
+_OPTIONS = {
+    recorder.NOTHING: "nothing is recorded",
+    recorder.TARGET: "target position of axis",
+    recorder.POSITION: "current position of axis",
+    recorder.ERROR: "position error of axis",
+    recorder.VOLTAGE: "voltage of output channel",
+}
+_TRIGGERS = {0: "default setting", 1: "any command changing target position", 4: "immediately"}
+
+
+@dataclass(frozen=True)
+class Command:
+    """What answers a command, what it does in a few words, and the manual's page where it was read (empty: none of its own)."""
+
+    answer: Callable[[Session, Sequence[str]], Iterable[str] | None]
+    meaning: str
+    page: str = ""
+
+
+class Session:
+    """One client's talk with a controller: its own error, the stage shared with all others."""
+
+    def __init__(self, stage: StageController) -> None:
+        self.stage = stage
+        self.error = Code.NO_ERROR
+        self.trigger = 0
+
+    def hear(self, line: bytes) -> bytes:
+        """The answer to a line, without its end; empty where there is none. What is not carried out leaves its code for `ERR?`."""
+        if self.stage.is_lost:
+            self.stage.is_lost, self.error = False, Code.LOOP_UNSTABLE
+        if len(line) > LONGEST:
+            return self._refuse(Code.COMMAND_TOO_LONG)
+        text = line.decode("latin-1")
+        words = [text] if text in COMMANDS else text.split()
+        if not words:
+            return b""
+        command = COMMANDS.get(words[0].upper())
+        if command is None:
+            return self._refuse(Code.UNKNOWN_COMMAND)
+        try:
+            found = command.answer(self, words[1:])
+        except CommandError as error:
+            return self._refuse(error.code)
+        return b"" if found is None else " \n".join(found).encode("latin-1", "replace") + b"\n"
+
+    def _refuse(self, code: Code) -> bytes:
+        self.error = code
+        return b""
+
+    # --- arguments ---
+
+    def axis(self, word: str) -> int:
+        """The place of an axis."""
+        if word not in self.stage.axes:
+            raise CommandError(Code.INVALID_AXIS)
+        return self.stage.axes.index(word)
+
+    def axes(self, words: Sequence[str]) -> list[int]:
+        """Places of the axes that are named, of all where none is."""
+        return [self.axis(word) for word in words] if words else list(range(len(self.stage.axes)))
+
+    def pairs(self, words: Sequence[str]) -> dict[int, float]:
+        """Numbers by axis: each axis once, with a number."""
+        found = {self.axis(name): _number(value) for name, value in _groups(words, 2)}
+        if 2 * len(found) != len(words):
+            raise CommandError(Code.DOUBLE_AXIS)
+        return found
+
+    def generators(self, words: Sequence[str]) -> list[int]:
+        """Places of wave generators, one an axis, by their numbers; of all where none is named."""
+        return [_place(word, len(self.stage.axes)) for word in words] if words else list(range(len(self.stage.axes)))
+
+    def by_axis(self, words: Sequence[str], shown: Callable[[int], str]) -> list[str]:
+        """`axis=value` for each."""
+        return [f"{self.stage.axes[axis]}={shown(axis)}" for axis in self.axes(words)]
+
+
+def spelled(name: str) -> str:
+    """A command as manuals write it: single characters by their number."""
+    return f"#{ord(name)}" if len(name) == 1 else name
+
+
+def _number(word: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        raise CommandError(Code.INVALID_NUMBER) from None
+    if not math.isfinite(value):
+        raise CommandError(Code.INVALID_NUMBER)
+    return value
+
+
+def _integer(word: str, low: int, high: int) -> int:
+    value = _number(word)
+    if value != int(value) or not low <= value <= high:
+        raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
+    return int(value)
+
+
+def _place(word: str, count: int) -> int:
+    return _integer(word, 1, count) - 1
+
+
+def _groups(words: Sequence[str], size: int) -> list[Sequence[str]]:
+    if not words or len(words) % size:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    return [words[start : start + size] for start in range(0, len(words), size)]
+
+
+def _nothing(words: Sequence[str]) -> None:
+    if words:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+
+
+def _shown(value: float) -> str:
+    return f"{round(value, 6) + 0.0:.6f}"
+
+
+# --- what it is ---
+
+
+def _identify(session: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    name = printable(session.stage.name).replace(",", " ")
+    return [f"flexstage,virtual controller,{name},{flexstage.__version__}"]
+
+
+def _syntax(_: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    return ["2.0"]
+
+
+def _versions(_: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    return [f"flexstage: {flexstage.__version__}"]
+
+
+def _help(_: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    return ["The following commands are valid:", *(f"{spelled(name)} {each.meaning}" for name, each in COMMANDS.items()), "end of help"]
+
+
+def _last_error(session: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    found, session.error = session.error, Code.NO_ERROR
+    return [str(int(found))]
+
+
+def _names(session: Session, words: Sequence[str]) -> list[str]:
+    if [word.upper() for word in words] not in ([], ["ALL"]):
+        raise CommandError(Code.PARAMETER_SYNTAX)
+    return list(session.stage.axes)
+
+
+def _parameter(session: Session, words: Sequence[str]) -> list[str]:
+    ((item, parameter),) = _one(words, 2)
+    try:
+        known = int(parameter, 0) == _UPDATE
+    except ValueError:
+        raise CommandError(Code.INVALID_NUMBER) from None
+    if item != "1" or not known:
+        raise CommandError(Code.UNKNOWN_PARAMETER)
+    return [f"1 {parameter}={session.stage.step:.9g}"]
+
+
+def _one(words: Sequence[str], size: int) -> list[Sequence[str]]:
+    found = _groups(words, size)
+    if len(found) != 1:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    return found
+
+
+# --- motion ---
+
+
+def _set_servo(session: Session, words: Sequence[str]) -> None:
+    wanted = session.pairs(words)
+    if any(value not in {0.0, 1.0} for value in wanted.values()):
+        raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
+    for axis, value in wanted.items():
+        session.stage.hold(axis, on=value == 1.0)
+
+
+def _move(session: Session, words: Sequence[str]) -> None:
+    session.stage.move(session.pairs(words))
+    _trigger_by_motion(session)
+
+
+def _move_by(session: Session, words: Sequence[str]) -> None:
+    session.stage.move({axis: session.stage.target[axis] + value for axis, value in session.pairs(words).items()})
+    _trigger_by_motion(session)
+
+
+def _trigger_by_motion(session: Session) -> None:
+    if session.trigger == 1:
+        session.trigger = 0
+        session.stage.recorder.start()
+
+
+def _step(session: Session, words: Sequence[str]) -> None:
+    ((axis, value),) = session.pairs(words[:2]).items() if len(words) == 2 else _wrong_count()
+    session.stage.jump(axis, value)
+
+
+def _wrong_count() -> list[tuple[int, float]]:
+    raise CommandError(Code.NUMBER_OF_PARAMETERS)
+
+
+def _set_velocity(session: Session, words: Sequence[str]) -> None:
+    wanted = session.pairs(words)
+    if any(value <= 0.0 for value in wanted.values()):
+        raise CommandError(Code.VELOCITY_OUT_OF_LIMITS)
+    for axis, value in wanted.items():
+        session.stage.velocity[axis] = value
+
+
+def _set_ramp(session: Session, words: Sequence[str]) -> None:
+    wanted = session.pairs(words)
+    if any(value not in {0.0, 1.0} for value in wanted.values()):
+        raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
+    for axis, value in wanted.items():
+        session.stage.is_ramped[axis] = value == 1.0
+
+
+def _stop(session: Session, words: Sequence[str]) -> None:
+    _nothing(words)
+    session.stage.stop()
+    session.error = Code.STOPPED
+
+
+def _halt(session: Session, words: Sequence[str]) -> None:
+    session.axes(words)
+    session.stage.stop()
+    session.error = Code.STOPPED
+
+
+def _bits(flags: Iterable[bool]) -> list[str]:
+    return [f"{sum(1 << place for place, flag in enumerate(flags) if flag):X}"]
+
+
+def _readings(session: Session, words: Sequence[str]) -> list[str]:
+    channels = [_place(word, len(session.stage.readings)) for word in words] if words else range(len(session.stage.readings))
+    return [f"{channel + 1}={_shown(1e6 * float(session.stage.readings[channel]))}" for channel in channels]
+
+
+def _volts(session: Session, words: Sequence[str]) -> list[str]:
+    if not session.stage.output_is_known(recorder.VOLTAGE):
+        raise CommandError(Code.UNKNOWN_PARAMETER)
+    channels = [_place(word, len(session.stage.volts)) for word in words] if words else range(len(session.stage.volts))
+    return [f"{channel + 1}={_shown(float(session.stage.volts[channel]))}" for channel in channels]
+
+
+# --- wave generator ---
+
+
+def _wave(session: Session, words: Sequence[str]) -> None:
+    if len(words) < 3:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    number, append, kind = _integer(words[0], 1, _TABLES), words[1].upper(), words[2].upper()
+    if append not in {"X", "&"}:
+        raise CommandError(Code.PARAMETER_SYNTAX)
+    _require_idle(session, number)
+    made = waves.segment(kind, [_number(word) for word in words[3:]])
+    tables = session.stage.tables
+    whole = np.concatenate([tables[number], made]) if append == "&" and number in tables else made
+    if sum(len(each) for name, each in tables.items() if name != number) + len(whole) > waves.LARGEST:
+        raise CommandError(Code.WAVE_TOO_LARGE)
+    tables[number] = whole
+
+
+def _require_idle(session: Session, number: int) -> None:
+    if any(each.at is not None and each.table == number for each in session.stage.generators):
+        raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
+
+
+def _wave_lengths(session: Session, words: Sequence[str]) -> list[str]:
+    asked = [_integer(number, 1, _TABLES) for number, _ in _lengths(words)] if words else range(1, _TABLES + 1)
+    return [f"{number} 1={len(session.stage.tables.get(number, ()))}" for number in asked]
+
+
+def _lengths(words: Sequence[str]) -> list[Sequence[str]]:
+    found = _groups(words, 2)
+    if any(parameter != "1" for _, parameter in found):
+        raise CommandError(Code.UNKNOWN_PARAMETER)
+    return found
+
+
+def _clear_waves(session: Session, words: Sequence[str]) -> None:
+    numbers = [_integer(word, 1, _TABLES) for word in words] or list(session.stage.tables)
+    for number in numbers:
+        _require_idle(session, number)
+    for number in numbers:
+        session.stage.tables.pop(number, None)
+
+
+def _wave_data(session: Session, words: Sequence[str]) -> list[str]:
+    if len(words) < 2:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    numbers = [_integer(word, 1, _TABLES) for word in words[2:]] or sorted(session.stage.tables)
+    if any(number not in session.stage.tables for number in numbers) or not numbers:
+        raise CommandError(Code.NO_WAVE_SELECTED)
+    columns = [session.stage.tables[number] for number in numbers]
+    return _array(words, columns, [f"Waveform of wave table {number}" for number in numbers], session.stage.step)
+
+
+def _connect_waves(session: Session, words: Sequence[str]) -> None:
+    found = [(_place(one, len(session.stage.axes)), _integer(table, 0, _TABLES)) for one, table in _groups(words, 2)]
+    if any(session.stage.generators[one].at is not None for one, _ in found):
+        raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
+    for one, table in found:
+        session.stage.generators[one].table = table
+
+
+def _set_cycles(session: Session, words: Sequence[str]) -> None:
+    found = [(_place(one, len(session.stage.axes)), _integer(count, 0, 2**31)) for one, count in _groups(words, 2)]
+    for one, count in found:
+        session.stage.generators[one].cycles = count
+
+
+def _set_offset(session: Session, words: Sequence[str]) -> None:
+    found = [(_place(one, len(session.stage.axes)), _number(offset)) for one, offset in _groups(words, 2)]
+    if any(session.stage.generators[one].at is not None for one, _ in found):
+        raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
+    for one, offset in found:
+        session.stage.generators[one].offset = offset
+
+
+def _set_wave_rate(session: Session, words: Sequence[str]) -> None:
+    count = len(session.stage.axes)
+    found = [(one, _integer(rate, 1, 1_000_000), _integer(kind, 0, 1)) for one, rate, kind in _groups(words, 3)]
+    for word, rate, kind in found:
+        for one in range(count) if word == "0" else [_place(word, count)]:
+            session.stage.generators[one].rate, session.stage.generators[one].is_straight = rate, kind == 1
+
+
+def _generate(session: Session, words: Sequence[str]) -> None:
+    found = [(_place(one, len(session.stage.axes)), _integer(mode, 0, 1)) for one, mode in _groups(words, 2)]
+    before = [each.at for each in session.stage.generators]
+    try:
+        for one, mode in found:
+            if mode:
+                session.stage.generate(one)
+            else:
+                session.stage.generators[one].at = None
+    except CommandError:
+        for each, at in zip(session.stage.generators, before, strict=True):
+            each.at = at
+        raise
+    if any(mode for _, mode in found):
+        session.stage.recorder.start()
+
+
+def _of_generators(shown: Callable[[StageController, int], str]) -> Callable[[Session, Sequence[str]], list[str]]:
+    def answer(session: Session, words: Sequence[str]) -> list[str]:
+        return [f"{one + 1}={shown(session.stage, one)}" for one in session.generators(words)]
+
+    return answer
+
+
+# --- data recorder ---
+
+
+def _tables(words: Sequence[str]) -> list[int]:
+    try:
+        return [_place(word, recorder.TABLES) for word in words] if words else list(range(recorder.TABLES))
+    except CommandError:
+        raise CommandError(Code.INVALID_RECORDER_TABLE) from None
+
+
+def _configure(session: Session, words: Sequence[str]) -> None:
+    found = [_recorded(session, *group) for group in _groups(words, 3)]
+    for table, source, option in found:
+        session.stage.recorder.sources[table], session.stage.recorder.options[table] = source, option
+        session.stage.recorder.empty(table)
+
+
+def _recorded(session: Session, number: str, source: str, option: str) -> tuple[int, int, int]:
+    """A table, and the source that it records by an option."""
+    (table,), kind = _tables([number]), _number(option)
+    if kind not in _OPTIONS or not session.stage.output_is_known(int(kind)):
+        raise CommandError(Code.INVALID_RECORDER_OPTION)
+    if kind == recorder.NOTHING:
+        return table, 0, recorder.NOTHING
+    try:
+        place = _place(source, len(session.stage.volts)) if kind == recorder.VOLTAGE else session.axis(source)
+    except CommandError:
+        raise CommandError(Code.INVALID_RECORDER_SOURCE) from None
+    return table, place, int(kind)
+
+
+def _source(session: Session, table: int) -> str:
+    source, option = session.stage.recorder.sources[table], session.stage.recorder.options[table]
+    if option == recorder.NOTHING:
+        return "0"
+    return str(source + 1) if option == recorder.VOLTAGE else session.stage.axes[source]
+
+
+def _recorder_options(_: Session, words: Sequence[str]) -> list[str]:
+    _nothing(words)
+    return [
+        "#RecordOptions",
+        *(f"{number}={text}" for number, text in _OPTIONS.items()),
+        "#TriggerOptions",
+        *(f"{number}={text}" for number, text in _TRIGGERS.items()),
+        "end of help",
+    ]
+
+
+def _set_trigger(session: Session, words: Sequence[str]) -> None:
+    for table, source, _ in _groups(words, 3):
+        if table != "0":
+            _tables([table])
+        if _number(source) not in _TRIGGERS:
+            raise CommandError(Code.PARAMETER_OUT_OF_RANGE)
+    source = int(_number(words[-2]))
+    session.trigger = source if source == 1 else 0
+    if source == 4:
+        session.stage.recorder.start()
+
+
+def _set_record_rate(session: Session, words: Sequence[str]) -> None:
+    if len(words) != 1:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    session.stage.recorder.rate = _integer(words[0], 1, 1_000_000)
+
+
+def _record(session: Session, words: Sequence[str]) -> list[str]:
+    held = session.stage.recorder
+    tables = _tables(words[2:]) if words[2:] else [table for table in range(recorder.TABLES) if held.options[table]]
+    if not tables:
+        raise CommandError(Code.NOT_ENOUGH_RECORDED)
+    names = [f"{_OPTIONS[held.options[table]]} {_source(session, table)}" for table in tables]
+    return _array(words, [held.points[table] for table in tables], names, session.stage.step * held.rate)
+
+
+def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[str], step: float) -> list[str]:
+    """A GCS array: a header, then a row a point. `words` may begin with the first point (1) and how many."""
+    if len(words) == 1:
+        raise CommandError(Code.NUMBER_OF_PARAMETERS)
+    there = min(len(each) for each in columns)
+    first, count = (_integer(words[0], 1, 2**31), _integer(words[1], 0, 2**31)) if words else (1, there)
+    if first - 1 + count > there:
+        raise CommandError(Code.NOT_ENOUGH_RECORDED)
+    rows = np.stack([each[first - 1 : first - 1 + count] for each in columns], axis=-1)
+    head = {"TYPE": 1, "SEPARATOR": 32, "DIM": len(columns), "SAMPLE_TIME": f"{step:.9g}", "NDATA": count}
+    return [
+        "# REM flexstage",
+        "#",
+        "# VERSION = 1",
+        *(f"# {name} = {value}" for name, value in head.items()),
+        "#",
+        *(f"# NAME{place} = {name}" for place, name in enumerate(names)),
+        "#",
+        "# END_HEADER",
+        *(" ".join(f"{value:.6f}" for value in row) for row in rows.tolist()),
+    ]
+
+
+_E, _M = "E727T0005 p. ", "MS249E p. "
+
+COMMANDS: dict[str, Command] = {
+    "\x05": Command(lambda s, _: _bits(s.stage.moving), "which axes are moving", f"{_M}127"),
+    "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken", f"{_M}127"),
+    "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
+    "\x18": Command(_stop, "stop all axes", f"{_E}178"),
+    "*IDN?": Command(_identify, "what it is", f"{_E}178"),
+    "CSV?": Command(_syntax, "syntax version", f"{_M}136"),
+    "DRC": Command(_configure, "set data recorder configuration", f"{_E}66, 67"),
+    "DRC?": Command(
+        lambda s, w: [f"{t + 1}={_source(s, t)} {s.stage.recorder.options[t]}" for t in _tables(w)],
+        "get data recorder configuration",
+        f"{_E}67, {_M}147",
+    ),
+    "DRL?": Command(
+        lambda s, w: [f"{t + 1}={len(s.stage.recorder.points[t])}" for t in _tables(w)],
+        "get number of recorded points",
+        f"{_E}67, {_M}147",
+    ),
+    "DRR?": Command(_record, "get recorded data values", f"{_E}67, {_M}148"),
+    "DRT": Command(_set_trigger, "set data recorder trigger source", f"{_E}66, 67"),
+    "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source", f"{_E}66, 67"),
+    "ERR?": Command(_last_error, "get error number and forget it", f"{_M}207"),
+    "GWD?": Command(_wave_data, "get wave table data", f"{_E}100"),
+    "HDR?": Command(_recorder_options, "get all data recorder options", f"{_E}66, 67"),
+    "HLP?": Command(_help, "get list of available commands"),
+    "HLT": Command(_halt, "halt all axes"),
+    "MOV": Command(_move, "set target position", f"{_M}116"),
+    "MOV?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.target[a])), "get target position"),
+    "MVR": Command(_move_by, "set target relative to current target"),
+    "ONT?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.on_target[a]))), "get on-target state"),
+    "POS?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.position[a])), "get real position", f"{_M}116"),
+    "PUN?": Command(lambda s, w: s.by_axis(w, lambda a: s.stage.units[a]), "get position unit"),
+    "RTR": Command(_set_record_rate, "set record table rate", f"{_E}67"),
+    "RTR?": Command(lambda s, _: [str(s.stage.recorder.rate)], "get record table rate", f"{_E}67"),
+    "SAI?": Command(_names, "get list of current axis identifiers", f"{_M}186"),
+    "SPA?": Command(_parameter, "get volatile memory parameters: the servo update time", f"{_E}108"),
+    "STE": Command(_step, "start step and response measurement", f"{_E}66"),
+    "STP": Command(_stop, "stop all axes"),
+    "SVO": Command(_set_servo, "set servo mode"),
+    "SVO?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.held[a]))), "get servo mode"),
+    "TMN?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.low[a])), "get minimum commandable position"),
+    "TMX?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.high[a])), "get maximum commandable position"),
+    "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables", f"{_E}67"),
+    "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
+    "TSC?": Command(lambda s, _: [str(len(s.stage.readings))], "get number of input signal channels"),
+    "TSP?": Command(_readings, "get input signal position value", f"{_M}117"),
+    "TWG?": Command(lambda s, _: [str(len(s.stage.axes))], "get number of wave generators"),
+    "VCO": Command(_set_ramp, "set velocity control mode", f"{_E}35"),
+    "VCO?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.is_ramped[a]))), "get velocity control mode", f"{_E}35"),
+    "VEL": Command(_set_velocity, "set closed-loop velocity", f"{_M}204"),
+    "VEL?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.velocity[a])), "get closed-loop velocity", f"{_M}204"),
+    "VER?": Command(_versions, "get versions", f"{_M}204"),
+    "VOL?": Command(_volts, "get voltage of output channel"),
+    "WAV": Command(_wave, "set waveform definition", f"{_E}108"),
+    "WAV?": Command(_wave_lengths, "get waveform definition: lengths of wave tables", f"{_E}100"),
+    "WCL": Command(_clear_waves, "clear wave table data", f"{_E}100"),
+    "WGC": Command(_set_cycles, "set number of wave generator cycles"),
+    "WGC?": Command(_of_generators(lambda s, g: str(s.generators[g].cycles)), "get number of wave generator cycles"),
+    "WGO": Command(_generate, "set wave generator start/stop mode", f"{_E}66"),
+    "WGO?": Command(_of_generators(lambda s, g: str(int(s.generators[g].at is not None))), "get wave generator start/stop mode"),
+    "WOS": Command(_set_offset, "set wave generator output offset", f"{_E}100"),
+    "WOS?": Command(_of_generators(lambda s, g: _shown(s.generators[g].offset)), "get wave generator output offset"),
+    "WSL": Command(_connect_waves, "set connection of wave table to wave generator"),
+    "WSL?": Command(_of_generators(lambda s, g: str(s.generators[g].table)), "get connection of wave table"),
+    "WTR": Command(_set_wave_rate, "set wave generator table rate", f"{_E}108"),
+    "WTR?": Command(
+        _of_generators(lambda s, g: f"{s.generators[g].rate} {int(s.generators[g].is_straight)}"),
+        "get wave generator table rate",
+        f"{_E}108",
+    ),
+}
+"""Every command by its mnemonic; single characters by themselves."""

@@ -1,0 +1,54 @@
+"""The data recorder: tables that are filled from a trigger on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.serve.running import Stretch
+
+TABLES, POINTS = 8, 262_144
+"""Tables, and points that they share alike."""
+NOTHING, TARGET, POSITION, ERROR, VOLTAGE = 0, 1, 2, 3, 16
+"""What a table records: record options."""
+
+
+@dataclass
+class Recorder:
+    """Tables of points, each of a source (index) and an option; `rate` is the number of samples from point to point."""
+
+    sources: list[int]
+    options: list[int]
+    rate: int = 1
+    points: list[Array] = field(default_factory=lambda: [np.empty(0)] * TABLES)
+    _left: int = 0
+    _skip: int = 0
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether its tables are being filled."""
+        return self._left > 0
+
+    def start(self) -> None:
+        """Empty all tables, and fill them from the next sample on."""
+        self.points = [np.empty(0)] * TABLES
+        self._left, self._skip = POINTS // TABLES, 0
+
+    def empty(self, table: int) -> None:
+        """Forget a table's points."""
+        self.points[table] = np.empty(0)
+
+    def take(self, found: Stretch, scale: Array, volts: Array) -> None:
+        """Points of the samples that were run; `scale` (f,) is what SI units are multiplied by."""
+        if not self._left:
+            return
+        rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)
+        signals = {TARGET: found.wanted * scale, POSITION: found.pose * scale, ERROR: (found.wanted - found.pose) * scale, VOLTAGE: volts}
+        taken = len(range(*rows.indices(len(volts))))
+        for table, (source, option) in enumerate(zip(self.sources, self.options, strict=True)):
+            if option != NOTHING:
+                self.points[table] = np.concatenate([self.points[table], signals[option][rows, source]])
+        self._left -= taken
+        self._skip = (self._skip - len(volts)) % self.rate if taken else self._skip - len(volts)

@@ -1,0 +1,178 @@
+"""The virtual controller on a socket of the loopback: clients' lines, and the stage's time by the clock on the wall."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from flexstage.base.finding import refuse
+from flexstage.base.threads import one_thread
+from flexstage.control.serve.controller import StageController
+from flexstage.control.serve.gcs import LONGEST, Session
+
+HOST = "127.0.0.1"
+PORT = 50_000
+"""The port at which such controllers are spoken to."""
+CLIENTS = 16
+_CHUNK = 200
+"""Samples that are run at a time: clients are heard in between."""
+_LATEST = 0.25
+"""Later than this [s], and the stage's time gives up catching up."""
+_TURN = 100
+"""Lines of a client that are answered before others are heard."""
+_SINGLE = b"\x05\x07\x09\x18"
+_READ = 65_536
+
+
+@dataclass
+class Pace:
+    """The stage's time beside the clock's, from their `offset` at the start: `most` that it was behind [s], and what was given up."""
+
+    offset: float
+    most: float = 0.0
+    lost: float = 0.0
+
+    def behind(self, clock: float, seconds: float) -> float:
+        """How far [s] the stage is behind the clock; beyond a quarter of a second it is given up, and the stage goes on from where it is.
+
+        >>> pace = Pace(offset=100.0)
+        >>> round(pace.behind(100.25, 0.125), 3), round(pace.behind(101.125, 0.125), 3), round(pace.behind(101.25, 0.125), 3)
+        (0.125, 0.0, 0.125)
+        >>> pace.most, pace.lost
+        (1.0, 1.0)
+        """
+        late = clock - self.offset - seconds
+        self.most = max(self.most, late)
+        if late <= _LATEST:
+            return late
+        self.lost += late
+        self.offset += late
+        return 0.0
+
+
+class Served:
+    """A stage that clients drive. Not `paced`, its time goes as fast as it is computed, while any client is there."""
+
+    def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
+        self.stage, self._port = stage, port
+        self.pace = Pace(time.perf_counter() - stage.seconds) if paced else None
+        """Absent: as fast as it goes."""
+        self._server: asyncio.Server | None = None
+        self._running: asyncio.Task[None] | None = None
+        self._clients: set[asyncio.Task[None]] = set()
+
+    @property
+    def port(self) -> int:
+        """The port that it listens at."""
+        return self._port
+
+    async def start(self) -> None:
+        """Listen, and let time go. Raises `DesignError` where the port is taken."""
+        try:
+            self._server = await asyncio.start_server(self._client, HOST, self._port, limit=_READ)
+        except OSError as error:
+            what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
+            raise refuse(f"--port {self._port}", what, "Choose another one, or 0 for a free one") from None
+        self._port = self._server.sockets[0].getsockname()[1]
+        self._running = asyncio.create_task(self._race() if self.pace is None else self._follow(self.pace))
+
+    async def stop(self) -> None:
+        """End everything."""
+        for each in (*self._clients, *([] if self._running is None else [self._running])):
+            each.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await each
+        if self._server is not None:
+            self._server.close()
+
+    # --- time ---
+
+    async def _follow(self, pace: Pace) -> None:
+        """The stage's time beside the clock's."""
+        pace.offset = time.perf_counter() - self.stage.seconds
+        while True:
+            behind = int(pace.behind(time.perf_counter(), self.stage.seconds) / self.stage.step)
+            self._advance(min(behind, _CHUNK))
+            await asyncio.sleep(0.0 if behind > _CHUNK else 0.001)
+
+    async def _race(self) -> None:
+        while True:
+            if self._clients:
+                self._advance(_CHUNK)
+            await asyncio.sleep(0.0 if self._clients else 0.01)
+
+    @one_thread
+    def _advance(self, count: int) -> None:
+        self.stage.advance(count)
+
+    # --- clients ---
+
+    async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """One client, from its first line to its end, however that comes."""
+        task = asyncio.current_task()
+        if task is None or len(self._clients) >= CLIENTS:
+            writer.close()
+            return
+        self._clients.add(task)
+        try:
+            await self._talk(reader, writer)
+        except (ConnectionError, asyncio.CancelledError):
+            pass
+        finally:
+            self._clients.discard(task)
+            writer.close()
+
+    async def _talk(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        session, lines, heard = Session(self.stage), _Lines(), 0
+        while received := await reader.read(_READ):
+            for line in lines.split(received):
+                if line.endswith(b"HTTP/1.1"):  # a page of a browser has no business here
+                    return
+                if answer := session.hear(line):
+                    writer.write(answer)
+                    await writer.drain()
+                heard += 1
+                if not heard % _TURN:
+                    await asyncio.sleep(0.0)
+
+
+class _Lines:
+    """What is received, cut into lines; characters that are commands are lines. Of a line that is too long the rest is dropped."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+        self._is_dropping = False
+
+    def split(self, received: bytes) -> list[bytes]:
+        """The lines that are whole now."""
+        for each in _SINGLE:
+            if each in received:
+                received = received.replace(bytes([each]), b"\n" + bytes([each]) + b"\n")
+        *found, rest = received.replace(b"\r", b"").split(b"\n")
+        if found:
+            found[0] = b"" if self._is_dropping else self._rest + found[0]
+            self._rest, self._is_dropping = rest, False
+        elif not self._is_dropping:
+            self._rest += rest
+        if len(self._rest) > LONGEST:
+            found.append(self._rest)  # answered as too long, once
+            self._rest, self._is_dropping = b"", True
+        return found
+
+
+async def run(stage: StageController, port: int, started: Callable[[int], None], *, paced: bool) -> Pace | None:
+    """Serve a stage until it is interrupted; `started` is told the port. How late it was, where it kept to the clock."""
+    served = Served(stage, port, paced=paced)
+    await served.start()
+    try:
+        started(served.port)
+        await asyncio.get_running_loop().create_future()
+    except asyncio.CancelledError:
+        pass
+    finally:
+        await served.stop()
+    return served.pace
