@@ -17,7 +17,6 @@ from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.health import examine
-from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.options import Allow, Arrays, Kind, Options
 from flexstage.experiment.record import Channel, Record, Responses, in_memory
 from tests.conftest import FULL
@@ -366,13 +365,6 @@ def test_a_frequency_that_stands_twice_is_told(at: int, suffix: str, tmp_path: P
     else:
         np.savetxt(path, np.column_stack([lines, lines, lines]), header="frequency [Hz],H_re,H_im", delimiter=",")
     assert f"its frequencies do not rise: {at - 1} Hz stands twice, lines {at} and {at + 1}" in refusal(path)
-
-
-def test_lines_of_stepped_sines_are_refused_by_their_name() -> None:
-    lines = np.concatenate([np.arange(1.0, 20.0), np.arange(20.0, 25.0, 0.1)])
-    stepped = Responses(lines, (Channel("S1", "um"),), (Channel("u", "V"),), np.ones((len(lines), 1, 1), complex))
-    with pytest.raises(DesignError, match=r"its lines lie unevenly, 0.1 to 1 Hz apart, as those of stepped or swept sines do"):
-        identify(stepped)
 
 
 # --- files damaged anywhere ---

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.peaks import Peak
 from flexstage.experiment.record import Channel, Record, Responses
@@ -84,6 +85,9 @@ def identified_table(found: Identified) -> Table:
         "Evidence: chi-square by which the data ask for the mode, over what noise would reach once in 1e9 tries.",
         f"Looked for between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz.",
     ]
+    if found.delay:
+        late, spread = 1e3 * found.delay, 1e3 * NORMAL_95 * found.delay_deviation
+        notes.append(f"All outputs come {number(late, 4)} ms late (95 %: +-{number(spread, 2)} ms): taken out before modes were fitted.")
     if not rows:
         notes = [f"No mode was found between {number(found.band[0], 4)} and {number(found.band[1], 4)} Hz."]
     return make_table("Modes found", heads, rows, notes=notes, provenance=found.provenance)

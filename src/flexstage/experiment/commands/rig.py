@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, VOLTAGE, Quantity
+from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
@@ -60,6 +60,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     tap: Annotated[
         Tap, word_option("--tap", Tap, "Record inputs behind the amplifier and filtered as the gauges are, or as commanded.")
     ] = Tap.MONITOR,
+    delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
     inputs: Annotated[Recorded, word_option("--inputs", Recorded, "Inputs as strokes in um or volts.")] = Recorded.STROKE,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
@@ -86,6 +87,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         ),
         tap=tap,
         recorded=inputs,
+        delay=values.value("--delay", delay, TIME) or 0.0,
     )
     require(values.findings)
     linear = elastic_model(mechanism, model)

@@ -72,11 +72,12 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
     >>> coarse_lines(long, np.array([-0.2 + 10.0j])) is None
     True
     """
-    widths = [width(pole) for pole in poles]
-    apart = line_distance(known)
-    if not widths or apart <= min(widths):
+    widths = np.array([width(pole) for pole in poles])
+    distances = known.apart(np.abs(poles)) if known.stored else np.full(len(poles), line_distance(known))
+    if not np.any(distances > widths):
         return None
-    narrowest = int(np.argmin(widths))
+    narrowest = int(np.argmin(widths / distances))
+    apart = float(distances[narrowest])
     return (
         f"lines are {apart:.3g} Hz apart, the mode at {abs(poles[narrowest]):.4g} Hz is {widths[narrowest]:.3g} Hz wide: further modes "
         f"next to those found may be missing. {_advise_length(known, widths[narrowest])}"

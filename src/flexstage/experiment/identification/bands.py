@@ -45,7 +45,7 @@ def sweeps(low: float, high: float) -> list[Sweep]:
     return [Sweep(max(low, a / half), min(high, b * half), float(a), float(b)) for a, b in itertools.pairwise(limits)]
 
 
-def extents(poles: Array, low: float, high: float, *, resolution: float = 0.0) -> list[Extent]:
+def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0) -> list[Extent]:
     """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below 12 times their half-widths are fitted together.
 
     Half-widths below the lines' `resolution` in Hz count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and

@@ -60,6 +60,13 @@ class Evidence:
     shaped: Callable[[Cells], Array] | None = None
     unstated: bool = False
 
+    def apart(self, frequencies: Array) -> Array:
+        """Distance of lines in Hz about `frequencies` in Hz: `resolution`, or where lines lie unevenly what it is there."""
+        lines = self.responses.frequencies
+        if not self.stored or is_even(lines):
+            return np.full(np.shape(frequencies), self.resolution)
+        return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
+
     def shape(self, cells: Cells) -> Array:
         """How the noise variance goes over cells, (p, c), up to a factor: as coherence says where it was stored, else even."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
@@ -191,7 +198,7 @@ def _of_responses(known: Responses) -> Evidence:
     size = np.sqrt(np.mean(np.abs(known.values) ** 2, axis=(0, 2)))
     output_scale = _divisor(size)
     count = known.values.shape[2]
-    rough = np.abs(np.diff(known.values, 2, axis=0)) ** 2 / 6.0
+    rough = _roughness(known.frequencies, known.values)
     density = np.repeat(np.median(rough, axis=(0, 2))[None, :], len(known.frequencies), axis=0)
     density = np.maximum(density, 1e-12 * output_scale**2)
 
@@ -199,7 +206,7 @@ def _of_responses(known: Responses) -> Evidence:
         for index in range(count):
             yield Lines(known.frequencies, np.ones((len(steps) + 1, 1), dtype=complex), known.values[:, :, index] / output_scale, (index,))
 
-    step = float(np.mean(steps))
+    step, even = float(np.median(steps)), is_even(known.frequencies)
     window = next((each for each in Window if known.window.lower().startswith(each.value)), None)
     return Evidence(
         where=known.source or known.name or "responses",
@@ -210,12 +217,12 @@ def _of_responses(known: Responses) -> Evidence:
         output_scale=output_scale,
         density=density,
         rate=2.0 * float(known.frequencies[-1]),
-        band=(float(max(known.frequencies[0], _LOWEST_LINES * step)), float(known.frequencies[-1])),
+        band=(float(max(known.frequencies[0], _LOWEST_LINES * steps[0])), float(known.frequencies[-1])),
         stored=True,
         unstated=not known.window,
         inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
-        smear=Smear(window, 1.0 / step) if window in SMEARING else None,
+        smear=Smear(window, 1.0 / step) if even and window in SMEARING else None,
         rounding=_rounding(known.outputs, size),
         resolution=step,
         shaped=None if known.coherence is None else lambda cells: _coherent_shape(known, cells),
@@ -249,11 +256,24 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
         return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
     if (falling := rising_problem(known.frequencies)) is not None:
         return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
-    if np.max(np.abs(steps - np.mean(steps))) > 1e-3 * np.mean(steps):
-        what = f"its lines lie unevenly, {np.min(steps):.6g} to {np.max(steps):.6g} Hz apart, as those of stepped or swept sines do"
-        advice = "Such responses are not identified yet: measure at even spacing, or with random inputs; interpolation bends modes"
-        return [Finding(where, what, advice)]
     return []
+
+
+def is_even(frequencies: Array) -> bool:
+    """Whether lines lie evenly, to a thousandth of their distance; those of stepped and swept sines do not.
+
+    >>> is_even(np.arange(5.0)), is_even(np.geomspace(1.0, 9.0, 5))
+    (True, False)
+    """
+    steps = np.diff(frequencies)
+    return bool(np.max(np.abs(steps - np.mean(steps))) <= 1e-3 * np.mean(steps))
+
+
+def _roughness(frequencies: Array, values: Array) -> Array:
+    """Noise variance (f-2, p, m) by how far each line is from the straight line through its neighbours, wherever they lie."""
+    share = ((frequencies[1:-1] - frequencies[:-2]) / (frequencies[2:] - frequencies[:-2]))[:, None, None]
+    away = values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:]
+    return np.abs(away) ** 2 / (1.0 + share**2 + (1.0 - share) ** 2)
 
 
 def _findings(records: tuple[Record, ...]) -> list[Finding]:

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
+from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.identification.cluster import Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
@@ -49,7 +49,8 @@ class Identified(InNotebook):
     fit leaves more than noise near the mode: 1 where it does not. `significance` (k,) is the chi-square by which the data ask for the mode,
     over that which noise would pass once in 1e9. `close` lists modes nearer to one another than their half-widths: compare those by
     subspace. `noise` (p,) is the outputs' noise density, in the outputs' unit squared per Hz. `warnings` say what the data cannot tell;
-    `peaks` are seen and are no modes, or not with confidence.
+    `peaks` are seen and are no modes, or not with confidence. `delay` [s] is how much later all outputs come than the modes have it, as
+    far as it had to be taken out for them to fit (0: not at all): H is as above times e^{-j w delay}.
     """
 
     frequencies: Array
@@ -72,6 +73,8 @@ class Identified(InNotebook):
     warnings: tuple[str, ...]
     provenance: str
     peaks: tuple[Peak, ...] = ()
+    delay: Annotated[float, TIME] = 0.0
+    delay_deviation: Annotated[float, TIME] = 0.0
 
     @property
     def modes(self) -> Annotated[tuple[IdentifiedMode, ...], VIEW]:
@@ -130,6 +133,7 @@ class Identified(InNotebook):
     def response(self, frequencies: Array) -> Responses:
         """The fitted responses at `frequencies` in Hz: modes and the residuals of what lies outside the band."""
         values = modal_sum(frequencies, self.poles, self.shapes, self.participation) + remainder_sum(frequencies, self.residuals)
+        values = values * np.exp(-2j * np.pi * np.asarray(frequencies) * self.delay)[:, None, None] if self.delay else values
         return Responses(np.asarray(frequencies), self.outputs, self.inputs, values, name="modes", source=self.provenance)
 
     @property

@@ -18,6 +18,7 @@ from flexstage.experiment.identification.driven import measure_drives
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.lateness import Delay, bends_modes, common_delay, take_out_delay
 from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lines import edges, gather_cells
 from flexstage.experiment.identification.lscf import lscf
@@ -27,6 +28,7 @@ from flexstage.experiment.record import Record, Responses
 
 _LARGEST = 72
 _LONGEST = 40
+_PASSES = 2
 _FEW = 5.0
 _LEAST_PARTS, _MOST_PARTS = 3, 8
 
@@ -57,7 +59,8 @@ def identify(
     data asks for, sub-bands, inputs, records, stretches of time, whichever is more (`jackknife`); `widening` says by how much. A mode is
     kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
     the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
-    What is seen and is none of the modes is listed as `peaks`.
+    What is seen and is none of the modes is listed as `peaks`. A pure delay of all outputs that bends modes is taken out, and told
+    (`common_delay`). Lines of responses may lie unevenly, as those of stepped sines do.
     Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
     are too short.
 
@@ -66,20 +69,34 @@ def identify(
     >>> found.frequencies.round(1).tolist(), found.damping.round(3).tolist()
     ([10.0], [0.02])
     """
-    found = _identify_once(what, search, tell, known)
+    seen = evidence(what, search.segments, tell, known)
+    found = _identify_once(seen, search)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
-        return found
+        return _without_delay(seen, search, found)
     # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
     records = [what] if isinstance(what, Record) else list(what)
     longer = choose_segments(records, _FEW) if len(found.inputs) > 1 else whole_segment(records)
-    again = _identify_once(what, replace(search, segments=longer), tell)
-    return again if len(again.frequencies) else found
+    seen = evidence(what, longer, tell)
+    again = _identify_once(seen, replace(search, segments=longer))
+    return _without_delay(seen, search, again) if len(again.frequencies) else found
 
 
-def _identify_once(
-    what: Record | Responses | Sequence[Record], search: Search, tell: Tell | None, spectra: Sequence[Spectra] = ()
-) -> Identified:
-    known = evidence(what, search.segments, tell, spectra)
+def _without_delay(known: Evidence, search: Search, found: Identified) -> Identified:
+    """The modes with the delay of all outputs taken out, where one is told that bends them."""
+    total = 0.0
+    for _ in range(_PASSES):
+        later = common_delay(found)
+        if later is None or not bends_modes(found, Delay(later.value if not total else np.inf, 0.0)):
+            return found
+        total += later.value
+        again = _identify_once(take_out_delay(known, total), search)
+        if len(again.frequencies) < len(found.frequencies):
+            return found
+        found = replace(again, responses=known.responses, delay=total, delay_deviation=later.deviation)
+    return found
+
+
+def _identify_once(known: Evidence, search: Search) -> Identified:
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []
@@ -131,7 +148,7 @@ def _fit_groups(
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
-    groups = extents(poles, *band, resolution=known.resolution)
+    groups = extents(poles, *band, resolution=known.apart(np.imag(poles)))
     bounds = [edges(poles, group.low, group.high) for group in groups]
     every = zip(groups, gather_cells(known.lines(), bounds), strict=True)
     found = [fit_group(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]

@@ -32,7 +32,7 @@ class Poles:
 
 
 def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) -> tuple[Poles, ...]:
-    """Poles of every order from responses H (f, p, m) at evenly spaced `frequencies` in Hz, with weights (f, p) of the outputs.
+    """Poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
 
     A right matrix fraction H = B(z) A(z)^-1 with common denominator, complex coefficients and z = exp(s T), the band mapped to half a
     circle (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's middle, and a
@@ -49,7 +49,8 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
     period = _SPAN / (2.0 * step)
     count = responses.shape[2]
     highest = max(orders)
-    normal = [_products(responses[:, output], weights[:, output], highest) for output in range(responses.shape[1])]
+    angles = _SPAN * np.pi * (frequencies - frequencies[0]) / step
+    normal = [_products(angles, responses[:, output], weights[:, output], highest) for output in range(responses.shape[1])]
     found: list[Poles] = []
     for order in orders:
         size = order + 1
@@ -58,10 +59,9 @@ def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) ->
     return tuple(found)
 
 
-def _products(rows: Array, weight: Array, highest: int) -> tuple[Array, Array, Array]:
+def _products(angles: Array, rows: Array, weight: Array, highest: int) -> tuple[Array, Array, Array]:
     """Lag sums of w^2, w^2 H and w^2 H^H H over the band: the normal equations are Toeplitz in the powers of z."""
     lines = len(rows)
-    angles = _SPAN * np.pi * np.arange(lines) / lines
     lags = np.exp(1j * np.outer(np.arange(-highest, highest + 1), angles))
     squared = weight**2
     power = squared[:, None, None] * np.conj(rows[:, :, None]) * rows[:, None, :]

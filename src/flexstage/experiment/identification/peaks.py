@@ -13,7 +13,7 @@ from scipy.special import fdtrc
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import VIEW
-from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.identification.evidence import Evidence, is_even
 from flexstage.experiment.identification.group import Lost
 from flexstage.experiment.identification.tones import Tone
 from flexstage.experiment.record import Channel, Responses
@@ -157,7 +157,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
 
     Each line is held against a cubic through its neighbours from the 2nd to the 12th on both sides, the variance being what that leaves
     (an F-test); it stands out if one of twenty such data sets would show any by chance. Lines within four half-widths of a mode, or three
-    lines, belong to it.
+    lines, belong to it. Lines that lie unevenly have no such neighbours.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]
@@ -167,7 +167,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
     """
     lines, rest, poles = left.lines, left.rest, left.poles
     step = float(responses.frequencies[1] - responses.frequencies[0])
-    if len(lines) <= 2 * _REACH:
+    if len(lines) <= 2 * _REACH or not is_even(lines):
         return []
     ratio = _prominence(rest)
     chance = fdtrc(2, 2 * _FREE, ratio) * ratio.size

@@ -98,6 +98,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     strokes = commands / (1.0 + 1j * used[:, None] / plan.bandwidths)
     seen = filtered[:, None] / (1.0 + 1j * used[:, None] / plan.lags)
     motion = _plant(model, ports(model, plan.gauges, plan.actuators), used, damping) * strokes[:, None, :]
+    motion = motion * np.exp(-2j * np.pi * used * plan.setup.delay)[:, None, None] if plan.setup.delay else motion
     white = butterworth(lines, plan.setup.filter.order, plan.corner)[:, None] / (1.0 + 1j * lines[:, None] / plan.lags)
     return Chain(
         size=size,
@@ -158,7 +159,7 @@ def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
     order = plan.setup.filter.order
     filtering = _FORGOTTEN / (2.0 * np.pi * plan.corner * np.sin(0.5 * np.pi / order)) if order else 0.0
     edges = _SPREAD / (TAPER * plan.band[1]) + (_SPREAD / (0.5 * plan.band[0]) if plan.band[0] else 0.0)
-    return _FORGOTTEN / float(decays[slowest]) + lags + filtering + edges
+    return _FORGOTTEN / float(decays[slowest]) + lags + filtering + edges + plan.setup.delay
 
 
 def _block(memory: float, rate: float) -> int:

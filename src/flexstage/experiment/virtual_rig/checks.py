@@ -40,6 +40,8 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     for where, value in (("gauge noise", sensing.density), ("resolution", sensing.resolution), ("drift", sensing.drift)):
         if value is not None and not 0.0 <= value < np.inf:
             yield Finding(where, f"it is {value:g} m", "Give a number of 0 or more")
+    if not 0.0 <= setup.delay < np.inf:
+        yield Finding("delay", f"it is {setup.delay:g} s", "Give a time of 0 or more")
 
 
 def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:

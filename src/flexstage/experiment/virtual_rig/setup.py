@@ -64,7 +64,7 @@ class Sensing:
 
 @dataclass(frozen=True)
 class RigSetup:
-    """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`.
+    """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
 
     A test whose peaks ask for more than the amplifier's current is refused, since a saturated amplifier is not linear.
     Without a rate it is the least power of two that is ten times the highest platform mode. The same set-up of the same stage gives
@@ -83,3 +83,4 @@ class RigSetup:
     sensing: Sensing = field(default_factory=Sensing)
     tap: Tap = Tap.MONITOR
     recorded: Recorded = Recorded.STROKE
+    delay: float = 0.0

@@ -1,0 +1,118 @@
+"""How late all outputs together come: the pure delay of a test's converters and filters, told by the phase of the modes' residues."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.lines import Lines
+from flexstage.experiment.record import Channel
+from flexstage.experiment.unit import same_dimension, unit_problem
+
+_LEAST_REAL, _SURE = 0.9, 5.0
+_UNSURE = 0.01
+_ONE, _FEW, _ENOUGH = 0.45, 3.0, 3
+_FINE = 40.0
+_TURNED, _BESIDE = 0.05, 24.0
+
+
+@dataclass(frozen=True)
+class Delay:
+    """How much later [s] outputs come than the modes alone would have it, with its standard deviation."""
+
+    value: float
+    deviation: float
+
+
+def common_delay(found: Identified) -> Delay | None:
+    """The delay that makes the modes those of a stage whose damping is proportional: shapes and participations all in phase or opposite.
+
+    A mode's residue R in H = R/(s - p) + ... is imaginary then (real where a velocity is read; Heylen, Lammens & Sas, Modal Analysis
+    Theory and Testing, 1997, A.1), and e^{-p tau} times that with a delay: the phase falls with frequency. Lags and filters that turn
+    phase alike count as delay. Signs of residues are unknown, so three modes tell delays up to 3 periods of the lowest, fewer up to
+    0.45. `None` where no delay makes the residues imaginary, or where it is not told from none.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> from flexstage.experiment.record import in_memory
+    >>> made = one_mode_record()
+    >>> late = in_memory(made.channels, made.rate, np.stack([made.values[2:, 0], made.values[:-2, 1]], axis=1))  # by 2 / 64 s
+    >>> round(identify(late).delay, 3)
+    0.031
+    """
+    terms = [_residue(found, group) for group in _groups(found)] if len(found.frequencies) else []
+    if not terms:
+        return None
+    squares, poles, spreads = (np.array(column) for column in zip(*terms, strict=True))
+    turning = np.abs(np.imag(poles))
+    weights = 1.0 / (spreads**2 + _UNSURE**2)
+    longest = (_FEW if len(terms) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
+    tried = np.arange(0.0, longest, 2.0 * np.pi / (_FINE * np.max(turning)))
+    real = np.real(np.exp(2j * np.outer(tried, turning)) @ (weights * squares)) / np.sum(weights)
+    if np.max(real) < _LEAST_REAL:
+        return None
+    value = float(tried[int(np.argmax(real))])
+    for _ in range(3):
+        left = -0.5 * np.angle(squares * np.exp(2j * turning * value))
+        value += float(np.sum(weights * turning * left) / np.sum(weights * turning**2))
+    left = -0.5 * np.angle(squares * np.exp(2j * turning * value))
+    scatter = float(np.sum(weights * left**2)) / max(1, len(terms) - 1)
+    deviation = float(np.sqrt(max(1.0, scatter) / np.sum(weights * turning**2)))
+    return Delay(value, deviation) if value > _SURE * deviation else None
+
+
+def bends_modes(found: Identified, delay: Delay) -> bool:
+    """Whether a delay turns phase within a mode's band by so much (0.05 rad) that modes without it do not fit."""
+    widths = found.frequencies * found.damping
+    return bool(2.0 * np.pi * delay.value * _BESIDE * float(np.max(widths)) > _TURNED)
+
+
+def take_out_delay(known: Evidence, seconds: float) -> Evidence:
+    """The evidence with outputs as much earlier: multiplied by e^{j omega tau}, line by line."""
+
+    def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
+        for each in known.lines(number, parts):
+            yield replace(each, outputs=each.outputs * _turn(each.frequencies, seconds)[:, None])
+
+    responses = known.responses
+    earlier = responses.values * _turn(responses.frequencies, seconds)[:, None, None]
+    return replace(known, responses=replace(responses, values=earlier), lines=lines)
+
+
+def _turn(frequencies: Array, seconds: float) -> Array:
+    return np.exp(2j * np.pi * frequencies * seconds)
+
+
+def _groups(found: Identified) -> list[tuple[int, ...]]:
+    """Modes that lie too close to be told apart together, each other by itself."""
+    together = set(chain.from_iterable(found.close))
+    return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
+
+
+def _residue(found: Identified, group: tuple[int, ...]) -> tuple[complex, complex, float]:
+    """Of a group: its residues' mean square over their mean power (1 where all are imaginary), its mean pole, how sure its phase is."""
+    chosen = list(group)
+    pole = complex(np.mean(found.poles[chosen]))
+    rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
+    residues = (found.shapes[:, chosen] / rates[:, None]) @ (found.participation[chosen] * driven)
+    size = np.max(np.abs(found.shapes[:, :, None] * found.participation), axis=1)
+    scaled = residues / np.where(size > 0.0, size, 1.0)
+    power = float(np.sum(np.abs(scaled) ** 2))
+    square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
+    spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
+    return square, pole, spread
+
+
+def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
+    """Velocities of a free decay over its motions, up to a positive factor: p/|p|; 1 for all else."""
+    return np.array([pole / abs(pole) if _is_rate(channel.unit) else 1.0 for channel in channels])
+
+
+def _is_rate(unit: str) -> bool:
+    return bool(unit) and unit_problem(unit) is None and any(same_dimension(unit, each) for each in ("m/s", "rad/s"))

@@ -1,0 +1,85 @@
+"""Modes behind a delay and at uneven lines are the modes the records were made of; a delay is told as it is, or not at all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identify import identify
+from flexstage.experiment.identification.lateness import common_delay
+from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role
+from tests.conftest import FULL
+from tests.models.synthetic_records import record, truth
+
+TRUTH = truth((118.0, 119.4, 231.0), outputs=3, inputs=3)
+LATE = 1.2e-3
+STEPPED = np.concatenate([np.arange(80.0, 110.0), np.arange(110.0, 126.0, 0.1), np.arange(126.0, 225.0), np.arange(225.0, 320.0, 0.3)])
+LINES = {"logarithmic": np.geomspace(80.0, 400.0, 700), "stepped": STEPPED}
+
+
+def late(made: Record, samples: int) -> Record:
+    """The record with outputs whole samples late."""
+    count = len(made.inputs)
+    values = np.hstack([made.values[samples:, :count], made.values[:-samples, count:]])
+    return replace(made, samples=InMemory(values))
+
+
+def responses(lines: np.ndarray, seconds: float, seed: int = 1, unit: str = "um", noise: float = 0.01) -> Responses:
+    exact = TRUTH.response(lines) * np.exp(-2j * np.pi * lines * seconds)[:, None, None]
+    exact = exact * (2j * np.pi * lines)[:, None, None] if unit.endswith("/s") else exact
+    draw = np.random.default_rng(seed).standard_normal((2, *exact.shape))
+    values = exact + noise * np.sqrt(0.5 * np.mean(np.abs(exact) ** 2)) * (draw[0] + 1j * draw[1])
+    outputs, inputs = (
+        tuple(Channel(f"{name}{each}", of, role) for each in range(3))
+        for name, of, role in (("y", unit, Role.OUTPUT), ("u", "um", Role.INPUT))
+    )
+    return Responses(lines, outputs, inputs, values)
+
+
+def scores(found: Identified) -> np.ndarray:
+    """Errors of frequencies and damping over their stated deviations."""
+    assert len(found.frequencies) == 3
+    frequency = (found.frequencies - TRUTH.frequencies) / found.frequency_deviations
+    return np.concatenate([frequency, (found.damping - TRUTH.damping) / found.damping_deviations])
+
+
+@pytest.mark.parametrize(("lines", "seconds", "unit"), [("logarithmic", LATE, "um/s"), ("stepped", 0.0, "um"), ("stepped", LATE, "um")])
+def test_modes_at_uneven_lines_are_those_of_the_truth(lines: str, seconds: float, unit: str) -> None:
+    found = identify(responses(LINES[lines], seconds, unit=unit))
+    assert np.sqrt(np.mean(scores(found) ** 2)) < 2.0  # 6 numbers: chi-square passes that once in 1500
+    assert found.delay == pytest.approx(seconds, abs=3e-6)
+    assert abs(found.delay - seconds) <= 4.0 * found.delay_deviation
+
+
+@pytest.mark.full
+def test_errors_at_uneven_lines_are_as_large_as_stated() -> None:
+    found = np.array([scores(identify(responses(STEPPED, LATE, seed))) for seed in range(60)])
+    assert 0.75 < np.sqrt(np.mean(found**2)) < 1.3
+
+
+def test_a_record_with_a_delay_gives_the_modes_of_the_same_without() -> None:
+    made = record(TRUTH, 1, seconds=60.0 if FULL else 20.0)
+    plain, behind = identify(made), identify(late(made, 3))
+    assert plain.delay == 0.0
+    assert abs(behind.delay - 3.0 / made.rate) < 4.0 * behind.delay_deviation + 2e-6
+    np.testing.assert_allclose(behind.frequencies, plain.frequencies, rtol=0.0, atol=np.min(plain.frequency_deviations))
+    lines = np.linspace(80.0, 320.0, 400)
+    exact = TRUTH.response(lines) * np.exp(-2j * np.pi * lines * 3.0 / made.rate)[:, None, None]
+    away = behind.response(lines).values - exact
+    assert np.sqrt(np.mean(np.abs(away) ** 2) / np.mean(np.abs(exact) ** 2)) < 0.02
+
+
+def test_no_delay_is_told_of_travelling_waves() -> None:
+    lines = np.linspace(80.0, 320.0, 400)
+    twisted = replace(TRUTH, shapes=TRUTH.shapes * np.exp(2j * np.pi * np.random.default_rng(4).random(TRUTH.shapes.shape)))
+    poles, residues = TRUTH.poles, TRUTH.participation * (2 * np.pi * TRUTH.frequencies[:, None]) ** 2
+    values = np.zeros((len(lines), 3, 3), dtype=complex)
+    for pole, shape, row in zip(poles, twisted.shapes.T, residues / (2j * np.imag(poles))[:, None], strict=True):
+        for one, each in ((pole, np.outer(shape, row)), (np.conj(pole), np.conj(np.outer(shape, row)))):
+            values += each / (2j * np.pi * lines - one)[:, None, None]
+    found = identify(replace(responses(lines, 0.0), values=values))
+    assert found.delay == 0.0
+    assert common_delay(found) is None
