@@ -10,6 +10,7 @@ from flexstage.base.sheet import rows_of
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.disk import DiskMargin
+from flexstage.control.measured_margins import Reading
 from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.runs import Run, StepAnswer
@@ -128,6 +129,33 @@ def _disk_margin_notes(found: DiskMargin | None) -> Iterator[str]:
         span = f"{number(found.gain_low, 3)} to {number(found.gain_high, 3)}"
         turn = number(float(np.rad2deg(found.phase)), 3)
         yield f"All loops at once: disk margin {number(found.guaranteed, 3)}, that is every gain by {span}, or every phase by {turn} deg."
+
+
+def measured_table(found: LoopStudy) -> Table | None:
+    """Margins read off the responses of a test, beside what the plants of fit and model give at the same lines; `None` without a test."""
+    seen = found.measured
+    if seen is None:
+        return None
+    rows = [("peak of S", "", *_reading(seen.peak, 1.0))]
+    for each in seen.channels:
+        rows += [
+            ("gain up to", each.channel, *_reading(each.gain_high, 1.0)),
+            ("phase [deg]", each.channel, *_reading(each.phase, float(np.rad2deg(1.0)))),
+            ("rejects to [Hz]", each.channel, *_reading(each.rejection, 1.0)),
+        ]
+    low, high = seen.band
+    notes = [
+        f"Read off {seen.lines} lines from {number(low, 4)} to {number(high, 4)} Hz; between them a peak may be higher.",
+        "Fitted: of the modes found, on which the loop was tuned. Model: of the design, without the delay that was found.",
+    ]
+    heads = ["what", "loop", "measured", "95 % interval", "fitted", "model"]
+    return make_table("Margins on the measured responses", heads, rows, notes=notes)
+
+
+def _reading(each: Reading, factor: float) -> tuple[str, str, str, str]:
+    known = each.low is not None and each.high is not None and np.isfinite(each.low)
+    interval = f"{number(factor * (each.low or 0.0), 3)} to {number(factor * (each.high or 0.0), 3)}" if known else NO_VALUE
+    return number(factor * each.value, 4), interval, number(factor * each.fitted, 4), number(factor * each.predicted, 4)
 
 
 def _range(low: float, high: float) -> str:

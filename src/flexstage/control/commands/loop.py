@@ -34,6 +34,9 @@ from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.aim import Aim
+from flexstage.experiment.formats.read import read
+from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
+from flexstage.experiment.record import Record, Responses
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
@@ -121,6 +124,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     load: Load = None,
     hold: Held = None,
     temperature: Warmth = None,
+    record: Annotated[
+        list[Path] | None,
+        text_option("--record", "FILE", "Records or responses of a test: the plant is what they tell, not the model. Several times."),
+    ] = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -180,7 +187,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports)])
     there = stance_at(mechanism, place(at, load, hold, temperature), asked.model)
     with progress_bar() as shown:
-        found = loop_study(mechanism, asked, there=there, tell=shown.share)
+        test = None if not record else _tested(record, shown.share)
+        found = loop_study(mechanism, asked, there=there, test=test, tell=shown.share)
     if report is not None:
         save(report, loop_report(found), "--report")
     for target in exports:
@@ -197,6 +205,19 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         cautions=(*stance_cautions(there), *found.cautions),
         beside=(report,),
     )
+
+
+def _tested(paths: Sequence[Path], tell: Told) -> Identification:
+    """The modes of records or responses, all of one test."""
+    findings: list[Finding] = []
+    contents: list[Record | Responses] = []
+    for path in dict.fromkeys(paths):
+        try:
+            contents.append(read(path))
+        except DesignError as error:
+            findings += error.findings
+    require(findings)
+    return identification(usable_measurement(contents, told=tell), told=tell)
 
 
 def _write_example(design: Path, example: Path) -> None:
@@ -329,6 +350,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.loop_table(found)
     yield tables.law_table(found)
     yield tables.margin_table(found)
+    yield tables.measured_table(found)
     yield tables.step_table(found.runs)
     yield tables.tracking_table(found.runs)
     yield None if found.static_errors is None else errors.rest_table(found.static_errors)

@@ -13,12 +13,14 @@ from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.measured_plant import measured_plant
 from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.floor import floor_spectra
 from flexstage.control.study.setup import GaugeSetup, LoopSetup
+from flexstage.experiment.identification.identified import Identified
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
@@ -39,7 +41,7 @@ class ResolvedSetup:
 
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
-    brought somewhere, where it has already sagged.
+    brought somewhere, where it has already sagged. Where the plant is a measured one, `predicted` is that of the model.
     """
 
     mechanism: Mechanism
@@ -51,6 +53,7 @@ class ResolvedSetup:
     floor: Mapping[str, Spectrum]
     highest: float
     displaced: bool = False
+    predicted: Plant | None = None
 
     @property
     def rate(self) -> float:
@@ -88,6 +91,22 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
     whole = plant(model, kinematics, given)
     found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
     return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest, there is not None)
+
+
+def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
+    """The same loop on the plant that a test found. Raises `DesignError` as `measured_plant` does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> on_test(resolve(parallelogram(), LoopSetup()), identify(one_mode_record()))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: --record: B: no input of the record is called so. There are u; a loop needs all.
+    --record: S: no output of the record is called so. There are y; a loop needs all.
+    """
+    seen = measured_plant(given.plant, given.model, found)
+    return replace(given, plant=seen, whole=seen, predicted=given.plant)
 
 
 def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.stance import Stance
-from flexstage.base.finding import Finding, refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table, first_design
@@ -20,6 +20,7 @@ from flexstage.base.threads import one_thread
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.curves import Curves, curves
 from flexstage.control.disk import DiskMargin, disk_margins
+from flexstage.control.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.noise import NoiseBudget, noise_budget
 from flexstage.control.plants import Plant
 from flexstage.control.simulation.result import Simulated
@@ -27,17 +28,18 @@ from flexstage.control.stability import Verdict, require_stable, verdict
 from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control, make_controller
-from flexstage.control.study.resolve import ResolvedSetup, resolve
+from flexstage.control.study.resolve import ResolvedSetup, on_test, resolve
 from flexstage.control.study.rest import RestErrors, rest_errors
 from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
-from flexstage.experiment.pipeline import Told
+from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
 
 _Found = TypeVar("_Found")
 _LOWEST = 0.1
 _NO_LOOP = "the stage is commanded in open loop"
+_NO_TEST = "no record of a test is given"
 _NO_STROKES = "forces drive the stage: no stroke is lost, and it stands where its stiffness lets it"
 
 
@@ -74,6 +76,7 @@ class LoopStudy(InNotebook):
     runs: tuple[Run, ...]
     cautions: Annotated[tuple[Finding, ...], INNER]
     reasons: Mapping[str, str]
+    measured: MeasuredMargins | None = None
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
@@ -104,10 +107,18 @@ class LoopStudy(InNotebook):
 
 
 @one_thread
-def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: Stance | None = None, tell: Told | None = None) -> LoopStudy:
+def loop_study(
+    mechanism: Mechanism,
+    setup: LoopSetup | None = None,
+    *,
+    there: Stance | None = None,
+    test: Identification | None = None,
+    tell: Told | None = None,
+) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
 
-    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up.
+    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up. With a `test` it
+    is what that found of strokes and gauges (`measured_plant`), and margins are read off its responses too (`measured`).
 
     Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.
 
@@ -118,6 +129,7 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: S
     """
     said = _Steps(tell)
     given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there))
+    given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
     control = said.of(0.05, "tuning", lambda: make_controller(given, pose_gains(given, lost)))
     closed = loop(given.plant, control.system)
@@ -128,6 +140,8 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: S
     stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
     is_closed = setup is None or setup.controller.law is not ControllerKind.NONE
     tested = said.of(0.6, "simulating", lambda: runs(given, control, closed, stacks, carried))
+    measured = None if test is None or not is_closed else measured_margins(closed, test, given.predicted or given.plant)
+    require(() if test is None or measured is None else coherence_findings(test, measured))
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
     still = simulate_rest(given, control, closed)
     resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
@@ -152,12 +166,14 @@ def loop_study(mechanism: Mechanism, setup: LoopSetup | None = None, *, there: S
         hysteresis=None if stacks is None else sweep_stacks(stacks),
         runs=tested,
         cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
-        reasons=Table(_reasons(is_closed=is_closed, forced=lost is None)),
+        reasons=Table(_reasons(is_closed=is_closed, forced=lost is None, tested=test is not None)),
+        measured=measured,
     )
 
 
-def _reasons(*, is_closed: bool, forced: bool) -> dict[str, str]:
-    open_loop = {} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves"), _NO_LOOP)
+def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
+    open_loop = {} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves", "measured"), _NO_LOOP)
+    open_loop |= {} if tested else {"measured": _NO_TEST}
     return open_loop | ({"static_errors": _NO_STROKES} if forced else {})
 
 

@@ -1,0 +1,252 @@
+"""Margins read off measured frequency responses themselves, with their uncertainty, beside what the models of the plant predict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.dimension import dimension_of
+from flexstage.base.finding import Finding
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.quantity import ANGLE, FREQUENCY
+from flexstage.base.record import INNER, VIEW
+from flexstage.control.closed import Loop
+from flexstage.control.controllers.decentralised import channels
+from flexstage.control.controllers.pose_plant import pose_plant
+from flexstage.control.coordinates import Coordinates
+from flexstage.control.plants import Plant
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System
+from flexstage.experiment.pipeline import Identification
+
+_DRAWS, _SEED = 100, 0
+_ENDS = (0.025, 0.975)
+_COHERENT = 0.5
+_AROUND = 1.5
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A number read off responses: its `value`, the ends `low` and `high` that hold it by 95 % (None: the responses do not say).
+
+    `fitted` is that of the plant that was tuned, `predicted` that of the stage's model, both at the same lines (NaN: there is no edge).
+    """
+
+    value: float
+    low: float | None
+    high: float | None
+    fitted: float
+    predicted: float
+
+
+@dataclass(frozen=True)
+class ReadChannel:
+    """Margins of one loop, the others closed: largest factor on its gain, `phase` [rad], and the frequency up to which |S_ii| < 1."""
+
+    channel: Annotated[str, INNER]
+    gain_high: Reading
+    phase: Annotated[Reading, ANGLE]
+    rejection: Annotated[Reading, FREQUENCY]
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredMargins(InNotebook):
+    """What the lines of a test say of the loop: the peak of S (largest singular value, rotations as lengths) and margins by coordinate.
+
+    From `band` [Hz], `lines` of them; between lines nothing is known, so a peak narrower than their distance may be higher.
+    """
+
+    band: Annotated[tuple[float, float], FREQUENCY]
+    lines: int
+    peak: Reading
+    peak_frequency: Annotated[float, FREQUENCY]
+    channels: Annotated[tuple[ReadChannel, ...], INNER]
+
+    @property
+    def loops(self) -> Annotated[Mapping[str, ReadChannel], VIEW]:
+        """Margins by channel."""
+        return {each.channel: each for each in self.channels}
+
+
+def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
+    """Margins of a loop on the responses of a test, hold and delay of the loop added: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
+
+    P is H1, or the analyser's response. Its errors are taken as circular and normal, of variance S_vv (S_xx^-1)_jj / n at entry ij
+    (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9; of stored responses |H|^2 (1 - g^2)/(n g^2)); ends are quantiles of 100 draws
+    about their median. Stored responses are taken as measured input by input, each driven alone.
+    H_0 is the hold's response; what folds back of frequencies above half the sampling rate is not counted.
+
+    Only lines within the band that was searched, below half the sampling rate, count.
+    """
+    loop, found = closed.plant.coordinates, seen.found
+    lines = found.responses.frequencies
+    step = closed.step or 0.0
+    inside = (lines >= found.band[0]) & (lines <= found.band[1]) & (lines < (0.5 / step if step else np.inf))
+    lines = lines[inside]
+    rows = [[each.name for each in found.outputs].index(name) for name in loop.gauges]
+    columns = [[each.name for each in found.inputs].index(name) for name in loop.actuators]
+    outer = np.array([float(dimension_of(found.outputs[row].unit).size) for row in rows])
+    inner = np.array([float(dimension_of(found.inputs[column].unit).size) for column in columns])
+    chosen = np.ix_(np.flatnonzero(inside).tolist(), rows, columns)
+    scale = outer[:, None] / inner
+    response = found.responses.values[chosen] * scale
+    late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
+    control = _control(closed.controller, loop, lines)
+    whole = _Lines(lines, loop.scale, control)
+    values = whole.read((loop.pose @ response) * late[:, None, None])
+    spread = _deviations(seen)
+    drawn = None if spread is None else _draws(whole, loop, response, spread[chosen] * scale, late)
+    models = [whole.read(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
+    names = loop.names
+
+    def reading(of: Callable[[_Read], float]) -> Reading:
+        low, high = (None, None) if drawn is None else _ends(of(values), np.array([of(each) for each in drawn]))
+        return Reading(of(values), low, high, of(models[0]), of(models[1]))
+
+    return MeasuredMargins(
+        band=(float(lines[0]), float(lines[-1])),
+        lines=len(lines),
+        peak=reading(lambda each: each.peak),
+        peak_frequency=values.peak_frequency,
+        channels=tuple(
+            ReadChannel(
+                name,
+                reading(lambda each, row=row: each.gains[row]),
+                reading(lambda each, row=row: each.phases[row]),
+                reading(lambda each, row=row: each.rejections[row]),
+            )
+            for row, name in enumerate(names)
+        ),
+    )
+
+
+def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterator[Finding]:
+    """Gauges that the inputs do not explain where the loops pass from rejecting to not, in 2/3 to 3/2 of those frequencies."""
+    if seen.multiple is None or seen.spectra is None:
+        return
+    ends = [each.rejection.fitted for each in margins.channels if np.isfinite(each.rejection.fitted)]
+    if not ends:
+        return
+    low, high = min(ends) / _AROUND, max(ends) * _AROUND
+    lines = seen.spectra.frequencies
+    inside = (lines >= low) & (lines <= high)
+    shares = np.median(seen.multiple[inside], axis=0) if np.any(inside) else np.zeros(len(seen.spectra.outputs))
+    for channel, share in zip(seen.spectra.outputs, shares, strict=True):
+        if share < _COHERENT:
+            what = (
+                f"from {low:.3g} to {high:.3g} Hz, where the loops are tuned, inputs explain {share:.0%} of it, {_COHERENT:.0%} are needed"
+            )
+            yield Finding(f"--record: {channel.name}", what, "Drive more there, record longer, or ask for another bandwidth")
+
+
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """What is read off one set of responses."""
+
+    peak: float
+    peak_frequency: float
+    gains: tuple[float, ...]
+    phases: tuple[float, ...]
+    rejections: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
+
+    lines: Array
+    scale: Array
+    control: Array
+
+    def read(self, plant: Array) -> _Read:
+        """Peak and margins of the responses (f, c, n) from commands to pose."""
+        count = plant.shape[1]
+        sensitivity = np.linalg.inv(np.eye(count) + plant @ self.control)
+        peaks = np.linalg.norm(sensitivity * self.scale[:, None] / self.scale, 2, axis=(1, 2))
+        place = int(np.argmax(peaks))
+        own = np.diagonal(sensitivity, axis1=1, axis2=2)
+        return _Read(
+            float(peaks[place]),
+            float(self.lines[place]),
+            tuple(_gain_high(1.0 / each - 1.0) for each in own.T),
+            tuple(_phase(1.0 / each - 1.0) for each in own.T),
+            tuple(_rises(self.lines, np.abs(each)) for each in own.T),
+        )
+
+
+def _ends(value: float, drawn: Array) -> tuple[float, float]:
+    """Quantiles of the draws about their median, set about the value; infinite draws count as they are."""
+    low, middle, high = np.quantile(drawn, (_ENDS[0], 0.5, _ENDS[1]), method="nearest")
+    if not (np.isfinite(low) and np.isfinite(middle)):
+        return float("nan"), float("nan")
+    return float(value + low - middle), float(value + high - middle)
+
+
+def _control(controller: System, loop: Coordinates, lines: Array) -> Array:
+    """From the error of each coordinate to all commands; what the controller takes of the pose is what the error leaves."""
+    names = [channel.name for channel in channels("error", loop)]
+    poses = [channel.name for channel in channels("pose", loop)]
+    whole = resolvent(controller).at(lines)
+    found = np.zeros((len(lines), len(loop.actuators), len(names)), dtype=complex)
+    order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
+    for sign, group in ((1.0, names), (-1.0, poses)):
+        for column, name in enumerate(group):
+            if name in controller.input_names:
+                found[:, :, column] += sign * whole[:, order, controller.input_names.index(name)]
+    return found
+
+
+def _deviations(seen: Identification) -> Array | None:
+    """Standard deviations (f, p, m) of the responses, in their units; None where the test does not say."""
+    responses = seen.found.responses
+    if seen.spectra is not None and seen.multiple is not None:
+        known = seen.spectra
+        noise = np.real(np.diagonal(known.yy, axis1=1, axis2=2)) * (1.0 - np.minimum(seen.multiple, 1.0))
+        entry = np.real(np.diagonal(np.linalg.pinv(known.xx, hermitian=True), axis1=1, axis2=2))
+        free = max(known.independent - len(known.inputs), 1.0)
+        return np.sqrt(noise[:, :, None] * entry[:, None, :] / free)
+    if responses.coherence is None or not responses.averages:
+        return None
+    share = np.clip(responses.coherence, 1e-6, 1.0)
+    return np.abs(responses.values) * np.sqrt((1.0 - share) / (share * responses.averages))
+
+
+def _draws(whole: _Lines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[_Read]:
+    random = np.random.default_rng(_SEED)
+    found = []
+    for _ in range(_DRAWS):
+        noise = random.standard_normal((2, *response.shape)) * np.sqrt(0.5)
+        moved = response + spread * (noise[0] + 1j * noise[1])
+        found.append(whole.read((loop.pose @ moved) * late[:, None, None]))
+    return found
+
+
+def _gain_high(own: Array) -> float:
+    """The least factor above 1 at which L crosses -1/k, between lines straight in the plane."""
+    places = np.flatnonzero(np.imag(own[:-1]) * np.imag(own[1:]) < 0.0)
+    share = np.imag(own[places]) / (np.imag(own[places]) - np.imag(own[places + 1]))
+    real = np.real(own[places]) * (1.0 - share) + np.real(own[places + 1]) * share
+    factors = -1.0 / real[(real < 0.0) & (real > -1.0)]
+    return float(np.min(factors, initial=np.inf))
+
+
+def _phase(own: Array) -> float:
+    """The least turn at which |L| = 1 comes to -1."""
+    sizes = np.log(np.abs(own))
+    places = np.flatnonzero(sizes[:-1] * sizes[1:] < 0.0)
+    share = sizes[places] / (sizes[places] - sizes[places + 1])
+    between = own[places] * (1.0 - share) + own[places + 1] * share
+    return float(np.min(np.abs(np.angle(-between)), initial=np.inf))
+
+
+def _rises(lines: Array, sizes: Array) -> float:
+    """Where |S_ii| first passes 1 from below; NaN where it does not."""
+    places = np.flatnonzero((sizes[:-1] < 1.0) & (sizes[1:] >= 1.0))
+    if not len(places):
+        return float("nan")
+    ends = slice(int(places[0]), int(places[0]) + 2)
+    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(lines[ends]))))

@@ -1,0 +1,134 @@
+"""Loops designed on what a test found hold on the truth behind the test; what is read off the responses is what the truth gives there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
+from flexstage.control.closed import Cut, loop
+from flexstage.control.electronics import hardware
+from flexstage.control.noise import noise_budget
+from flexstage.control.plants import Plant
+from flexstage.control.stability_margins import bandwidths, peaks
+from flexstage.control.study.choices import Criterion
+from flexstage.control.study.setup import Floor, LoopSetup, VibrationSetup
+from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.experiment.pipeline import Identification, identification
+from flexstage.experiment.record import Channel, Responses, Role
+from flexstage.experiment.virtual_rig.rig import rig
+from flexstage.experiment.virtual_rig.setup import NoiseDrive, RigSetup, Sensing
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.frequency import superpose
+from flexstage.models.linear.port import ports
+from flexstage.models.lumped import lumped
+
+SHAKEN = VibrationSetup(criterion=Criterion("VC-D"))
+SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN))
+
+
+def shaken(stage: Mechanism, seconds: float, late: float) -> Identification:
+    made = RigSetup(seconds=seconds, delay=late, seed=1, drive=NoiseDrive(stroke=0.5e-6), sensing=Sensing(density=5e-10))
+    return identification((rig(stage, lumped(stage), made),))
+
+
+def swept(stage: Mechanism, lines: np.ndarray, late: float, *, faster: float = 1.0, noise: float = 2e-3) -> Identification:
+    """Responses at uneven lines; with `faster`, those of a stage whose modes all lie by that factor higher."""
+    model = lumped(stage)
+    gauges = [each.name for each in model.outputs if "." not in each.name]
+    assert model.damping is not None
+    exact = superpose(model, ports(model, gauges, model.strokes), lines / faster, model.damping)
+    lags = np.array([hardware(stage).sensors[name].bandwidth for name in gauges])
+    exact = exact * np.exp(-2j * np.pi * lines * late)[:, None, None] / (1.0 + 1j * lines[:, None] / lags)[:, :, None]
+    draw = np.random.default_rng(2).standard_normal((2, *exact.shape))
+    values = exact * (1.0 + noise * np.sqrt(0.5) * (draw[0] + 1j * draw[1]))
+    outputs, inputs = (
+        tuple(Channel(name, "um", role) for name in names) for names, role in ((gauges, Role.OUTPUT), (model.strokes, Role.INPUT))
+    )
+    return identification(Responses(lines, outputs, inputs, values))
+
+
+def on_truth(truth: Plant, designed: LoopStudy, right: LoopStudy) -> None:
+    """The loop designed on the test, on the truth, beside the one designed on that: the figures that are promised."""
+    closed = loop(truth, designed.controller.system)
+    assert closed.system.growth < 0.0
+    assert peaks(closed, Cut.POSE).sensitivity.value < 2.1
+    assert right.bandwidths is not None
+    np.testing.assert_allclose(bandwidths(closed).rejection, right.bandwidths.rejection, rtol=0.05)
+    outputs = tuple(f"relative.{name}" for name in truth.coordinates.names)
+    found = noise_budget(closed, right.settled.floor, (0.1, 0.5 * right.settled.rate), outputs)
+    np.testing.assert_allclose(found.rms, right.noise.rms, rtol=0.05)
+
+
+def compared(stage: Mechanism, test: Identification, late: float) -> LoopStudy:
+    plain = loop_study(stage, SETUP)
+    right = loop_study(stage, replace(SETUP, delay=plain.plant.hardware.delay + late))
+    designed = loop_study(stage, SETUP, test=test)
+    on_truth(right.settled.whole, designed, right)
+    return designed
+
+
+@cache
+def recorded() -> Identification:
+    return shaken(parallelogram(), 2.0, 60e-6)
+
+
+def test_a_loop_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> None:
+    designed = compared(parallelogram(), recorded(), 60e-6)
+    assert designed.measured is not None
+    mode, lag = 875.4, 3000.0  # what the gauge's lag turns at the mode counts as delay
+    assert designed.settled.predicted is not None
+    behind = designed.plant.hardware.delay - designed.settled.predicted.hardware.delay
+    assert behind == pytest.approx(60e-6 + np.arctan(mode / lag) / (2.0 * np.pi * mode), abs=5e-6)
+    for each in (designed.measured.loops["x"].rejection, designed.measured.loops["x"].phase):
+        assert each.low is not None
+        assert each.high is not None
+        assert each.low < each.value < each.high
+        assert each.low < each.fitted < each.high
+
+
+@pytest.mark.full
+def test_a_loop_designed_at_uneven_lines_is_the_one_of_the_truth() -> None:
+    lines = np.geomspace(20.0, 3000.0, 500)
+    designed = compared(parallelogram(), swept(parallelogram(), lines, 60e-6), 60e-6)
+    assert designed.measured is not None
+    assert designed.measured.peak.low is None  # the responses do not say how sure they are
+    # At the lines the fitted plant is the truth's: what is read off them is what it gives there.
+    assert designed.measured.peak.value == pytest.approx(designed.measured.peak.fitted, rel=0.02)
+
+
+@pytest.mark.full
+def test_a_loop_of_six_axes_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> None:
+    compared(double_triangle(), shaken(double_triangle(), 60.0, 200e-6), 200e-6)
+
+
+@pytest.mark.full
+def test_a_loop_of_six_axes_designed_at_uneven_lines_is_the_one_of_the_truth() -> None:
+    compared(double_triangle(), swept(double_triangle(), np.geomspace(30.0, 700.0, 1500), 200e-6), 200e-6)
+
+
+def test_a_record_of_another_stage_is_refused() -> None:
+    lines = np.geomspace(20.0, 6000.0, 300)
+    with pytest.raises(DesignError, match="it seems to be of another stage"):
+        loop_study(parallelogram(), SETUP, test=swept(parallelogram(), lines, 0.0, faster=1.9))
+    found = swept(parallelogram(), lines, 0.0).found
+    renamed = replace(found, outputs=tuple(replace(each, name=f"T{each.name}") for each in found.outputs))
+    with pytest.raises(DesignError, match="no output of the record is called so"):
+        loop_study(parallelogram(), SETUP, test=Identification(found.responses, renamed))
+    volts = replace(found, inputs=tuple(replace(each, unit="V") for each in found.inputs))
+    with pytest.raises(DesignError, match='its unit is "V", where the loop has m'):
+        loop_study(parallelogram(), SETUP, test=Identification(found.responses, volts))
+
+
+def test_a_record_without_coherence_where_the_loop_is_tuned_is_refused() -> None:
+    seen = recorded()
+    assert seen.multiple is not None
+    lines = seen.spectra.frequencies if seen.spectra is not None else np.zeros(0)
+    deaf = np.where((lines > 20.0)[:, None] & (lines < 1000.0)[:, None], 0.1, seen.multiple)
+    with pytest.raises(DesignError, match="where the loops are tuned, inputs explain 10% of it"):
+        loop_study(parallelogram(), SETUP, test=replace(seen, multiple=deaf))
