@@ -28,7 +28,9 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import ResolvedSetup, resolve
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopNumbers, LoopSetup, NotchAt, VibrationSetup
 from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.goal import Kind, Tuning
+from flexstage.control.tuning.search import Field, Found, Joint, Variant
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.wish import Wish
 
@@ -64,6 +66,35 @@ def test_a_point_is_its_law_and_its_notches(law):
         step = 1e-6 * np.eye(len(point))[number]
         ends = [shape.response(point + sign * step, frequencies)[0] for sign in (1.0, -1.0)]
         assert slope == pytest.approx((ends[0] - ends[1]) / value / 2e-6, rel=1e-5, abs=1e-7)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_what_passes_the_bounds_has_exact_derivatives(count):
+    """Of coupled loops, by differences: peaks of S, rejection, noise and steps all pass theirs. Two loops have formulas of their own."""
+    rng = np.random.default_rng(count)
+    frequencies, lines = np.geomspace(1.0, 900.0, 60), np.linspace(0.0, 1000.0, 1025)
+
+    def plants(at: np.ndarray) -> np.ndarray:
+        own = 1.0 / (1.0 + 0.02j * at / 100.0 - (at / 100.0) ** 2)
+        mixed = np.eye(count) + 0.1 * np.random.default_rng(7).normal(size=(count, count))
+        return (own * np.exp(-2j * np.pi * at * 1e-4))[:, None, None] * mixed
+
+    shape = Shape(1, 5e-4)
+    points = tuple(shape.point(PI(0.3 + 0.02 * loop, 90.0), (Notch(99.0, 0.05, 0.8),)) + 0.02 * rng.normal(size=5) for loop in range(count))
+    wish = Wish(sensitivity=1.2, overshoot=0.02)
+    field = Field(
+        wish, (Variant(0.0, 1.0, 0.0, 1.2),) * 2, np.stack([frequencies] * 2), np.stack([plants(frequencies)] * 2), lines,
+        plants(lines)[None],
+        rng.normal(size=(60, count, 2)), np.ones((60, count)), tuple(range(count)),
+    )  # fmt: skip
+    asked = Joint(field, Found((shape,) * count, points, (0.0,) * count), (Bounds(200.0, 0.01, 0.02, 1.0, 2),) * count, 0.3)
+    point = np.concatenate(points)
+    _, gradient, _ = asked.at(point)
+    for number, slope in enumerate(gradient):
+        step = 1e-6 * np.eye(len(point))[number]
+        assert slope == pytest.approx(
+            (asked.at(point + step)[0] - asked.at(point - step)[0]) / 2e-6, rel=2e-5, abs=1e-5 * np.max(np.abs(gradient))
+        )
 
 
 def test_the_peak_of_s_is_kept_at_every_offset_of_the_modes():
@@ -129,7 +160,7 @@ def test_the_shipped_stage_is_brought_farther_than_by_hand():
     tuned = make_controller(given, gains).tuning
     far, floor = judged(given, closed(given.plant, tuned, 0.0))
     assert np.all(far[[0, 2, 3, 5]] >= [240.0, 190.0, 120.0, 215.0])
-    assert np.all(floor[[0, 2, 3]] <= [4e-9, 3.2e-9, 20e-9])
+    assert np.all(floor[[0, 2, 3]] <= [4e-9, 3.2e-9, 17e-9])
     for offset in (-0.02, -0.01, 0.01, 0.02):
         assert peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0
     assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])

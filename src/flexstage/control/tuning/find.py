@@ -53,7 +53,8 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     """
     require(_findings(plant, asked))
     wish = asked.wish
-    seen = view(plant, loops, wish.spread, tuple(dict.fromkeys(each.offset for each in variants(wish))))
+    between = (-0.5 * wish.spread, 0.5 * wish.spread)
+    seen = view(plant, loops, wish.spread, tuple(dict.fromkeys([*(each.offset for each in variants(wish)), *between])))
     require(_growth_findings(seen))
     for tighter in _TIGHTER:
         within = field(seen, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0)), asked.floor)

@@ -1,10 +1,9 @@
-"""One loop's numbers by least squares: margins, rejection, settling as bounds that count where they are passed."""
+"""Loops' numbers by least squares: margins, rejection, settling as bounds that count where they are passed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
 from typing import TypeAlias
 
 import numpy as np
@@ -18,18 +17,25 @@ STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
 _KEPT = 0.01
 _BELOW = 0.985
 """What |S| is kept below where disturbances are to be rejected."""
+_LESS = 0.95
 _SAMPLES = 512
 _LONGEST = 0.7
 _DAMPINGS = (1e-6, 1e6)
+_STIFFER, _SOFTER = 4.0, 3.0
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a loop has to keep: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], `overshoot` of them."""
+    """What a loop has to keep: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], `overshoot` of them.
+
+    `noise` is the most of its rms at rest. Of the second of `plants` that reject, 0.95 of `rejection` is enough.
+    """
 
     rejection: float
     settling: float
     overshoot: float
+    noise: float = np.inf
+    plants: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +62,11 @@ class OneLoop:
 
     def sensitivities(self, point: Array) -> Array:
         """S (v, f)."""
-        return 1.0 / (1.0 + self.plants * self.shape.response(point, self.frequencies)[0])
+        return 1.0 / (1.0 + self.plants * self.shape.value(point, self.frequencies))
 
     def steps(self, point: Array) -> Array:
         """Answers (w, n) to a step, without the slowest that a period of them does not hold."""
-        return _steps(_following(self.slow[:, 1:] * self.shape.response(point, self.lines[1:])[0], 1.0))
+        return _steps(_following(self.slow[:, 1:] * self.shape.value(point, self.lines[1:]), 1.0))
 
     def noise(self, point: Array) -> float:
         """Mean square at rest."""
@@ -82,36 +88,29 @@ def _steps(following: Array) -> Array:
     return np.cumsum(np.fft.irfft(following, axis=-1), axis=-1)
 
 
-def fit(loop: OneLoop, start: Array, bounds: Bounds, quiet: float, tries: int = 20) -> tuple[Array, float]:
-    """The point near a stable start that keeps the bounds, or passes them least, and by how much at worst (relative).
-
-    Of points that keep them the one of least noise, `quiet` being the weight of its rms over that of the start. Levenberg and Marquardt's
-    rule on what passes the bounds; a step to an unstable loop is not taken.
-    """
-    found = Misfit(loop, bounds, quiet / max(np.sqrt(loop.noise(start)), 1e-300))
-    low, high = loop.shape.bounds(start)
-    point = descend(found.at, start, low, high, tries)
-    return point, found.passed(point)
-
-
 Squares: TypeAlias = tuple[float, Array, Array]
 """Half a sum of squares, its gradient (p,), and Gauss and Newton's curvature (p, p)."""
 
 
-def descend(at: Callable[[Array], Squares | None], start: Array, low: Array, high: Array, tries: int) -> Array:
-    """The point between bounds to which Levenberg and Marquardt's rule comes; where `at` gives none (unstable) it does not go.
+def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
+    """The point within low and high to which Levenberg and Marquardt's rule comes, or the first whose half sum is `enough`.
+
+    Where `at` gives none (unstable) it does not go.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
-    >>> found = descend(bowl, np.array([2.0]), np.array([-5.0]), np.array([5.0]), 20)
+    >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)
     >>> abs(found.round(3)).tolist()
     [0.0]
     """
+    low, high = within
     point, damping = np.clip(start, low, high), 1e-2
     here = at(point)
     if here is None:
         return start
     for _ in range(tries):
         cost, gradient, curvature = here
+        if cost <= enough:
+            break
         free = ~((point <= low) & (gradient > 0.0) | (point >= high) & (gradient < 0.0))
         step = np.zeros(len(point))
         inner = curvature[np.ix_(free, free)]
@@ -119,11 +118,11 @@ def descend(at: Callable[[Array], Squares | None], start: Array, low: Array, hig
         moved = np.clip(point + step * min(1.0, _LONGEST / max(np.max(np.abs(step)), 1e-300)), low, high)
         there = at(moved)
         if there is None or there[0] >= cost:
-            damping *= 8.0
+            damping *= _STIFFER
             if damping >= _DAMPINGS[1]:
                 break
             continue
-        point, here, damping = moved, there, max(damping / 5.0, _DAMPINGS[0])
+        point, here, damping = moved, there, max(damping / _SOFTER, _DAMPINGS[0])
         if cost - there[0] < 1e-6 * cost:
             break
     return point
@@ -147,74 +146,78 @@ class Misfit:
     bounds: Bounds
     quiet: float
 
-    def at(self, point: Array) -> Squares | None:
-        """The sum of squares; `None` where a plant is unstable."""
-        terms = self.terms(point)
-        return None if terms is None else sum_squares(terms, len(point))
-
-    def terms(self, point: Array) -> Iterator[tuple[Array, Array]] | None:
-        """Residuals and their derivatives; `None` where a plant is unstable."""
-        one = self.loop
-        value, slopes = one.shape.response(point, one.frequencies)
-        own = 1.0 / (1.0 + one.plants * value)
-        if not np.all(encircles_nothing(1.0 / own)):
-            return None
-        slow_value, slow_slopes = one.shape.response(point, one.lines[1:])
-        following = _following(one.slow[:, 1:] * slow_value, 1.0)
-        return chain(self.peaks(own, slopes), self.rest(own, slopes, following, slow_slopes[:, None, :]))
-
-    def rest(self, own: Array, slopes: Array, following: Array, slow_slopes: Array) -> Iterator[tuple[Array, Array]]:
-        """All but peaks of S, from S (v, f) and T (w, h) of the loop; dS = -S T slopes, slopes (p, v, f) and (p, w, h - 1)."""
-        near = (self.loop.frequencies[0] <= self.bounds.rejection) & (np.abs(own[0]) > _BELOW)
-        yield _over(own[0, near], slopes[:, 0, near], np.full(int(np.sum(near)), _BELOW))
+    def rest(self, own: Array, slopes: Array, following: Array, slow_slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
+        """All but peaks of S, from S (n, f) of plants that reject and T (w, h); dS = -S T slopes, slopes (p, n, f), (p, w, h - 1)."""
+        near = self._rejected() & (np.abs(own) > _BELOW)
+        yield _over(own[near], slopes[:, near], np.full(int(np.sum(near)), _BELOW))
         yield self._noise(own[0], slopes[:, 0])
         yield from self._settling(following, slow_slopes)
 
-    def peaks(self, own: Array, slopes: Array) -> Iterator[tuple[Array, Array]]:
-        """|S| above its limits."""
-        limits = np.broadcast_to(self.loop.limits[:, None], own.shape)
-        over = np.abs(own) > limits
-        yield _over(own[over], slopes[:, over], limits[over])
-
-    def passed(self, point: Array, *, sized: bool = True) -> float:
-        """The largest relative excess over a bound, infinite for an unstable loop."""
-        own = self.loop.sensitivities(point)
-        if sized and not np.all(encircles_nothing(1.0 / own)):
-            return np.inf
-        sizes, steps = np.abs(own), self.loop.steps(point)
-        below, late = self.loop.frequencies[0] <= self.bounds.rejection, self._late(steps.shape[1])
+    def passed(self, point: Array) -> float:
+        """The largest relative excess over a bound, but for peaks of S."""
+        sizes, steps = np.abs(self.loop.sensitivities(point)[: self.bounds.plants]), self.loop.steps(point)
+        below, late = self._rejected(), self._late(steps.shape[1])
         return float(
             max(
-                np.max(sizes / self.loop.limits[:, None]) - 1.0 if sized else 0.0,
-                np.max(sizes[0, below], initial=0.0) - _BELOW,
+                np.max(sizes[below], initial=0.0) - _BELOW,
+                np.sqrt(self.loop.noise(point)) / self.bounds.noise - 1.0,
                 _SHARE * (np.max(np.abs(steps[:, late] - 1.0), initial=0.0) / _BAND - 1.0),
                 np.max(steps) - 1.0 - self.bounds.overshoot,
             )
         )
 
+    def _rejected(self) -> Array:
+        """Where (n, f) disturbances are to be rejected."""
+        count = self.bounds.plants
+        return self.loop.frequencies[:count] <= self.bounds.rejection * np.array([1.0, _LESS])[:count, None]
+
     def _late(self, count: int) -> Array:
         return self.loop.interval * np.arange(count) >= self.bounds.settling
 
     def _noise(self, own: Array, slopes: Array) -> tuple[Array, Array]:
-        """The rms at rest, one number: dS = -S T dlnC, dT = S T dlnC."""
+        """The rms at rest, and by how much it is too high: dS = -S T dlnC, dT = S T dlnC."""
         one, rest = self.loop, 1.0 - own
         rms = np.sqrt(max(float(np.sum(one.disturbed * np.abs(own) ** 2 + one.heard * np.abs(rest) ** 2)), 1e-300))
         change = np.real((one.heard * np.conj(rest) - one.disturbed * np.conj(own)) * own * rest * slopes).sum(axis=-1) / rms
-        return np.array([self.quiet * rms]), self.quiet * change[:, None]
+        over = rms / self.bounds.noise - 1.0
+        if over <= 0.0:
+            return np.array([self.quiet * rms]), self.quiet * change[:, None]
+        return np.array([self.quiet * rms, STIFF * over]), np.stack([self.quiet * change, STIFF / self.bounds.noise * change], axis=-1)
 
-    def _settling(self, following: Array, slopes: Array) -> Iterator[tuple[Array, Array]]:
+    def _settling(self, following: Array, slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
         """Of steps, what is outside its band late, and above the overshoot."""
         steps = _steps(following)
         every = max(1, steps.shape[1] // _SAMPLES)
-        off, late = steps[:, ::every] - 1.0, self._late(steps.shape[1])[::every]
+        late = self._late(steps.shape[1])[every - 1 :: every]
+        off = steps[:, every - 1 :: every] - 1.0
         outside, above = late & (np.abs(off) > _BAND), off > self.bounds.overshoot
         if not np.any(outside) and not np.any(above):
             return
-        spectra = (following * (1.0 - following))[:, 1:] * slopes
-        moved = _steps(np.pad(spectra, ((0, 0), (0, 0), (1, 0))))[..., ::every]
+        moved = _summed((following * (1.0 - following))[:, 1:] * slopes(), every)
         side = np.sign(off[outside])
         yield _STEPS * (side * off[outside] / _BAND - 1.0), _STEPS * moved[:, outside] * side / _BAND
         yield STIFF * (off[above] - self.bounds.overshoot), STIFF * moved[:, above]
+
+
+def _summed(spectra: Array, every: int) -> Array:
+    """Sums over time (..., n) of what has spectra (..., h), nothing at rest, every so many samples, the last one among them.
+
+    A sum is a division by 1 - exp(-i omega T); fewer samples are spectra folded.
+    """
+    half = spectra.shape[-1]
+    turn = np.exp(1j * np.pi * np.arange(1, half + 1) / half)
+    sums = spectra * (turn**every / (turn - 1.0))
+    sums[..., -1] = sums[..., -1].real
+    size = 2 * half // every
+    folded = np.zeros((*spectra.shape[:-1], size // 2 + 1), complex)
+    for number in range(every):
+        places = np.arange(size // 2 + 1) + number * size
+        inside = (places > 0) & (places <= half)
+        folded[..., inside] += sums[..., places[inside] - 1]
+        beyond = (places > half) & (places < 2 * half)
+        folded[..., beyond] += np.conj(sums[..., 2 * half - places[beyond] - 1])
+    found = np.fft.irfft(folded, n=size, axis=-1) / every
+    return found - found[..., -1:]
 
 
 def _over(own: Array, slopes: Array, limits: Array) -> tuple[Array, Array]:

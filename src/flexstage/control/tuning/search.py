@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy
@@ -26,7 +26,7 @@ from flexstage.control.tuning.wish import STABLE, Wish
 _INSIDE = 0.97
 """Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
 _LOOSER, _LATER = 1.5, 8.0
-_SETTLED = 4.5
+_SETTLED = 6.0
 """Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced."""
 _NEAR, _MOST_NOTCHES = 4.0, 3
 _ZEROS = (0.2, 0.8)
@@ -35,18 +35,33 @@ _DRIFT = 1e-9
 """Amplitude density [m/Hz^0.5] at 1 Hz of what is taken to disturb every loop where no floor is stated: it falls with the frequency."""
 _POLE_DAMPINGS, _ZERO_DAMPINGS = (0.8, 2.4), (0.04, 0.12)
 _SCALES = np.geomspace(0.01, 20.0, 40)
-_RATIO, _FINEST, _TRIES, _FITS, _LONG, _STARTS = 1.4, 1.1, 6, 6, 40, 3
-_SHORT = 12
-_CALM, _LEFT, _SLOWEST = 0.05, 0.015, 0.1
+_RATIO, _FINEST, _LEVELS, _STARTS = 1.4, 1.08, 6, 4
+_KICKS, _KICK, _TURN = 4, 0.25, 2.4
+_NEARLY = 0.03
+_LEFT, _SLOWEST = 0.015, 0.1
 _COUPLED = 0.5
-_QUIET_AT_LAST = 0.3
+_NOISIER = 1.65
+"""How much more noise a balance takes than what is quiet and already rejects far."""
 _AMBITION, _BACK = 1.0, 0.8
-_QUIET = 0.05
-_SHARES = (0.95, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
+_SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
 _SAME = 1e-6
 _CORNER, _OF_RATE = 10.0, 0.4
-_PERIODS, _LEAST_LINES, _MOST_LINES = 20.0, 10, 13
-_PLAIN, _AROUND = 110, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
+_RATE = 20.0
+"""Samples of steps in a period of the loops' highest mode."""
+_PERIODS, _LEAST_LINES, _MOST_LINES = 12.0, 9, 12
+_PLAIN, _AROUND = 90, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How bounds are sought: the weight of noise in it, `quiet`, steps tried at most, and the half sum of squares that is `enough`."""
+
+    quiet: float
+    tries: int
+    enough: float = 0.0
+
+
+_CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
 
 
 @dataclass(frozen=True)
@@ -63,10 +78,10 @@ def variants(wish: Wish) -> tuple[Variant, ...]:
     """The plants at which a wish is judged, the model's first.
 
     >>> [each.offset for each in variants(Wish(spread=0.02))]
-    [0.0, -0.02, 0.02, -0.01, 0.01, -0.05, 0.05]
+    [0.0, -0.02, 0.02, -0.05, 0.05]
     """
     limit, spread = wish.sensitivity, wish.spread
-    near = (-spread, spread, -0.5 * spread, 0.5 * spread) if spread else ()
+    near = (-spread, spread) if spread else ()
     far = (-STABLE * spread, STABLE * spread) if spread else ()
     gains = (1.0 - wish.gain, 1.0 + wish.gain) if wish.gain else ()
     delays = (0.5 * wish.delay_margin, wish.delay_margin) if wish.delay_margin else ()
@@ -85,7 +100,8 @@ class Field:
     Each plant has its own frequencies, those of the model by its offset higher: its modes then stand at the same places.
 
     `disturbed` (f, k, d) is the amplitude of each loop's pose by each motion of the floor, `heard` (f, k) that of the gauges' noise,
-    weighted for sums of squares over the frequencies. `alike` gives each loop the first one that is the same.
+    weighted for sums of squares over the frequencies. `alike` gives each loop the first one that is the same, `allowed` the rms at rest
+    that each may have; none: any.
     """
 
     wish: Wish
@@ -97,6 +113,7 @@ class Field:
     disturbed: Array
     heard: Array
     alike: tuple[int, ...]
+    allowed: tuple[float, ...] = ()
 
 
 def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum]) -> Field:
@@ -128,7 +145,8 @@ def _moved(plants: Array, frequencies: Array, case: Variant) -> Array:
 
 def _lines(seen: View) -> Array:
     """Even frequencies [Hz] from 0 to half the rate, so many that a step lasts some periods of the lowest mode."""
-    rate = 40.0 * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1]) if seen.step is None else 1.0 / seen.step
+    rate = _RATE * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1]) * (2.0 if seen.loops.coordinates.forced else 1.0)
+    rate = rate if seen.step is None else min(rate, 1.0 / seen.step)
     power = int(np.clip(np.ceil(np.log2(_PERIODS * rate / float(seen.modes[0]))), _LEAST_LINES, _MOST_LINES))
     return np.linspace(0.0, 0.5 * rate, 2 ** (power - 1) + 1)
 
@@ -180,7 +198,7 @@ class Found:
 
     def responses(self, frequencies: Array) -> Array:
         """C (..., k) of the loops at frequencies (...)."""
-        every = [shape.response(point, frequencies)[0] for shape, point in zip(self.shapes, self.points, strict=True)]
+        every = [shape.value(point, frequencies) for shape, point in zip(self.shapes, self.points, strict=True)]
         return np.stack(every, axis=-1)
 
     @property
@@ -201,19 +219,20 @@ def search(seen: View, within: Field, kind: Kind) -> Found | None:
     """
     shapes = tuple(_shape(seen, kind, loop) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
-    reached = [0.0] * len(shapes)
+    reached, allowed = [0.0] * len(shapes), [np.inf] * len(shapes)
     for block in _blocks(within):
         grids = [_grid(shapes[loop], _places(seen, loop), _first_place(seen, loop)) for loop in block]
         least = [_AMBITION * _first_place(seen, loop) for loop in block]
         found = _best(_part(within, block), tuple(shapes[loop] for loop in block), list(zip(*grids, strict=True)), least)
         if found is None:
             return None
+        noises = _noises(_part(within, block), found)
         for place, loop in enumerate(block):
             first = within.alike[loop]
-            points[first], reached[first] = found.points[place], found.reached[place]
+            points[first], reached[first], allowed[first] = found.points[place], found.reached[place], noises[place]
     for loop, first in enumerate(within.alike):
-        points[loop], reached[loop] = points[first], reached[first]
-    return _together(within, Found(shapes, tuple(points), tuple(reached)))
+        points[loop], reached[loop], allowed[loop] = points[first], reached[first], allowed[first]
+    return _together(replace(within, allowed=tuple(allowed)), Found(shapes, tuple(points), tuple(reached)))
 
 
 def _blocks(within: Field) -> list[tuple[int, ...]]:
@@ -241,19 +260,26 @@ def _part(within: Field, block: tuple[int, ...]) -> Field:
 
 
 def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> Found | None:
-    """From a grid of starts, those that reject farthest made calm, and the calmest brought as far as it goes; `least` [Hz] is wanted."""
+    """From a grid of starts: those that reject farthest made calm, and the first that rejects as far as any brought on."""
     starts = [start for points in grid if (start := _highest_stable(within, Found(shapes, points, (0.0,) * len(points)))) is not None]
     if not starts:
         return None
-    order = sorted(range(len(starts)), key=lambda each: -_far(within, starts[each]))
-    calm = [_fit_together(within, starts[each], _all_bounds(within, [0.0] * len(shapes)), _CALM) for each in order[:_STARTS]]
-    calm = sorted(
-        ((found, passed) for found, passed in calm if np.isfinite(passed)),
-        key=lambda each: sum(np.log(_rms(_beside(within, each[0], loop), each[0].points[loop])) for loop in range(len(shapes))),
-    )
-    begun = [found for found, _ in calm[:1]] + ([starts[each] for each in order[:2]] if len(shapes) == 1 else [])
-    climbs = [_climb(within, each, _wanted(within, each, least)) for each in begun]
-    return max(climbs, key=lambda each: float(np.prod(each.reached)), default=None)
+    far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
+    calm = [_fit_together(within, each, _all_bounds(within, [0.0] * len(shapes)), _CALM)[0] for each in far]
+    calm.sort(key=lambda each: (not _is_calm(within, each), -_far(within, each)))
+    if within.wish.aim is Aim.BALANCE and _is_calm(within, calm[0]):
+        within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
+    return _climb(within, [*calm, *far], _wanted(within, calm[0], least))
+
+
+def _is_calm(within: Field, found: Found) -> bool:
+    """Whether it nearly keeps what does not depend on the aim."""
+    return excess(within, found) <= _NEARLY
+
+
+def _noises(within: Field, found: Found) -> list[float]:
+    """The rms at rest of each loop."""
+    return [_rms(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
 
 
 def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
@@ -268,60 +294,73 @@ def _far(within: Field, found: Found) -> float:
     return float(np.exp(np.mean(np.log(each))))
 
 
-def _climb(within: Field, start: Found, wanted: list[float]) -> Found:
+def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
     """From the first start that keeps what frequencies ask for: all farther, then each by itself, by ever smaller ratios."""
-    best, reached, begun = start, None, [start]
-    for _ in range(_TRIES):
-        tried = [_fit_together(within, each, _all_bounds(within, wanted), _QUIET, 3 if len(wanted) < 3 else 1) for each in begun]
-        nearest, passed = min(tried, key=lambda each: each[1])
-        if keeps(passed):
-            best, reached = nearest, wanted
+    best = None
+    for _ in range(_LEVELS):
+        best = _first_kept(within, starts, wanted)
+        if best is not None:
             break
-        begun = [start, *([nearest] if np.isfinite(passed) else [])]
         wanted = [one / _RATIO for one in wanted]
-    if reached is None or within.wish.aim is Aim.NOISE:
-        return replace(best, reached=(0.0,) * len(wanted))
-    ratio, groups = _RATIO, sorted(set(within.alike))
-    for _ in range(_FITS):
+    if best is None or within.wish.aim is Aim.NOISE:
+        return replace(best or starts[0], reached=(0.0,) * len(wanted))
+    ratio, groups, reached = _RATIO, sorted(set(within.alike)), wanted
+    while ratio > _FINEST:
         for moved in [groups, *([[group] for group in groups] if len(groups) > 1 else [])]:
             farther = [one * (ratio if first in moved else 1.0) for one, first in zip(reached, within.alike, strict=True)]
-            there, passed = _fit_together(within, best, _all_bounds(within, farther), _QUIET)
-            if keeps(passed):
+            there = _first_kept(within, _around(best), farther)
+            if there is not None:
                 best, reached = there, farther
                 break
         else:
             ratio = np.sqrt(ratio)
-            if ratio < _FINEST:
-                break
     return replace(best, reached=tuple(reached))
 
 
+def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> Found | None:
+    """The first that keeps what frequencies ask for."""
+    for start in starts:
+        found, passed = _fit_together(within, start, _all_bounds(within, wanted), _KEEP)
+        if keeps(passed):
+            return found
+    return None
+
+
+def _around(found: Found) -> Iterator[Found]:
+    """A place and some around it, from where the same bounds may be kept although from it they are not."""
+    yield found
+    for number in range(1, _KICKS // len(set(map(id, found.points))) + 1):
+        yield replace(found, points=tuple(point + _KICK * np.sin(_TURN * number * np.arange(1, len(point) + 1)) for point in found.points))
+
+
 def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
-    return [_bounds(within.wish, frequency) for frequency in frequencies]
+    allowed = within.allowed or (np.inf,) * len(within.alike)
+    return [replace(_bounds(within.wish, frequency), noise=noise) for frequency, noise in zip(frequencies, allowed, strict=True)]
 
 
 def _together(within: Field, found: Found) -> Found:
     """All loops at once: the largest share of what was reached that all keep, and with that the least noise."""
     tried, last = found, np.inf
     for share in _SHARES:
-        tried, last = _fit_together(within, tried, _all_bounds(within, [share * one for one in found.reached]), _QUIET_AT_LAST)
+        looser = replace(within, allowed=tuple(one / share for one in within.allowed))
+        tried, last = _fit_together(within, tried, _all_bounds(looser, [share * one for one in found.reached]), _LAST)
         if keeps(last):
             break
     return tried
 
 
-def _fit_together(within: Field, found: Found, bounds: list[Bounds], quiet: float, times: int = 1) -> tuple[Found, float]:
+def _fit_together(within: Field, found: Found, bounds: list[Bounds], effort: Effort) -> tuple[Found, float]:
     """All loops' numbers at once, from those that were found, and by how much bounds are passed at worst."""
-    joint = _Joint(within, found, tuple(bounds), quiet)
+    joint = Joint(within, found, tuple(bounds), effort.quiet)
     start = np.concatenate([found.points[loop] for loop in joint.parts])
     limits = [found.shapes[loop].bounds(found.points[loop]) for loop in joint.parts]
     low, high = (np.concatenate([pair[side] for pair in limits]) for side in (0, 1))
-    best = joint.moved(descend(joint.at, start, low, high, times * max(_SHORT, _LONG // max(1, len(within.alike) - 1))))
+    best = joint.moved(descend(joint.at, start, (low, high), effort.tries, effort.enough))
     return best, joint.passed(best)
 
 
 @dataclass(frozen=True, eq=False)
-class _Joint:
+class Joint:
     """All loops together: what passes their bounds and the coupled peak of S. Loops that are the same have the same numbers."""
 
     within: Field
@@ -349,31 +388,31 @@ class _Joint:
     def at(self, point: Array) -> Squares | None:
         """The sum of squares; `None` where a plant is unstable."""
         within, found = self.within, self.moved(point)
-        whole = coupled_sensitivities(within.plants, found, within.frequencies)
+        values, slopes = self._responses(found, within.frequencies)
+        whole = closed_by(within.plants, values)
         if not _is_stable(whole):
             return None
-        slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
-        slopes, slow_slopes = self._slopes(found, within.frequencies), self._slopes(found, within.lines[None, 1:])
+        slow_values, slow_slopes = self._responses(found, within.lines[None, 1:])
+        slow = closed_by(within.slow[:, 1:], slow_values)
         terms = [_coupled(within, whole, slopes)]
         for loop, misfit in self.misfits.items():
             following = np.pad(1.0 - slow[..., loop, loop], ((0, 0), (1, 0)), constant_values=1.0)
-            own = _by_all(whole, slopes, loop), _by_all(slow, slow_slopes, loop)
-            terms += misfit.rest(whole[..., loop, loop], own[0], following, own[1])
+            count = misfit.bounds.plants
+            own = _by_all(whole[:count], {first: each[:, :count] for first, each in slopes.items()}, loop, within.alike)
+            terms += misfit.rest(whole[:count, :, loop, loop], own, following, partial(_by_all, slow, slow_slopes, loop, within.alike))
         return sum_squares(terms, len(point))
 
-    def _slopes(self, found: Found, frequencies: Array) -> Array:
-        """d ln C (p, v, f, k) of all loops by all numbers."""
-        slopes = np.zeros((self.parts[max(self.parts)].stop, *frequencies.shape, len(self.within.alike)), complex)
-        for loop, first in enumerate(self.within.alike):
-            slopes[self.parts[first], ..., loop] = found.shapes[loop].response(found.points[loop], frequencies)[1]
-        return slopes
+    def _responses(self, found: Found, frequencies: Array) -> tuple[Array, Mapping[int, Array]]:
+        """C (v, f, k) of all loops and, of each different one, d ln C (p, v, f) by its numbers."""
+        each = {loop: found.shapes[loop].response(found.points[loop], frequencies) for loop in self.parts}
+        return np.stack([each[first][0] for first in self.within.alike], axis=-1), {loop: slopes for loop, (_, slopes) in each.items()}
 
     def passed(self, found: Found) -> float:
         """The largest relative excess."""
         within = self.within
         if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
             return np.inf
-        own = [Misfit(_beside(within, found, loop), self.bounds[loop], 0.0).passed(found.points[loop], sized=False) for loop in self.parts]
+        own = [Misfit(_beside(within, found, loop), self.bounds[loop], 0.0).passed(found.points[loop]) for loop in self.parts]
         return max(*own, coupled_peak(within, found) / within.wish.sensitivity / _INSIDE - 1.0)
 
 
@@ -381,16 +420,22 @@ def _rms(one: OneLoop, point: Array) -> float:
     return max(float(np.sqrt(one.noise(point))), 1e-300)
 
 
-def _by_all(whole: Array, slopes: Array, loop: int) -> Array:
-    """What stands for d ln C of a loop where all controllers change: dS_ii = -sum_j T_ij S_ji dlnC_j."""
+def _by_all(whole: Array, slopes: Mapping[int, Array], loop: int, alike: tuple[int, ...]) -> Array:
+    """What stands for d ln C (p, ...) of a loop where all controllers change: dS_ii = -sum_j T_ij S_ji dlnC_j."""
     rest = (np.arange(whole.shape[-1]) == loop) - whole[..., loop, :]
-    shares = rest * whole[..., :, loop] / (rest * whole[..., :, loop])[..., [loop]]
-    return np.einsum("...k,p...k->p...", shares, np.broadcast_to(slopes, (len(slopes), *shares.shape)))
+    shares = rest * whole[..., :, loop]
+    return np.concatenate([each * (_of_first(shares, first, alike) / shares[..., loop]) for first, each in slopes.items()])
+
+
+def _of_first(values: Array, first: int, alike: tuple[int, ...]) -> Array:
+    """Sum of values (..., k) over loops that are the same as the first one."""
+    same = [loop for loop, each in enumerate(alike) if each == first]
+    return values[..., first] if len(same) == 1 else np.sum([values[..., loop] for loop in same], axis=0)
 
 
 def _is_stable(whole: Array) -> bool:
     """Nyquist's criterion for all loops: det(I + L) turns by as much as integrators begin, each loop by itself at the lowest frequency."""
-    turned = np.unwrap(-np.angle(np.linalg.det(whole)), axis=-1)
+    turned = np.unwrap(-np.angle(_determinant(whole)), axis=-1)
     begun = np.sum(np.angle(1.0 / np.einsum("vkk->vk", whole[:, 0])), axis=-1)
     return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
 
@@ -399,17 +444,31 @@ def _beside(within: Field, found: Found, loop: int) -> OneLoop:
     return _one_loop(within, found.shapes[loop], loop, _Left.beside(within, found, loop), 1.0)
 
 
-def _coupled(within: Field, whole: Array, slopes: Array) -> tuple[Array, Array]:
+def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[Array, Array]:
     """Singular values of S above their limits: d sigma = -Re(sum_j u^H T_j S_j v dlnC_j), u and v its directions."""
     limits = np.array([each.limit for each in within.variants])[:, None] * _INSIDE * np.ones(whole.shape[:2])
     over = np.linalg.norm(whole, axis=(-2, -1)) > limits  # the sum of all squared is above the largest
-    left, values, right = np.linalg.svd(whole[over])
-    high = values[:, 0] > limits[over]
-    chosen, limit, value = whole[over][high], limits[over][high], values[high, 0]
-    u, v = np.conj(left[high, :, 0]), np.conj(right[high, 0, :])
+    values, right = _largest_gains(whole[over])
+    high = values > limits[over]
+    chosen, limit, value, v = whole[over][high], limits[over][high], values[high], right[high]
+    u = np.conj(np.einsum("rij,rj->ri", chosen, v)) / value[:, None]
     gains = (u - np.einsum("ri,rij->rj", u, chosen)) * np.einsum("rji,ri->rj", chosen, v)
-    changes = -np.real(np.einsum("rk,prk->pr", gains, slopes[:, over][:, high])) / limit
+    chosen_slopes = [each[:, over][:, high] * _of_first(gains, first, within.alike) for first, each in slopes.items()]
+    changes = -np.real(np.concatenate(chosen_slopes)) / limit
     return STIFF * (value / limit - 1.0), STIFF * changes
+
+
+def _largest_gains(given: Array) -> tuple[Array, Array]:
+    """The largest singular values (r,) of matrices (r, k, k), and their directions v (r, k)."""
+    if given.shape[-1] != 2:
+        _, values, right = np.linalg.svd(given)
+        return values[:, 0], np.conj(right[:, 0, :])
+    squares = np.conj(np.swapaxes(given, -1, -2)) @ given
+    first, second, across = np.real(squares[:, 0, 0]), np.real(squares[:, 1, 1]), squares[:, 0, 1]
+    value = 0.5 * (first + second) + np.hypot(0.5 * (first - second), np.abs(across))
+    larger, least = first >= second, 1e-100  # any direction where both are the same
+    v = np.stack([np.where(larger, value - second + least, across), np.where(larger, np.conj(across), value - first)], axis=-1)
+    return np.sqrt(value), v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -506,12 +565,36 @@ def _bounds(wish: Wish, frequency: float) -> Bounds:
     """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
     far = frequency if wish.aim in (Aim.BALANCE, Aim.REJECTION) else 0.0
     soon = _SETTLED / frequency if wish.aim in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
-    return Bounds(max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT)
+    return Bounds(
+        max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT, plants=2 if wish.spread else 1
+    )
 
 
 def coupled_sensitivities(plants: Array, found: Found, frequencies: Array) -> Array:
     """S (v, f, k, k) of all loops together."""
-    return np.linalg.inv(np.eye(plants.shape[-1]) + plants * found.responses(frequencies)[..., None, :])
+    return closed_by(plants, found.responses(frequencies))
+
+
+def closed_by(plants: Array, responses: Array) -> Array:
+    """S (v, f, k, k) of plants closed by the loops' own responses (v, f, k); of one or two loops by Cramer's rule, which is faster."""
+    returned = np.eye(plants.shape[-1]) + plants * responses[..., None, :]
+    if plants.shape[-1] > 2:
+        return np.linalg.inv(returned)
+    return _adjugate(returned) / _determinant(returned)[..., None, None]
+
+
+def _adjugate(given: Array) -> Array:
+    if given.shape[-1] == 1:
+        return np.ones_like(given)
+    return given[..., ::-1, ::-1].swapaxes(-1, -2) * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+
+def _determinant(given: Array) -> Array:
+    if given.shape[-1] == 1:
+        return given[..., 0, 0]
+    if given.shape[-1] == 2:
+        return given[..., 0, 0] * given[..., 1, 1] - given[..., 0, 1] * given[..., 1, 0]
+    return np.linalg.det(given)
 
 
 def coupled_peak(within: Field, found: Found) -> float:
@@ -528,4 +611,4 @@ def rejects_to(within: Field, found: Found, loop: int) -> float:
 
 def excess(within: Field, found: Found) -> float:
     """By how much at worst, relative, what was asked for is passed."""
-    return _Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)
+    return Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)

@@ -77,9 +77,19 @@ class Shape:
         value, parts = self._law(point, 1j * rate * turned)
         slopes = [part / value for part in parts]
         for frequency, depth, damping in np.exp(self._notch_points(point)):
-            own, further = _notch(turned / self._turned(np.array([frequency]))[0][0], depth, damping)
+            own, further = _notch(turned / self._turned(np.array([frequency]))[0], depth, damping)
             value, slopes = value * own, [*slopes, further[0] * self._warp(frequency), *further[1:]]
         return value, np.array(slopes)
+
+    def value(self, point: Array, frequencies: Array) -> Array:
+        """C (f,) alone."""
+        turned, rate = self._turned(frequencies)
+        value = self._law(point, 1j * rate * turned)[0]
+        for frequency, depth, damping in np.exp(self._notch_points(point)):
+            q = turned / self._turned(np.array([frequency]))[0]
+            rest, below = 1.0 - q**2, 2j * damping * q
+            value = value * ((rest + depth * below) / (rest + below))
+        return value
 
     def _law(self, point: Array, s: Array) -> tuple[Array, list[Array]]:
         """The law's response, and its derivatives by the gains' logarithms."""
@@ -109,7 +119,9 @@ class Shape:
 
 def _notch(q: Array, depth: float, damping: float) -> tuple[Array, tuple[Array, Array, Array]]:
     """N at q = omega/omega_n, and d ln N by ln q, ln depth and ln damping."""
-    above, below = 2j * depth * damping * q, 2j * damping * q
-    zeros, poles = 1.0 - q**2 + above, 1.0 - q**2 + below
-    by_q = (above - 2.0 * q**2) / zeros - (below - 2.0 * q**2) / poles
-    return zeros / poles, (by_q, above / zeros, above / zeros - below / poles)
+    square, below = q**2, 2j * damping * q
+    above, rest = depth * below, 1.0 - square
+    zeros, poles = 1.0 / (rest + above), 1.0 / (rest + below)
+    by_depth, by_pole = above * zeros, below * poles
+    by_q = by_depth - by_pole - 2.0 * square * (zeros - poles)
+    return (rest + above) * poles, (by_q, by_depth, by_depth - by_pole)
