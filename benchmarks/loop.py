@@ -5,6 +5,9 @@ and speed and 18-bit converters, hysteresis of ten plays in every stack, gauges 
 else runs on the machine counts little; ratios say how much faster than real time. python-control is given the loop as one difference
 equation, written plainly with numpy, for a shorter time; its answers are compared with ours over that time, those of C over all of it.
 Targets: numpy at least 3 times faster than real time, C at least 50 times, C equal to numpy to 1e-12.
+
+Then a step of the controller for hardware (`--hardware`) of the shipped stage: PI with notches (target: under 1 us) and LQG in modal form,
+in both precisions, with what they add and multiply and the memory they take.
 """
 
 from __future__ import annotations
@@ -14,8 +17,11 @@ import os
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
+import ctypes
 import importlib.util
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -25,9 +31,17 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from flexstage.base.native import compiler
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.compiled import simulate_compiled
+from flexstage.control.export.code.hardware import FLAGS, Precision, hardware_code
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
+from flexstage.control.study.choices import ControllerKind
+from flexstage.control.study.control import make_controller
+from flexstage.control.study.resolve import resolve
+from flexstage.control.study.runs import driven_machine
+from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from tests.elsewhere.independent_loop import Stepped
 from tests.elsewhere.loops import PLATFORM, RATE, full_loop, way
 from tests.elsewhere.test_loop_simulation import worst
@@ -45,6 +59,48 @@ def told(name: str, spent: float, seconds: float, target: float | None = None) -
     ratio = seconds / spent
     verdict = "" if target is None else f"   target {target:g}: {'met' if ratio >= target else 'MISSED'}"
     print(f"{name:40} {1e6 * spent / seconds / RATE:8.2f} us a sample {ratio:8.1f} times real time{verdict}")
+
+
+STEPS = 1_000_000
+TIMED = """
+#include "stage.h"
+void many(long count);
+void many(long count)
+{
+    static stage_state state; static stage_parameters set; static stage_input in; static stage_output out;
+    long k;
+    stage_init(&state, &set);
+    set.enable = 1;
+    for (k = 0; k < count; k++) {
+        in.reading[0] = (stage_real)(k % 7) * 1e-9f;
+        stage_step(&state, &set, &in, &out);
+    }
+}
+"""
+
+
+def hardware(kind: ControllerKind, precision: Precision) -> None:
+    """What a step of a controller for hardware costs."""
+    given = resolve(double_triangle(), LoopSetup(controller=ControllerSetup(kind=kind)))
+    control = make_controller(given, given.plant.coordinates.strokes)
+    machine = driven_machine(given, control)
+    law = control.made_of if isinstance(control.made_of, Decentralised) else None
+    made = hardware_code(machine, law, simulate(machine, np.full((50, 6), 1e-7)), name="stage", precision=precision)
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        for name, text in {"stage.h": made.header, "stage.c": made.source, "many.c": TIMED}.items():
+            (place / name).write_text(text)
+        flags = [each for each in FLAGS if each != "-Werror"]
+        subprocess.run([*compiler().command, *flags, "-shared", "-fPIC", "stage.c", "many.c", "-o", "many.so"], cwd=place, check=True)
+        library = ctypes.CDLL(str(place / "many.so"))
+        start = time.process_time()
+        library.many(ctypes.c_long(STEPS))
+        spent = (time.process_time() - start) / STEPS
+    verdict = "" if law is None else f"   target 1 us: {'met' if spent < 1e-6 else 'MISSED'}"
+    memory = f"state {made.state}, parameters {made.parameters}, tables {made.tables} bytes"
+    notches = "" if law is None else f", {len(control.notches)} notches"
+    told = f"{kind.value}{notches}, {len(machine.controller.A)} states, {precision.value}"
+    print(f"{told:40} {1e6 * spent:8.3f} us a step, {made.flops} additions and multiplications, {memory}{verdict}")
 
 
 def by_control(reference: np.ndarray) -> tuple[np.ndarray, float]:
@@ -74,6 +130,9 @@ def main() -> None:
         told("generated C", fast, SECONDS, COMPILED)
         difference = max(worst(compiled, found).values())
         print(f"  differs from numpy by {difference:.1e} (target {EQUAL:g})")
+        for kind in (ControllerKind.PI, ControllerKind.LQG):
+            for precision in Precision:
+                hardware(kind, precision)
     if importlib.util.find_spec("control") is None:
         print("python-control is not installed, so it is not compared")
         return

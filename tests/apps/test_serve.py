@@ -390,6 +390,7 @@ def test_a_page_of_a_browser_is_shown_the_door(port):
 @pytest.mark.parametrize("count", [5_000, pytest.param(1_000_000, marks=pytest.mark.full)])
 def test_many_commands(port, count):
     with Client(port) as client:
+        client.socket.settimeout(None)
         client.say("SVO x 1")
         sender = threading.Thread(target=lambda: client.socket.sendall(b"MOV x 1\nPOS? x\n" * (count // 2)))
         sender.start()

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
+import typer
+
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.quantity import (
     ACCELERATION_NOISE,
@@ -21,9 +23,11 @@ from flexstage.base.quantity import (
 )
 from flexstage.control import error_tables as errors
 from flexstage.control import tables
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.hardware import NO_INVERSE, Precision
 from flexstage.control.export.code.text import identifier
-from flexstage.control.export.files import controller_files, export_findings, plant_file
+from flexstage.control.export.files import controller_files, export_findings, hardware_files, hardware_findings, plant_file
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.report import loop_report
 from flexstage.control.study import setup as forms
@@ -137,6 +141,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         list[Path] | None,
         text_option("--export", "FILE", "Write the loop for other programs: plant.mat, controller.c, controller.fmu; several times."),
     ] = None,
+    hardware: Annotated[
+        Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
+    ] = None,
+    single: Annotated[bool, typer.Option("--single", help="With --hardware: numbers of 32 bits instead of 64.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
 ) -> None:
     """Close the control loop of a stage.
@@ -150,7 +158,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     if example is not None:
         _write_example(design, example)
         return
-    _require_names(exports)
+    _require_names(exports, hardware)
     values = Values()
     given = values.attempt(lambda: forms.LoopSetup() if setup is None else load_setup(setup)) or forms.LoopSetup()
     options = {
@@ -183,8 +191,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     }
     asked = _override(given, options)
-    require([*values.findings, *setup_findings(asked)])
-    mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports)])
+    require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware)])
+    outputs = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
+    mechanism = open_design(design, changes, outputs)
     there = stance_at(mechanism, place(at, load, hold, temperature), asked.model)
     with progress_bar() as shown:
         test = None if not record else _tested(record, shown.share)
@@ -193,6 +202,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         save(report, loop_report(found), "--report")
     for target in exports:
         _export(found, target)
+    if hardware is not None:
+        _export_hardware(found, hardware, Precision.SINGLE if single else Precision.DOUBLE)
     answer(
         "loop",
         mechanism,
@@ -322,9 +333,12 @@ def _files(exports: Sequence[Path]) -> Iterator[tuple[str, Path]]:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
 
 
-def _require_names(exports: Sequence[Path]) -> None:
+def _require_names(exports: Sequence[Path], hardware: Path | None) -> None:
     """Refuse what no export is, before anything is computed."""
-    require(Finding(f"--export {each.where}", each.what, each.advice) for target in exports for each in export_findings(target))
+    found = [("--export", each) for target in exports for each in export_findings(target)]
+    if hardware is not None:
+        found += [("--hardware", each) for each in hardware_findings(hardware)]
+    require(Finding(f"{option} {each.where}", each.what, each.advice) for option, each in found)
 
 
 def _export(found: LoopStudy, target: Path) -> None:
@@ -333,6 +347,27 @@ def _export(found: LoopStudy, target: Path) -> None:
         announce(f"Wrote {path}")
     if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
         announce(f"Within {target} the model is called {name}: its own name would not do in C.")
+
+
+def _inverse_findings(asked: forms.LoopSetup, hardware: Path | None) -> Iterator[Finding]:
+    if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
+        yield Finding("--hardware", *NO_INVERSE)
+
+
+def _hardware_files(target: Path | None) -> Iterator[tuple[str, Path]]:
+    """The files of a controller for hardware."""
+    if target is not None:
+        yield from (("--hardware", each) for each in (target, target.with_suffix(".h"), target.with_name(f"{target.stem}_test.c")))
+
+
+def _export_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
+    machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
+    law = made_of if isinstance(made_of, Decentralised) else None
+    about = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
+    files = hardware_files(target, machine, law, found.runs[0].simulated.reference, precision=precision, about=about)
+    for path, content in files.items():
+        write(path, content, "--hardware")
+        announce(f"Wrote {path}")
 
 
 def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:

@@ -12,17 +12,22 @@ import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
 from flexstage.base.store import move_all, write, write_temporary
 from flexstage.base.text import printable
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.hardware import Precision, hardware_code
 from flexstage.control.export.code.program import Program
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.plants import Plant, zero_order_hold
 from flexstage.control.simulation.machine import Machine
+from flexstage.control.simulation.run import simulate
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
+_TESTED = 300
 ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
 """What a loop is exported as, by the ending of the file's name."""
 
@@ -43,6 +48,18 @@ def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
         yield Finding(os.fspath(path), what, f"Call it {name}.c")
 
 
+def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
+    """What keeps a name from being that of a controller for hardware.
+
+    >>> print(*hardware_findings("plant.mat"))
+    plant.mat: its name does not end in .c. Call it plant.c.
+    """
+    if Path(path).suffix != ".c":
+        yield Finding(os.fspath(path), "its name does not end in .c", f"Call it {identifier(Path(path).stem)}.c")
+    else:
+        yield from export_findings(path)
+
+
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "") -> dict[Path, str]:
     """Texts by file of the controller of a machine as C99: `controller.c` and its header beside it, named as its functions.
 
@@ -58,6 +75,20 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
     require(export_findings(path))
     program = controller_code(given, source.stem, about)
     return {source: program.source, source.with_suffix(".h"): program.header}
+
+
+def hardware_files(
+    path: str | os.PathLike[str], given: Machine, law: Decentralised | None, reference: Array, *, precision: Precision, about: str = ""
+) -> dict[Path, str]:
+    """Texts by file of a controller for hardware (see `hardware_code`): `controller.c`, its header, and `controller_test.c`.
+
+    The test is the loop from rest, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises `DesignError` for a
+    name that does not end in `.c` or that functions cannot have.
+    """
+    source = Path(path)
+    require(hardware_findings(path))
+    made = hardware_code(given, law, simulate(given, reference[:_TESTED]), name=source.stem, precision=precision, about=about)
+    return {source: made.source, source.with_suffix(".h"): made.header, source.with_name(f"{source.stem}_test.c"): made.test}
 
 
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:

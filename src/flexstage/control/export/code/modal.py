@@ -1,0 +1,58 @@
+"""A controller in modal form: states that do not feel one another, one by one or in pairs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.system import System
+
+_WORST = 1e8
+
+
+def modal_form(given: System) -> System:
+    """The same system with A of blocks of one and two states: z = V^-1 x, V real vectors of the modes, each of unit length.
+
+    As it is, where its modes are not independent: where V is worse conditioned than 1e8.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> closed = integral_loop().system
+    >>> found = modal_form(closed)
+    >>> both = [each.transfer(np.array([50.0])) for each in (found, closed)]
+    >>> bool(np.count_nonzero(found.A) <= 2 * len(closed.A)), bool(np.allclose(*both))
+    (True, True)
+    """
+    if not len(given.A):
+        return given
+    values, vectors = np.linalg.eig(given.A)
+    basis = _real_basis(values, vectors)
+    if np.linalg.cond(basis) > _WORST:
+        return given
+    back = np.linalg.inv(basis)
+    return replace(given, A=_blocks(values), B=back @ given.B, C=given.C @ basis)
+
+
+def _real_basis(values: Array, vectors: Array) -> Array:
+    """Real parts, and of pairs imaginary parts behind them; of a pair only the first is taken."""
+    columns: list[Array] = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value.imag == 0.0:
+            columns.append(vector.real)
+        elif value.imag > 0.0:
+            columns += [np.sqrt(2.0) * vector.real, np.sqrt(2.0) * vector.imag]
+    return np.stack(columns, axis=-1)
+
+
+def _blocks(values: Array) -> Array:
+    """The blocks that go with the real basis."""
+    found, row = np.zeros((len(values), len(values))), 0
+    for value in values:
+        if value.imag == 0.0:
+            found[row, row] = value.real
+            row += 1
+        elif value.imag > 0.0:
+            found[row : row + 2, row : row + 2] = [[value.real, value.imag], [-value.imag, value.real]]
+            row += 2
+    return found
