@@ -479,7 +479,11 @@ export interface Frequencies {
   problems: Problem[];
 }
 
-/** Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along. */
+/**
+ * Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along.
+ *
+ * `loading` says what the dead load changes where it is felt: stiffness, modes and curves are then those of the loaded stage.
+ */
 export interface Figures {
   kind: "figures";
   revision: number;
@@ -490,6 +494,7 @@ export interface Figures {
   modes: ModeShape[];
   frequency: Floats | null;
   curves: Curve[];
+  loading: string;
   missing: Record<string, string>;
   milliseconds: number;
 }

@@ -65,11 +65,12 @@ export class FigureTable {
   private readonly root = byId("pane-figures");
   private readonly body = h("div", {});
   private readonly pins = h("div", { className: "bar" });
+  private readonly loading = h("p", { className: "quiet" });
   private readonly cells = new Map<string, HTMLElement>();
   private compared: Comparison | null = null;
 
   constructor(private readonly studio: Studio) {
-    fill(this.root, this.pins, this.body);
+    fill(this.root, this.pins, this.loading, this.body);
     studio.figures.watch(() => this.results());
     studio.reach.watch(() => this.results());
     studio.state.watch(() => (this.showPins(), this.age()));
@@ -135,6 +136,7 @@ export class FigureTable {
     const { figures, reach } = this.studio;
     const matrices = ([["Stiffness", figures.value?.stiffness], ["Compliance", figures.value?.compliance]] as const).map(([name, each]) => each && folded(name, matrix(each), name === "Stiffness"));
     const missing = Object.entries({ ...figures.value?.missing, ...reach.value?.missing }).map(([name, reason]) => h("p", { className: "quiet" }, h("b", {}, name), ` ${reason}`));
+    this.loading.textContent = figures.value?.loading ?? "";
     this.cells.clear();
     const closed = new Set([...this.body.querySelectorAll("details:not([open])")].map((each) => each.getAttribute("data-group")));
     const parts = [...groups.map(([name, rows]) => folded(name, this.table(rows), true)), this.strokes(), this.losses(), ...matrices];
@@ -182,8 +184,9 @@ export class FigureTable {
     return h("small", { title }, first ? `${first[0]} ${percent(first[1], 2).replace("+", "")}` : "");
   }
 
-  /** The platform's frequencies while a slider moves; they are in the figures' order. */
+  /** The platform's frequencies while a slider moves, of the stage as it is drawn; they are in the figures' order. */
   private live(said: Frequencies): void {
+    if (this.studio.figures.value?.loading) this.loading.textContent = "While a slider moves, frequencies are of the drawn stage; at rest of the loaded one, whose weight is felt.";
     const keys = this.all().filter((each) => /^frequency\.platform\./.test(each.name) || /platform.*mode|^f\d/.test(each.name));
     for (const [at, each] of keys.entries()) {
       const value = said.frequencies[at];

@@ -559,7 +559,10 @@ class Frequencies:
 
 @dataclass(frozen=True)
 class Figures:
-    """Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along."""
+    """Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along.
+
+    `loading` says what the dead load changes where it is felt: stiffness, modes and curves are then those of the loaded stage.
+    """
 
     revision: int
     figures: tuple[Figure, ...]
@@ -569,6 +572,7 @@ class Figures:
     modes: tuple[ModeShape, ...]
     frequency: Floats | None
     curves: tuple[Curve, ...]
+    loading: str
     missing: dict[str, str]
     milliseconds: float
 

@@ -84,11 +84,11 @@ def bench(text: str, file: str) -> Bench:
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Stiffness, lost motion, modes, frequency responses; `old` values are those of the stored text."""
+    """Stiffness, modes, responses (of the loaded stage where its load is felt), lost motion; `old` values are those of the stored text."""
     timer, known, attempt = Timer(), bench(text, file), Attempts()
-    stiff = attempt.of("stiffness", lambda: statics(known.model))
+    stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
     lost = attempt.of("loss", lambda: known.lost)
-    found = attempt.of("modes", lambda: known.modes)
+    found = attempt.of("modes", lambda: known.felt.modes)
     heard = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
     return Figures(
@@ -97,9 +97,10 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
         None if stiff is None else matrix(stiff.stiffness),
         None if stiff is None else matrix(stiff.compliance),
         () if lost is None else tuple(_losses(lost)),
-        () if found is None else tuple(_modes(known.model, found)),
+        () if found is None else tuple(_modes(known.felt.model, found)),
         None if heard is None else floats(heard.frequencies),
         () if heard is None else tuple(_curves(heard)),
+        "" if found is None else _loading(known),
         missing,
         timer.spent,
     )
@@ -145,8 +146,9 @@ def drawn(text: str, file: str) -> StageData:
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
-    model, kinematics, found = (_known(known, each) for each in ("model", "kinematics", "modes"))
-    return stage_data(known.mechanism, model=model, kinematics=kinematics, found=found, text=text)
+    model, kinematics, felt = (_known(known, each) for each in ("model", "kinematics", "felt"))
+    weighed, found = (None if felt is None else _known(felt, each) for each in ("model", "modes"))
+    return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text)
 
 
 def matrix(found: Labelled) -> Matrix:
@@ -154,6 +156,11 @@ def matrix(found: Labelled) -> Matrix:
     said = found.to_json()
     unit = said["unit"] if isinstance(said["unit"], str) else tuple(map(tuple, said["unit"]))
     return Matrix(tuple(said["rows"]), tuple(said["columns"]), unit, tuple(map(tuple, said["values"])))
+
+
+def _loading(known: Bench) -> str:
+    """What is said where figures are those of the loaded stage; else empty."""
+    return known.loaded.text if known.felt is not known and known.loaded is not None else ""
 
 
 def _known(known: Bench, name: str) -> Any:
@@ -192,7 +199,7 @@ def _strokes(found: SingleAxis) -> Iterator[Stroke]:
 
 def _response(known: Bench, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
-    model = known.model
+    model = known.felt.model
     grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
     return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
 
@@ -271,7 +278,7 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
 
 
 def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
-    return ("modes", lambda: known.modes), ("stiffness", lambda: statics(known.model)), ("loss", lambda: known.lost)
+    return ("modes", lambda: known.felt.modes), ("stiffness", lambda: statics(known.felt.model)), ("loss", lambda: known.lost)
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:

@@ -130,6 +130,7 @@ def stage_data(
     mechanism: Mechanism,
     *,
     model: LinearModel | None = None,
+    weighed: LinearModel | None = None,
     kinematics: Kinematics | None = None,
     found: Modes | None = None,
     text: str = "",
@@ -138,12 +139,13 @@ def stage_data(
     """What a viewer shows of a stage, of the first design of a batch.
 
     `model`, `kinematics` and its modes are worked out (lumped, ideal, those of the platform) where they are not given; what the stage does
-    not have is left out, with its reason among the notes. `text` is that of the design's file, whose lines things are found at. `count` is
+    not have is left out, with its reason among the notes. `weighed` is the model of the modes where that is another one: small motions
+    about the loaded stage. `text` is that of the design's file, whose lines things are found at. `count` is
     how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
     """
     still = still_data(mechanism, text=text)
     notes = list(still.notes)
-    motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, kinematics=kinematics, found=found))
+    motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, weighed=weighed, kinematics=kinematics, found=found))
     return replace(still, motions=motions, notes=tuple(notes))
 
 
@@ -188,6 +190,7 @@ def _motions(
     notes: list[str],
     *,
     model: LinearModel | None,
+    weighed: LinearModel | None,
     kinematics: Kinematics | None,
     found: Modes | None,
 ) -> Iterator[Motion]:
@@ -195,8 +198,9 @@ def _motions(
     model = model or _attempt("modes, strokes and deflections", lambda: lumped(mechanism), notes)
     kinematics = kinematics or _attempt("ideal motions", lambda: ideal(mechanism), notes)
     if model is not None:
-        found = found or _attempt("modes", lambda: platform_modes(mechanism, model), notes)
-        yield from () if found is None else mode_motions(model, kinematics, found, bones, count)
+        moving = weighed or model
+        found = found or _attempt("modes", lambda: platform_modes(mechanism, moving), notes)
+        yield from () if found is None else mode_motions(moving, kinematics, found, bones, count)
         yield from _attempt("strokes", lambda: tuple(stroke_motions(mechanism, model, kinematics, bones)), notes) or ()
     if kinematics is not None:
         yield from axis_motions(kinematics, bones)
