@@ -87,7 +87,7 @@ def here(folder: Path, made: Hardware, *flags: str) -> tuple[float, str]:
 
 @needs_compiler
 @pytest.mark.parametrize("precision", Precision)
-@pytest.mark.parametrize("kind", ["pi", "pid", "lqg"])
+@pytest.mark.parametrize("kind", ["pi", pytest.param("pid", marks=pytest.mark.full), "lqg"])
 def test_strokes_are_those_of_the_simulation(tmp_path, kind, precision):
     worst, _ = here(tmp_path, code(kind, precision))
     step = np.max(laws(kind)[0].amplifiers.step)  # where a converter rounds, the other way at times
@@ -96,7 +96,7 @@ def test_strokes_are_those_of_the_simulation(tmp_path, kind, precision):
 
 
 @needs_compiler
-@pytest.mark.parametrize("precision", Precision)
+@pytest.mark.parametrize("precision", [Precision.SINGLE, pytest.param(Precision.DOUBLE, marks=pytest.mark.full)])
 def test_the_same_bits_whatever_the_optimisation(tmp_path, precision):
     found = {here(tmp_path, code("pi", precision), flag)[1] for flag in ("-O0", "-O3")}
     assert len(found) == 1
@@ -166,7 +166,7 @@ SECTIONS {
 
 @needs_compiler
 @pytest.mark.skipif(ARM is None or QEMU is None, reason="no compiler or emulator of Cortex-M on the PATH")
-@pytest.mark.parametrize("kind", ["pi", pytest.param("pid", marks=pytest.mark.full), "lqg"])
+@pytest.mark.parametrize("kind", ["pi", *(pytest.param(kind, marks=pytest.mark.full) for kind in ("pid", "lqg"))])
 @pytest.mark.parametrize("precision", Precision)
 @pytest.mark.parametrize("core", EMULATED)
 def test_a_cortex_m_gives_the_same_bits(tmp_path, kind, precision, core):
