@@ -14,7 +14,7 @@ from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.control.coordinates import Coordinates
 from flexstage.control.plants import Plant
-from flexstage.control.system import System, connect, rename, select, static
+from flexstage.control.system import System, connect, lag, rename, select, static
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.lateness import common_delay
 from flexstage.experiment.identification.residues import modal_sum
@@ -41,8 +41,9 @@ class Pairs:
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
     """The plant with what a test found in the place of the model's strokes-to-gauges: modes, static term, delay.
 
-    From strokes to gauges it is H = sum of the modes + D, `delay` late; D is the real constant that is left up to the highest mode. The
-    test sees amplifiers, lags and filters, so the hardware has none of its own, and its delay comes on top of the loop's. A platform's
+    From strokes to gauges it is H = (sum of the modes + D) times the gauges' lags as the design states them, `delay` late; D is the real
+    constant that is left up to the highest mode. Amplifiers and filters are part of what is seen, and the hardware has none of its own;
+    the delay comes on top of the loop's. A platform's
     motion in a loop's coordinate is what the gauges tell of it. Ground and wrenches act as in the model, whose modes take frequency and
     damping of those found that they resemble. Modes above the band of the test are its D.
 
@@ -53,17 +54,22 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     pairs = pair_modes(given, model, found)
     require(_stage_findings(given, found, pairs))
     rows, columns, factors = _places(given.coordinates, found)
-    late = common_delay(found)
-    further = 0.0 if late is None else late.value
-    participation = found.participation * np.exp(found.poles * further)[:, None]
-    shapes, drives = found.shapes[rows], participation[:, columns]
-    direct = _static_term(found, participation, further)[np.ix_(rows, columns)]
-    driven = _modal_system(found.poles, shapes * factors[0][:, None], drives * factors[1], direct * factors[0][:, None] * factors[1], given)
+    lags = 2.0 * np.pi * np.array([given.hardware.sensors[name].bandwidth for name in given.gauges])
+    ahead = _before_lags(found, rows, lags)
+    late = common_delay(ahead)
+    delay = 0.0 if late is None else late.value
+    participation = ahead.participation * np.exp(ahead.poles * delay)[:, None]
+    direct = _static_term(ahead, participation, delay)[np.ix_(rows, columns)]
+    sizes = factors[0][:, None], factors[1]
+    moved = _modal_system(
+        found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
+    )
+    driven = _lagged(moved, given, lags)
     hardware = replace(
         given.hardware,
-        delay=given.hardware.delay + found.delay + further,
+        delay=given.hardware.delay + delay,
         amplifiers={name: replace(each, bandwidth=np.inf) for name, each in given.hardware.amplifiers.items()},
-        sensors={name: replace(each, bandwidth=np.inf, filter_order=0) for name, each in given.hardware.sensors.items()},
+        sensors={name: replace(each, filter_order=0) for name, each in given.hardware.sensors.items()},
     )
     system = _together(given, driven, _retuned(given, pairs, found))
     copies = (len(system.A) - len(driven.A)) // max(1, len(given.states))
@@ -71,6 +77,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         system=system,
         states=(
             *(f"mode{number + 1}{mark}" for number in range(len(found.poles)) for mark in ("", "'")),
+            *(f"gauge.{name}" for name, each in zip(given.gauges, lags, strict=True) if np.isfinite(each)),
             *(f"design{number + 1}.{name}" for number in range(copies) for name in given.states),
         ),
         coordinates=given.coordinates,
@@ -78,7 +85,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         frequencies=found.frequencies,
         ratios=found.damping,
         left_out=0,
-        note=f"strokes to gauges as measured: {len(found.poles)} modes, {1e6 * (found.delay + further):.4g} us late; ground by the model",
+        note=f"strokes to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
         provenance=found.provenance,
     )
 
@@ -158,12 +165,30 @@ def _sizes(channels: tuple[Recorded, ...], chosen: list[int]) -> Array:
     return np.array([float(dimension_of(channels[number].unit).size) for number in chosen])
 
 
-def _static_term(found: Identified, participation: Array, further: float) -> Array:
+def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
+    """What was found with the gauges' lags undone, 1 + s/omega_g, and its delay put back: residues and responses."""
+    every = np.full(len(found.outputs), np.inf)
+    every[rows] = lags
+    back = found.participation * np.exp(-found.poles * found.delay)[:, None]
+    shapes = found.shapes * (1.0 + found.poles / every[:, None])
+    lines = 2j * np.pi * found.responses.frequencies
+    values = found.responses.values * (1.0 + lines[:, None] / every)[:, :, None]
+    return replace(found, shapes=shapes, participation=back, responses=replace(found.responses, values=values), delay=0.0)
+
+
+def _lagged(moved: System, given: Plant, lags: Array) -> System:
+    """The motion as the gauges read it, late by their lags."""
+    ahead = rename(moved, {name: f"ahead.{name}" for name in moved.output_names})
+    seen = lag(ahead.outputs, lags / (2.0 * np.pi), moved.outputs)
+    return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
+
+
+def _static_term(found: Identified, participation: Array, delay: float) -> Array:
     """The real constant (p, m) that the modes leave of the responses, by least squares up to the highest of them."""
     lines = found.responses.frequencies
     chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], float(np.max(found.frequencies))))
     lines = lines[chosen]
-    earlier = np.exp(2j * np.pi * lines * (found.delay + further))[:, None, None]
+    earlier = np.exp(2j * np.pi * lines * delay)[:, None, None]
     left = found.responses.values[chosen] * earlier - modal_sum(lines, found.poles, found.shapes, participation)
     away = np.min(np.abs(lines[:, None] / found.frequencies - 1.0) / found.damping, axis=1)
     weights = np.minimum(away / 5.0, 1.0) ** 2
