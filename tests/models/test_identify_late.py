@@ -12,9 +12,10 @@ from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.lateness import common_delay
 from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role
 from tests.conftest import FULL
-from tests.models.synthetic_records import record, truth
+from tests.models.synthetic_records import Truth, record, truth
 
 TRUTH = truth((118.0, 119.4, 231.0), outputs=3, inputs=3)
+APART = truth((118.0, 166.0, 231.0), outputs=3, inputs=3)
 LATE = 1.2e-3
 STEPPED = np.concatenate([np.arange(80.0, 110.0), np.arange(110.0, 126.0, 0.1), np.arange(126.0, 225.0), np.arange(225.0, 320.0, 0.3)])
 LINES = {"logarithmic": np.geomspace(80.0, 400.0, 700), "stepped": STEPPED}
@@ -27,8 +28,8 @@ def late(made: Record, samples: int) -> Record:
     return replace(made, samples=InMemory(values))
 
 
-def responses(lines: np.ndarray, seconds: float, seed: int = 1, unit: str = "um", noise: float = 0.01) -> Responses:
-    exact = TRUTH.response(lines) * np.exp(-2j * np.pi * lines * seconds)[:, None, None]
+def responses(lines: np.ndarray, seconds: float, seed: int = 1, unit: str = "um", noise: float = 0.01, known: Truth = TRUTH) -> Responses:
+    exact = known.response(lines) * np.exp(-2j * np.pi * lines * seconds)[:, None, None]
     exact = exact * (2j * np.pi * lines)[:, None, None] if unit.endswith("/s") else exact
     draw = np.random.default_rng(seed).standard_normal((2, *exact.shape))
     values = exact + noise * np.sqrt(0.5 * np.mean(np.abs(exact) ** 2)) * (draw[0] + 1j * draw[1])
@@ -83,3 +84,22 @@ def test_no_delay_is_told_of_travelling_waves() -> None:
     found = identify(replace(responses(lines, 0.0), values=values))
     assert found.delay == 0.0
     assert common_delay(found) is None
+
+
+@pytest.mark.parametrize(
+    ("side", "number", "seconds"), [("outputs", 1, LATE), ("inputs", 2, LATE), ("outputs", 0, -LATE), ("outputs", 0, 0.0)]
+)
+def test_a_channel_that_comes_later_than_the_others_is_named(side: str, number: int, seconds: float) -> None:
+    lines = np.linspace(80.0, 320.0, 600)
+    made = responses(lines, 0.0, known=APART)
+    turned = made.values.copy()
+    chosen = turned[:, number] if side == "outputs" else turned[:, :, number]
+    chosen *= np.exp(-2j * np.pi * lines * seconds)[:, None]
+    found = identify(replace(made, values=turned))
+    told = [each for each in found.warnings if "looks" in each]
+    if not seconds:
+        assert told == []
+        return
+    word, name = "late" if seconds > 0.0 else "early", ("y" if side == "outputs" else "u") + str(number)
+    assert len(told) == 1
+    assert told[0].startswith(f"{name} looks {word} by 1.2 ms")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -24,15 +25,18 @@ from flexstage.experiment.commands.records import (
     identify_records,
     shapes_on,
 )
+from flexstage.experiment.comparison import compare
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.report import identify_report
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.options import Csv, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import require_writable, save
+from flexstage.show.command.terminal import print_warning
 from flexstage.show.table import Table
 
 Records: TypeAlias = Annotated[
@@ -72,10 +76,22 @@ def identify(  # noqa: PLR0913 (its options)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))
+    seen = seen if mechanism is None else _with_doubts(mechanism, seen)
     shapes = None if mechanism is None else shapes_on(mechanism, seen)
     if report is not None:
         save(report, identify_report(seen, mechanism, shapes), "--report")
     answer("identify", mechanism, lambda: _body(seen, shapes), lambda: _tables(seen), json=json, csv=csv, xlsx=xlsx, beside=(report,))
+
+
+def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:
+    """With a caution for every channel that the stage's model makes look exchanged, inverted or scaled; told, too."""
+    named = {channel.name for channel in elastic_model(mechanism, Model.LUMPED).outputs}
+    if not any(channel.name in named for channel in seen.found.outputs) or not len(seen.found.frequencies):
+        return seen
+    doubts = tuple(f"{each}." for each in compare(mechanism, seen.found).misnamed)
+    for each in doubts:
+        print_warning(each)
+    return replace(seen, found=replace(seen.found, warnings=(*seen.found.warnings, *doubts))) if doubts else seen
 
 
 def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:

@@ -18,7 +18,7 @@ from flexstage.experiment.identification.driven import measure_drives
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.identification.lateness import Delay, bends_modes, common_delay, take_out_delay
+from flexstage.experiment.identification.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
 from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lines import edges, gather_cells
 from flexstage.experiment.identification.lscf import lscf
@@ -72,13 +72,19 @@ def identify(
     seen = evidence(what, search.segments, tell, known)
     found = _identify_once(seen, search)
     if len(found.frequencies) or search.segments is not None or isinstance(what, Responses):
-        return _without_delay(seen, search, found)
+        return _with_doubts(_without_delay(seen, search, found))
     # Resonances sharper than the segments resolve leave no stable pole, and a blow falls into the first of them alone: look once more.
     records = [what] if isinstance(what, Record) else list(what)
     longer = choose_segments(records, _FEW) if len(found.inputs) > 1 else whole_segment(records)
     seen = evidence(what, longer, tell)
     again = _identify_once(seen, replace(search, segments=longer))
-    return _without_delay(seen, search, again) if len(again.frequencies) else found
+    return _with_doubts(_without_delay(seen, search, again)) if len(again.frequencies) else found
+
+
+def _with_doubts(found: Identified) -> Identified:
+    """What was found, with a caution for every channel that comes later than the others."""
+    late = tuple(late_channels(found))
+    return replace(found, warnings=(*found.warnings, *late)) if late else found
 
 
 def _without_delay(known: Evidence, search: Search, found: Identified) -> Identified:

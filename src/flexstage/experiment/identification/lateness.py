@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -17,6 +17,7 @@ from flexstage.experiment.unit import same_dimension, unit_problem
 
 _LEAST_REAL, _SURE = 0.9, 5.0
 _UNSURE = 0.01
+_CLEAR, _NOTICED = 6.0, 0.1
 _ONE, _FEW, _ENOUGH = 0.45, 3.0, 3
 _FINE = 40.0
 _TURNED, _BESIDE = 0.05, 24.0
@@ -46,14 +47,47 @@ def common_delay(found: Identified) -> Delay | None:
     >>> round(identify(late).delay, 3)
     0.031
     """
-    terms = [_residue(found, group) for group in _groups(found)] if len(found.frequencies) else []
+    return _told(found, None)
+
+
+def late_channels(found: Identified) -> Iterator[str]:
+    """Single channels that come later than the others of their side: what would make their part in the modes that of a real stage.
+
+    Each channel's residues tell a delay of their own, by three modes or more; it is named where it is 6 deviations from the others'
+    middle and turns the highest mode by a tenth of a turn or more, and the others agree.
+    """
+    if len(_groups(found)) < _ENOUGH:
+        return
+    for side, channels in (("outputs", found.outputs), ("inputs", found.inputs)):
+        if len(channels) < _ENOUGH:
+            continue
+        own = [_told(found, (side, number), least=-np.inf) for number in range(len(channels))]
+        known = [each.value for each in own if each is not None]
+        if len(known) < len(channels):
+            continue
+        usual = float(np.median(known))
+        apart = [(channel, each.value - usual, each.deviation) for channel, each in zip(channels, own, strict=True) if each is not None]
+        turns = float(np.max(found.frequencies))
+        late = [each for each in apart if abs(each[1]) > _CLEAR * each[2] and abs(each[1]) * turns > _NOTICED]
+        if 2 * len(late) < len(channels):
+            for channel, by, _ in late:
+                word = "late" if by > 0.0 else "early"
+                yield (
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {side}: with that taken out, its part in "
+                    f"the modes is in phase with theirs."
+                )
+
+
+def _told(found: Identified, channel: tuple[str, int] | None, least: float = _SURE) -> Delay | None:
+    """The delay that residues tell, all or those of one channel; `None` where it is not `least` deviations from none."""
+    terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
     if not terms:
         return None
     squares, poles, spreads = (np.array(column) for column in zip(*terms, strict=True))
     turning = np.abs(np.imag(poles))
     weights = 1.0 / (spreads**2 + _UNSURE**2)
     longest = (_FEW if len(terms) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
-    tried = np.arange(0.0, longest, 2.0 * np.pi / (_FINE * np.max(turning)))
+    tried = np.arange(0.0 if channel is None else -longest, longest, 2.0 * np.pi / (_FINE * np.max(turning)))
     real = np.real(np.exp(2j * np.outer(tried, turning)) @ (weights * squares)) / np.sum(weights)
     if np.max(real) < _LEAST_REAL:
         return None
@@ -64,7 +98,7 @@ def common_delay(found: Identified) -> Delay | None:
     left = -0.5 * np.angle(squares * np.exp(2j * turning * value))
     scatter = float(np.sum(weights * left**2)) / max(1, len(terms) - 1)
     deviation = float(np.sqrt(max(1.0, scatter) / np.sum(weights * turning**2)))
-    return Delay(value, deviation) if value > _SURE * deviation else None
+    return Delay(value, deviation) if value > least * deviation else None
 
 
 def bends_modes(found: Identified, delay: Delay) -> bool:
@@ -95,7 +129,7 @@ def _groups(found: Identified) -> list[tuple[int, ...]]:
     return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
 
 
-def _residue(found: Identified, group: tuple[int, ...]) -> tuple[complex, complex, float]:
+def _residue(found: Identified, group: tuple[int, ...], channel: tuple[str, int] | None) -> tuple[complex, complex, float]:
     """Of a group: its residues' mean square over their mean power (1 where all are imaginary), its mean pole, how sure its phase is."""
     chosen = list(group)
     pole = complex(np.mean(found.poles[chosen]))
@@ -103,6 +137,7 @@ def _residue(found: Identified, group: tuple[int, ...]) -> tuple[complex, comple
     residues = (found.shapes[:, chosen] / rates[:, None]) @ (found.participation[chosen] * driven)
     size = np.max(np.abs(found.shapes[:, :, None] * found.participation), axis=1)
     scaled = residues / np.where(size > 0.0, size, 1.0)
+    scaled = scaled if channel is None else np.take(scaled, [channel[1]], axis=0 if channel[0] == "outputs" else 1)
     power = float(np.sum(np.abs(scaled) ** 2))
     square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
     spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
