@@ -17,15 +17,20 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import tip_tilt
 from flexstage.control.closed import Cut, Loop, loop, open_at
+from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.curves import sensitivity
 from flexstage.control.disk import disk_margin
 from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
-from flexstage.control.example import integral
+from flexstage.control.example import integral, integral_loop
 from flexstage.control.exchange import from_control, to_control
 from flexstage.control.norm import peak
 from flexstage.control.plants import plant, zero_order_hold
-from flexstage.control.stability_margins import margins
+from flexstage.control.stability_margins import margins, peaks
 from flexstage.control.system import System, select
+from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.find import Asked, find
+from flexstage.control.tuning.goal import Kind
+from flexstage.control.tuning.wish import Wish
 from flexstage.control.white_noise import mean_squares
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
@@ -105,6 +110,28 @@ def test_margins_of_samples(gain):
     found = loops(np.exp(2j * np.pi * np.array(edges) * closed.step))
     factors = [own.gain_high.value, np.exp(-1j * own.phase.value), np.exp(-2j * np.pi * own.delay.frequency * own.delay.value)]
     assert np.allclose(found * factors, -1.0, atol=CLOSE)
+
+
+def _found_by_search(plant_of_samples, wish: Wish) -> Loop:
+    tuned = find(plant_of_samples, platform_loops(plant_of_samples.coordinates), Asked(Kind.PI, wish, {}))
+    return loop(plant_of_samples, tuned.controller.system(plant_of_samples.hardware.step))
+
+
+@pytest.mark.parametrize("wish", [Wish(), pytest.param(Wish(aim=Aim.REJECTION, gain=0.1), marks=pytest.mark.full)])
+def test_margins_of_what_a_search_finds(wish):
+    """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""
+    wired = _found_by_search(integral_loop().plant, wish)
+    own, step = margins(wired, Cut.POSE).of("x"), wired.step
+    loops = to_control(open_at(wired, Cut.POSE))
+    omega = np.geomspace(1.0, 0.9999 * np.pi / step, 3_000)
+    theirs = control.FRD(loops(np.exp(1j * omega * step)), omega, smooth=True)
+    gain, phase, least, _, crossing, _ = control.stability_margins(theirs)
+    assert gain == pytest.approx(own.gain_high.value, rel=1e-3)
+    assert np.radians(phase) == pytest.approx(own.phase.value, rel=1e-3)
+    assert np.radians(phase) / crossing == pytest.approx(own.delay.value, rel=1e-3)
+    assert 1.0 / least == pytest.approx(peaks(wired, Cut.POSE).sensitivity.value, rel=1e-3)
+    inside, beyond = (np.max(np.abs(control.feedback(factor * own.gain_high.value * loops, 1).poles())) for factor in (0.999, 1.001))
+    assert inside < 1.0 < beyond
 
 
 @pytest.mark.parametrize("rate", [8e3, None])

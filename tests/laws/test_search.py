@@ -12,6 +12,7 @@ from flexstage.analysis.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.base.number import first_design
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
 from flexstage.control.controllers.loops import platform_loops
@@ -165,3 +166,24 @@ def test_the_shipped_stage_is_brought_farther_than_by_hand():
         assert peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0
     assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])
     assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.05, 0.05))
+
+
+def test_a_plant_that_is_unstable_by_itself_is_refused():
+    plant = integral_loop().plant
+    pushed = replace(plant, system=replace(plant.system, A=plant.system.A + 400.0 * np.eye(len(plant.system.A))))
+    with pytest.raises(DesignError, match="the stage by itself is unstable: it grows by"):
+        find(pushed, platform_loops(plant.coordinates), Asked(Kind.PI, Wish(), {}))
+
+
+def test_a_controller_of_another_stage_is_refused_by_the_loops_it_names():
+    given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(loops=(LoopNumbers(("rz",), 1.0, 300.0),))))
+    with pytest.raises(DesignError, match="the stage has no such loop: in platform coordinates it has x") as told:
+        make_controller(given, given.plant.coordinates.strokes)
+    assert "x has no gains" in str(told.value)
+
+
+def test_goals_that_contradict_one_another_are_all_said_before_anything_is_searched():
+    plant = integral_loop().plant
+    with pytest.raises(DesignError) as told:
+        find(plant, platform_loops(plant.coordinates), Asked(Kind.LQG, Wish(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}))
+    assert [each.where for each in told.value.findings] == ["controller.goal"] * 3

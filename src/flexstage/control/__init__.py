@@ -40,6 +40,7 @@ HOMES = {
         "PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
+    "study.compare": "compare_controllers",
     "study.study": "loop_study",
     "report": "loop_report",
     "export.files": "write_controller write_fmu write_plant",

@@ -116,6 +116,9 @@ from flexstage.control.study.setup import (
     SpiralMotion as SpiralMotion,
     StepMotion as StepMotion,
 )
+from flexstage.control.study.compare import (
+    compare_controllers as compare_controllers,
+)
 from flexstage.control.study.study import (
     loop_study as loop_study,
 )

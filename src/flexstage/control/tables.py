@@ -13,6 +13,7 @@ from flexstage.control.disk import DiskMargin
 from flexstage.control.measured_margins import Reading
 from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
+from flexstage.control.study.compare import Comparison, Rival
 from flexstage.control.study.runs import Run, StepAnswer
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.display import NO_VALUE, format_value, number, percent
@@ -259,3 +260,53 @@ def tracking_table(tests: Sequence[Run]) -> Table | None:
     limits = [f"{test.course.name}: {limits_text(test)}." for test in followed if limits_text(test)]
     note = "Reference less pose: as the gauges tell it, and against the platform's true pose."
     return make_table("Tracking", heads, rows, notes=[note, *limits])
+
+
+def comparison_table(found: Comparison) -> Table:
+    """Controllers side by side, the best of each column marked."""
+    wins = found.wins
+    rows = [
+        [Cell(name.upper() if len(name) < 4 else name, Mark.STRONG), *_rival_cells(each, wins, name)]
+        for name, each in found.controllers.items()
+    ]
+    best = "; ".join(f"{aim}: {name}" for aim, name in wins.items())
+    front = ", ".join(found.front)
+    notes = [
+        "Worst of all motions: the lowest frequency up to which disturbances are rejected, the longest time to 2 % of a step.",
+        "Noise: the largest rms at rest. Of gauges: the largest share of their noise and steps in a mean square.",
+        f"Best in {best}. No other is better at once in rejection, noise, settling and delay margin than {front}.",
+        *(f"{name}: {each.tuned}." for name, each in found.controllers.items()),
+        *(f"Not to be had: {name}: {reason}" for name, reason in found.reasons.items()),
+    ]
+    heads = [
+        "controller",
+        Column("rejects to", "Hz"),
+        "noise",
+        Column("settles", "ms"),
+        "overshoot",
+        Column("delay margin", "ms"),
+        "peak of S",
+        "of gauges",
+    ]
+    return make_table("Controllers side by side", heads, rows, notes=notes)
+
+
+def _rival_cells(one: Rival, wins: Mapping[str, str], name: str) -> list[Content]:
+    settling = float(np.max(one.settling))
+    shown = {
+        "rejection": number(float(np.min(one.rejection)), 4),
+        "noise": _worst_noise(one),
+        "settling": number(1e3 * settling, 4) if np.isfinite(settling) else "not",
+        "overshoot": percent(float(np.max(one.overshoot)), 3),
+        "delay margin": number(1e3 * one.delay_margin, 4),
+        "peak of S": number(one.peak, 4),
+    }
+    cells: list[Content] = [Cell(text, Mark.PASS) if wins.get(aim) == name else text for aim, text in shown.items()]
+    return [*cells, NO_VALUE if one.gauge_share is None else percent(one.gauge_share, 2)]
+
+
+def _worst_noise(one: Rival) -> str:
+    """The largest rms of translations and of rotations."""
+    turns = [each.startswith("r") for each in one.coordinates]
+    kinds = [(one.noise[[turn is kind for turn in turns]], unit) for kind, unit in ((False, "m"), (True, "rad"))]
+    return ", ".join(format_value(float(np.max(values)), unit, 3) for values, unit in kinds if len(values))

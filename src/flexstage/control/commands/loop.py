@@ -33,6 +33,7 @@ from flexstage.control.report import loop_report
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.control.study.compare import compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
@@ -76,6 +77,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         Aim | None,
         word_option("--goal", Aim, "Search for laws and notches that are best at this. Default: no search.", show_default=False),
     ] = None,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="PI, PID, integral resonant control and LQG side by side: which wins for what.")
+    ] = False,
     sensitivity: Annotated[
         str | None, text_option("--sensitivity", "NUMBER", "Highest peak of the sensitivity S that tuning allows.")
     ] = None,
@@ -195,6 +199,15 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     outputs = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
     mechanism = open_design(design, changes, outputs)
     there = stance_at(mechanism, place(at, load, hold, temperature), asked.model)
+    if compare:
+        _require_comparable(asked, {"--report": report is not None, "--export": bool(exports), "--hardware": hardware is not None})
+        with progress_bar() as shown:
+            test = None if not record else _tested(record, shown.share)
+            rivals = compare_controllers(mechanism, asked, there=there, test=test, tell=shown.share)
+        shown_tables = [*stance_tables(there), tables.comparison_table(rivals)]
+        beside = stance_cautions(there)
+        answer("loops", mechanism, lambda: rivals, lambda: shown_tables, model=asked.model, json=json, csv=csv, xlsx=xlsx, cautions=beside)
+        return
     with progress_bar() as shown:
         test = None if not record else _tested(record, shown.share)
         found = loop_study(mechanism, asked, there=there, test=test, tell=shown.share)
@@ -229,6 +242,21 @@ def _tested(paths: Sequence[Path], tell: Told) -> Identification:
             findings += error.findings
     require(findings)
     return identification(usable_measurement(contents, told=tell), told=tell)
+
+
+def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:
+    """Refuse what belongs to one controller."""
+    said = {
+        **written,
+        "controller.kind": asked.controller.kind is not None,
+        **{f"controller.{name}": True for name in asked.controller.stated},
+    }
+    advice = "Leave it out of a comparison, which tunes each kind itself"
+    require(
+        Finding(name, "it belongs to one controller, and --compare lays several side by side", advice)
+        for name, is_said in said.items()
+        if is_said
+    )
 
 
 def _write_example(design: Path, example: Path) -> None:
