@@ -10,6 +10,7 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment.health import Needs, examine, responses_findings, usable_record
+from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.options import Allow
 from flexstage.experiment.pipeline import usable_measurement as sound_records
 from flexstage.experiment.record import Channel, Record, Responses, Role, in_memory
@@ -232,12 +233,31 @@ def test_a_force_windowed_hammer_is_refused_by_its_name(name: str, unit: str) ->
     values[:200, 0], values[200:, 0] = 0.0, 0.0
     values[100:180, 0] = np.hanning(80) * 50.0
     hit = replace(record(values, (Channel(name, unit, Role.INPUT), *CHANNELS[1:])), start=0.5)
-    told = [fault for fault in examine(hit).faults if fault.channel == name and fault.kind is None]
+    told = [fault for fault in examine(hit).faults if fault.channel == name and fault.kind is Allow.WINDOWED]
     at = 0.5 + 179 / RATE  # the window's last sample is nought too
     assert [fault.finding.what.partition(",")[0] for fault in told] == [f"it looks force-windowed: exact zeros from {at:.6g} s on"]
     assert "2.19 % of the record" in told[0].finding.what
     with pytest.raises(DesignError, match="force-windowed"):
-        usable_record(hit, frozenset(Allow))
+        usable_record(hit, frozenset(Allow) - {Allow.WINDOWED})
+    assert name in usable_record(hit, frozenset(Allow)).names
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_windowed_force_that_is_allowed_gives_the_mode(seed: int) -> None:
+    rate, count, natural, ratio = 1024.0, 8192, 100.0, 0.01
+    random = np.random.default_rng(seed)
+    force = np.zeros(count)
+    force[100:112] = np.hanning(12)
+    lines = np.fft.rfftfreq(2 * count, 1.0 / rate)
+    moved = np.fft.irfft(np.fft.rfft(force, 2 * count) / (natural**2 - lines**2 + 2j * ratio * natural * lines))[:count]
+    moved += 1e-3 * np.max(moved) * random.standard_normal(count)
+    made = in_memory([Channel("hammer", "N", Role.INPUT), Channel("y", "um", Role.OUTPUT)], rate, np.stack([force, moved], axis=1))
+    with pytest.raises(DesignError, match='allow "windowed"'):
+        usable_record(made)
+    found = identify(usable_record(made, frozenset({Allow.WINDOWED})))
+    assert len(found.frequencies) == 1
+    assert abs(found.frequencies[0] - natural) < 4.0 * found.frequency_deviations[0] + 1e-6 * natural
+    assert abs(found.damping[0] - ratio) < 4.0 * found.damping_deviations[0] + 1e-4 * ratio
 
 
 def test_a_drive_that_rests_is_no_hammer() -> None:

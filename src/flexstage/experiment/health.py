@@ -27,8 +27,8 @@ _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
 _HAMMERS = ("hammer*", "force*", "impact*", "f", "f[0-9]*", "f[xyz]")
 _UNWINDOWED = (
-    "Records of windowed blows are not identified yet: save the blow as recorded, without force and exponential windows, "
-    'or the responses that the analyser made of it (kind "responses")'
+    'If only noise was cut off, allow "windowed" to use it as it is; outputs must not have been weighted by an exponential window, which '
+    "adds to damping: save those as recorded"
 )
 
 
@@ -164,7 +164,7 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
             dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
             windowed = _force_window(record, channel, numbers)
             if windowed:
-                yield Fault(None, channel.name, Finding(place, windowed, _UNWINDOWED))
+                yield Fault(Allow.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
             elif dead:
                 yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or allow "dead" to leave it out'))
             else:
@@ -198,7 +198,7 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
 
 
 def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
-    """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off, and none may leave it out."""
+    """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off."""
     still = numbers.still >= max(_STILL, _STILL_SHARE * record.length) and numbers.low != numbers.high
     known = channel.unit and unit_problem(channel.unit) is None
     force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)

@@ -53,6 +53,8 @@ class Allow(Enum):
     """Use a record sampled too slowly for the highest mode, up to half its rate."""
     NAMES = "names"
     """Leave out channels that are neither inputs nor outputs, or that the stage does not have."""
+    WINDOWED = "windowed"
+    """Use a hammer's force that was set to nought after the blow as it is: a free decay from a blow."""
     INCOMPLETE = "incomplete"
     """Leave out outputs whose responses to some inputs are missing, and coherence where the last response lacks its."""
 

@@ -53,7 +53,7 @@ Allow: TypeAlias = Annotated[
     text_option(
         "--allow",
         "FAULT",
-        "What may be used although it is bad: truncated, gaps, dead, clipped, units, dependent, short, slow, names, incomplete.",
+        "What may be used although it is bad: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed, incomplete.",
     ),
 ]
 Band: TypeAlias = Annotated[
