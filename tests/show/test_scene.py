@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from flexstage.base.number import Array
 from flexstage.cases.double_triangle import SM_REF_A, double_triangle
 from flexstage.cases.registry import case
+from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind, Paint, extrude, loft, rectangle
@@ -197,3 +198,17 @@ def test_the_plan_carries_its_dimensions() -> None:
     mechanism = double_triangle()
     texts = {text.get_text() for axes in plan_figure(mechanism, scene(mechanism)).axes for text in axes.texts}
     assert {"R 85", "R 120", "R 130", "340.64", "90°", "−90°", "envelope 380 × 380", "clear opening 110 × 110", "B1", "S6"} <= texts
+
+
+def test_bodies_that_stand_as_they_did_are_not_built_anew():
+    """Facets of bodies are those of the last design where only a hinge changed, and others where an outline did."""
+
+    def built(stage):
+        return [facet for facet in scene(stage).facets if facet.paint.kind in {Kind.BODY, Kind.PLATFORM}]
+
+    stage = double_triangle()
+    changed = ("parts.neck.thickness", "bodies.platform.solids.plate.size.z")
+    before, hinged, grown = built(stage), *(built(set_value(stage, where, 1.01 * get(stage, where))) for where in changed)
+    assert all(one is other for one, other in zip(before, hinged, strict=True))
+    known = {id(facet): facet.paint.kind for facet in before}
+    assert {known.get(id(facet)) for facet in grown} == {Kind.BODY, None}

@@ -14,7 +14,7 @@ from flexstage.analysis.course import path_findings
 from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.seating import seating, seating_findings
-from flexstage.analysis.standing import load_factors, standing
+from flexstage.analysis.standing import drawn, load_factors, standing
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.small import small_motion
@@ -37,7 +37,6 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.mechanism.outline import outlines
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body
 from flexstage.parts.contact import Contact
 from flexstage.parts.given import Given, Joint
@@ -274,7 +273,7 @@ def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
 def _overload_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Hinges beyond yield, balls that leave their seats and stacks beyond their maximum load under weight, payloads and forces alone."""
     try:
-        model = lumped(mechanism)
+        model = drawn(mechanism)
     except DesignError:
         return ()
     found: list[Finding] = []
@@ -320,7 +319,7 @@ def _points(mechanism: Mechanism) -> Iterator[Finding]:
 def _tension_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Stacks in tension beyond what they bear; nothing where their forces are not known."""
     try:
-        return tuple(load_share(mechanism, lumped(mechanism)).tension_findings(stroke_limits(mechanism).from_zero))
+        return tuple(load_share(mechanism, drawn(mechanism)).tension_findings(stroke_limits(mechanism).from_zero))
     except DesignError:
         return ()
 

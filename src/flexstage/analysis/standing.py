@@ -37,9 +37,20 @@ def under_load(mechanism: Mechanism) -> Stability | None:
 
 
 @lru_cache(maxsize=2)
+def drawn(mechanism: Mechanism) -> LinearModel:
+    """The lumped model, whether the drawn position stands or not, kept for what else one command asks of the same description.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> len(drawn(parallelogram()).coordinates)
+    18
+    """
+    return lumped(mechanism)
+
+
+@lru_cache(maxsize=2)
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
     """The lumped model and how it stands, kept for what else one command asks of the same description."""
-    model = lumped(mechanism)
+    model = drawn(mechanism)
     known = not model.designs and not expand(mechanism).superelements
     return model, stability(mechanism, model) if known else None
 
@@ -68,6 +79,6 @@ def load_factors(mechanism: Mechanism) -> Stability | None:
     """
     limits = stroke_limits(mechanism).from_zero
     try:
-        return stability(mechanism, _under_load(mechanism)[0], limits if 0 < len(limits.actuators) <= _CORNERS else None)
+        return stability(mechanism, drawn(mechanism), limits if 0 < len(limits.actuators) <= _CORNERS else None)
     except DesignError:
         return None

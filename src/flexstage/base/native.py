@@ -22,8 +22,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from filelock import FileLock
-
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.store import cache_folder, temporary_folder
 
@@ -218,6 +216,8 @@ def _digest(content: bytes) -> str:
 
 def _renew(folder: Path, name: str, answers: Answers, build: Callable[[Path], bytes]) -> ctypes.CDLL:
     """The library, built into a folder: by one process, while others wait for it."""
+    from filelock import FileLock  # takes long to import, and most processes build nothing
+
     with FileLock(folder / "lock", timeout=_SECONDS, mode=0o600):
         if (library := _cached(folder, name, answers)) is not None:
             return library

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import pickle
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -164,11 +165,22 @@ def _link_ends(link: PlacedLink) -> tuple[Array, Array]:
     return frame.position - half, frame.position + half
 
 
-def _body(body: PlacedBody, joints: list[Array], size: float) -> list[Facet]:
-    paint = Paint(Kind.PLATFORM if body.name == PLATFORM else Kind.BODY, (body.name, body.name), body.name)
-    if not body.solids:
+def _body(body: PlacedBody, joints: list[Array], size: float) -> tuple[Facet, ...]:
+    """The facets of a body; one that stands in the next design as in the last is not built anew."""
+    return _built(pickle.dumps((body.name, dict(body.solids), joints, size)))
+
+
+@lru_cache(maxsize=256)
+def _built(drawn: bytes) -> tuple[Facet, ...]:
+    """The facets of a body by its name, its outlines, its joints and the stage's size."""
+    return tuple(_facets(*pickle.loads(drawn)))  # noqa: S301 (written one line above)
+
+
+def _facets(name: str, solids: Mapping[str, PlacedSolid], joints: list[Array], size: float) -> list[Facet]:
+    paint = Paint(Kind.PLATFORM if name == PLATFORM else Kind.BODY, (name, name), name)
+    if not solids:
         return _bars(joints, paint, _BAR * size)
-    facets = _solids(body.solids, paint)
+    facets = _solids(solids, paint)
     if paint.kind is Kind.PLATFORM:  # it is seen through
         facets = outer(facets)
     points = np.concatenate([facet.points for facet in facets])

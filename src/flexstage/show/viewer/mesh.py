@@ -39,6 +39,13 @@ class Mesh:
         first, second = self.ends[self.carrier, 0], self.ends[self.carrier, 1]
         return first + self.stations[self.station, :1] * (second - first)
 
+    @cached_property
+    def _spans(self) -> tuple[Array, Array]:
+        """Unit directions (v, 3) from the first ends of the vertices' carriers to the second ones, and their distances (v, 1)."""
+        span = self.ends[self.carrier, 1] - self.ends[self.carrier, 0]
+        length = np.sqrt(np.sum(span**2, axis=1, keepdims=True))
+        return span / np.where(length > 0.0, length, 1.0), length
+
     def displacement(self, twists: Array) -> Array:
         """Displacement (v, 3) of the vertices by the bodies' twists at the origin (b, 6), small rotations.
 
@@ -47,10 +54,7 @@ class Mesh:
         """
         first, second = (twists[self.bodies[self.carrier, side]] for side in (0, 1))
         rigid = first[:, :3] + cross(first[:, 3:], self.points)
-        start, end = self.ends[self.carrier, 0], self.ends[self.carrier, 1]
-        axis = end - start
-        length = np.sqrt(np.sum(axis**2, axis=1, keepdims=True))
-        axis = axis / np.where(length > 0.0, length, 1.0)
+        end, (axis, length) = self.ends[self.carrier, 1], self._spans
         share, by_offset, by_turn, offset_slope, turn_slope = self.stations[self.station].T[..., None]
         turn = second[:, 3:] - first[:, 3:]
         offset = second[:, :3] - first[:, :3] + cross(turn, end)

@@ -195,13 +195,19 @@ class Bearing:
 
     def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
         """Shares by link in a shape (n,) of the model's coordinates under `inputs` (m,), of that alone; `None` where none is known."""
-        if not self._links:
-            return None
+        return self.of_all(shape[:, None], None if inputs is None else inputs[:, None])[0]
+
+    def of_all(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
+        """The same of shapes (n, k) under inputs (m, k), all at once."""
+        if not self._links or not shapes.shape[1]:
+            return [None] * shapes.shape[1]
         rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
-        wrenches = first_design(self._model.output, 2)[rows] @ shape
+        wrenches = first_design(self._model.output, 2)[rows] @ shapes
         wrenches = wrenches if inputs is None else wrenches + first_design(self._model.feedthrough, 2)[rows] @ inputs
-        shares = first_design(stress_shares(self._links, wrenches.reshape(-1, 6)), 1)
-        return dict(zip(self._links, shares.tolist(), strict=True))
+        each = wrenches.T.reshape(wrenches.shape[1], -1, 6)
+        batch = self._model.designs
+        shares = np.stack([first_design(stress_shares(self._links, own), 1) for own in each]) if batch else stress_shares(self._links, each)
+        return [dict(zip(self._links, each, strict=True)) for each in shares.tolist()]
 
     def most(self, actuator: str) -> float | None:
         """The stroke [m] from rest to its farther end, if it is known."""
@@ -219,19 +225,20 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
     names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)
     moved = first_design(displacement(model, model.input_matrix[..., columns]), 2)
-    for place, name in enumerate(names):
-        unit = model.inputs[columns[place]].unit
-        amount = _UNIT_STROKES.get(unit, 1.0)
-        inputs = np.zeros(len(model.inputs))
-        inputs[columns[place]] = amount
-        shape = amount * moved[:, place]
+    units = [model.inputs[column].unit for column in columns]
+    amounts = np.array([_UNIT_STROKES.get(unit, 1.0) for unit in units])
+    driven = np.zeros((len(model.inputs), len(names)))
+    driven[columns, np.arange(len(names))] = amounts
+    shapes, ends = amounts * moved, [bearing.most(name) for name in names]
+    times = np.array([0.0 if end is None else end for end in ends]) / amounts
+    stresses = bearing.of_all(times * shapes, times * driven)
+    for place, (name, unit, amount, most, stress) in enumerate(zip(names, units, amounts.tolist(), ends, stresses, strict=True)):
+        inputs, shape = driven[:, place], shapes[:, place]
         twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references), inputs))
         text = to_typography(format_value(amount, unit))
-        most = bearing.most(name)
-        times = None if most is None else most / amount
-        stress = None if times is None else bearing.at(times * shape, times * inputs)
         stressed = "" if most is None else to_typography(f"at {format_value(most, unit)} of {name} alone")
-        yield Motion(Group.STROKE, name, f"{name}  {text}", twists, "", None, _energy(model, shape, inputs), stress, stressed)
+        energy, known = _energy(model, shape, inputs), None if most is None else stress
+        yield Motion(Group.STROKE, name, f"{name}  {text}", twists, "", None, energy, known, stressed)
 
 
 def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
