@@ -13,6 +13,7 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
 from flexstage.control.closed import Cut, loop, open_at
+from flexstage.control.controllers.family import Place
 from flexstage.control.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances
 from flexstage.control.controllers.notch import Notch
@@ -23,7 +24,7 @@ from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import peaks
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind, peak_for_margins
-from flexstage.control.tuning.laws import Place, laws
+from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import resonances, view
 from flexstage.models.ideal import ideal

@@ -11,9 +11,16 @@ from pathlib import Path
 
 import pytest
 
+from flexstage.cases.registry import case
+from flexstage.mechanism.store import dumps
 from tests.outside_package.stage import SMALL, design
 
 ROUGH = "--accuracy 10% --order 2"
+LOOP = """
+format = "flexstage loop 1"
+amplifier = { kind = "switching", carrier = "20 kHz" }
+controller = { kind = "integrators" }
+"""
 RUN = "import sys; from flexstage.apps.cli import run; sys.exit(max(run(words.split()) for words in sys.argv[1:]))"
 PACKAGE = Path(__file__).parents[1] / "outside_package"
 STUDY = """
@@ -89,6 +96,24 @@ def test_check_analyse_and_schema_know_it(work, package):
     known = json.loads(flexstage(work, "schema", path=package))["$defs"]
     assert known["Taper"]["properties"]["kind"] == {"const": "taper"}
     assert known["Interferometer"]["properties"]["kind"] == {"const": "interferometer"}
+
+
+def test_a_loop_takes_its_controller_and_its_amplifier(work, package):
+    (work / "loop.toml").write_text(LOOP)
+    told = flexstage(work, "loop s.toml --setup loop.toml --json loop.json", "schema --of loop", path=package)
+    assert "integrators in platform coordinates" in told
+    assert '"const": "switching"' in told
+    found = json.loads((work / "loop.json").read_text())
+    assert found["setup"]["amplifier"] == {"kind": "switching", "carrier": 20e3}
+    assert [law["proportional"] for law in (each["law"] for each in found["controller"]["loops"].values())] == [0.0]
+
+
+def test_without_the_package_its_controller_and_amplifier_are_refused_by_kind(work):
+    (work / "plain.toml").write_text(dumps(case("parallelogram")))
+    (work / "loop.toml").write_text(LOOP)
+    told = flexstage(work, "loop plain.toml --setup loop.toml", ok=2)
+    assert 'amplifier.kind: found "switching"' in told
+    assert 'controller.kind: found "integrators"' in told
 
 
 def test_its_compound_is_its_members(work, package):

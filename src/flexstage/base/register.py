@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 from flexstage.base.finding import refuse
 
 PREFIX = "flexstage."
-GROUPS = tuple(f"{PREFIX}{name}" for name in ("parts", "laws", "shapes", "gauges", "measures", "formats"))
+GROUPS = tuple(f"{PREFIX}{name}" for name in ("parts", "laws", "shapes", "gauges", "measures", "formats", "controllers", "amplifiers"))
 """Groups of entry points by which packages offer what they add, a group a register."""
 Entry = TypeVar("Entry")
 

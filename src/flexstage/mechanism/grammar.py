@@ -20,6 +20,7 @@ from flexstage.base.digest import KEY, digest
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
+from flexstage.base.register import Register
 from flexstage.mechanism.mechanism import (
     BESIDE,
     GaugeSum,
@@ -629,6 +630,9 @@ def _annotated_node(hint: Any) -> Node:
     node = next((extra for extra in extras if isinstance(extra, Node)), None)
     if node is not None:
         return node
+    register = next((extra for extra in extras if isinstance(extra, Register)), None)
+    if register is not None:
+        return UnionNode(_KIND, tuple((name, RecordNode(option)) for name, option in register.all.items()), next(iter(register.own)))
     if inner is int:
         return WholeNode(extras[0])
     quantity = next(extra for extra in extras if isinstance(extra, Quantity))

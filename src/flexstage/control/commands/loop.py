@@ -32,7 +32,7 @@ from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.report import loop_report
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
-from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Criterion
+from flexstage.control.study.choices import Axes, Compensation, Criterion
 from flexstage.control.study.compare import compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
@@ -61,9 +61,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     *,
     setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")] = None,
     controller: Annotated[
-        ControllerKind | None,
-        word_option(
-            "--controller", ControllerKind, "What closes the loop; none: open loop. Default: pi; of forces pid.", show_default=False
+        str | None,
+        text_option(
+            "--controller", "KIND", "What closes the loop: pi, pid, resonant, lqg, or none (open loop). Default: pi; of forces pid."
         ),
     ] = None,
     coordinates: Annotated[
@@ -184,7 +184,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "controller": _override(
             given.controller,
             {
-                "kind": controller,
+                "kind": None if controller is None else values.attempt(lambda: forms.KINDS.parse(controller, "--controller")),
                 "coordinates": coordinates,
                 "goal": None if goal is None else _override(given.controller.goal or forms.GoalSetup(), {"aim": goal}),
                 "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),

@@ -9,7 +9,6 @@ from pathlib import Path
 from flexstage.base.finding import Finding
 from flexstage.control.study.choices import Compensation, ControllerKind, Notching
 from flexstage.control.study.setup import (
-    AmplifierSetup,
     ControllerSetup,
     FileMotion,
     Floor,
@@ -25,7 +24,6 @@ from flexstage.control.study.setup import (
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import node_of
 
-_MOST_BITS = 32
 _HIGHEST_ORDER = 20
 _MOST_LINES = 100_000
 _TUNED = ("bandwidth", "sensitivity", "goal")
@@ -44,7 +42,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
         yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
     if setup.modes is not None and setup.modes < 1:
         yield Finding("modes", f"found {setup.modes}", "Keep at least one, or leave it out")
-    yield from _amplifier(setup.amplifier)
+    yield from setup.amplifier.faults
     yield from _gauges(setup.gauges)
     yield from _floor(setup.floor)
     yield from _controller(setup.controller)
@@ -68,13 +66,6 @@ def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
         yield Finding(
             "trajectory", f"it has no {' and no '.join(missing)}", "Give speed, acceleration and jerk, or none of them for a jump"
         )
-
-
-def _amplifier(found: AmplifierSetup) -> Iterator[Finding]:
-    if found.bandwidth is not None and found.resistance is not None:
-        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
-    if found.bits is not None and not 1 <= found.bits <= _MOST_BITS:
-        yield Finding("amplifier.bits", f"found {found.bits}", f"Give between 1 and {_MOST_BITS}")
 
 
 def _gauges(found: GaugeSetup) -> Iterator[Finding]:
@@ -117,7 +108,7 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
 def _controller(found: ControllerSetup) -> Iterator[Finding]:
     tuned = [name for name in _TUNED if getattr(found, name) is not None]
     gains = list(found.stated)
-    if found.law in (ControllerKind.RESONANT, ControllerKind.LQG, ControllerKind.NONE) and gains:
+    if found.law not in (ControllerKind.PI, ControllerKind.PID) and gains:
         yield Finding(f"controller.{gains[0]}", f"a controller of kind {found.law.value} does not have it", "Leave it out, or take kind pi")
     elif tuned and gains:
         what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
@@ -137,7 +128,7 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
     """What a goal does not go with."""
     if found.goal is None:
         return
-    if found.law in (ControllerKind.RESONANT, ControllerKind.LQG):
+    if found.law not in (ControllerKind.PI, ControllerKind.PID, ControllerKind.NONE):
         yield Finding(
             "controller.goal", f"a controller of kind {found.law.value} is not searched for", "Take kind pi or pid, or leave it out"
         )

@@ -20,6 +20,17 @@ class ControllerKind(Enum):
     """Nothing: the stage is commanded in open loop."""
 
 
+class OfferedKind(str):
+    """A kind of controller that stands in `CONTROLLERS` and not among the words above, by its name there."""
+
+    __slots__ = ()
+
+    @property
+    def value(self) -> str:
+        """Its name."""
+        return str(self)
+
+
 class Axes(Enum):
     """Coordinates in which single loops are closed."""
 

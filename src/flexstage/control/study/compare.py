@@ -14,14 +14,15 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import VIEW, Along
+from flexstage.control.controllers.family import CONTROLLERS
 from flexstage.control.noise import Kind, NoiseBudget
-from flexstage.control.study.choices import ControllerKind
+from flexstage.control.study.choices import ControllerKind, OfferedKind
 from flexstage.control.study.setup import LoopSetup, StepMotion
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
 
-RIVALS = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
+_OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
 _SEARCHED = (ControllerKind.PI, ControllerKind.PID)
 
 
@@ -94,7 +95,7 @@ def compare_controllers(
     test: Identification | None = None,
     tell: Told | None = None,
 ) -> Comparison:
-    """PI, PID, integral resonant control and LQG, each tuned to the same set-up, and what steps of every motion come to.
+    """PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS`: each tuned to the same set-up, and what steps come to.
 
     With a goal PI and PID are searched for; the others are tuned to the highest bandwidth within the same peak of S. Raises `DesignError`
     where none of them can be had, or where the set-up states gains, which belong to one kind.
@@ -103,9 +104,10 @@ def compare_controllers(
     found: dict[str, Rival] = {}
     missed: dict[str, str] = {}
     last: DesignError | None = None
-    for number, kind in enumerate(RIVALS):
+    kinds = (*_OWN, *map(OfferedKind, CONTROLLERS))
+    for number, kind in enumerate(kinds):
         if tell is not None:
-            tell(f"tuning {kind.value}", number / len(RIVALS))
+            tell(f"tuning {kind.value}", number / len(kinds))
         goal = asked.controller.goal if kind in _SEARCHED else None
         notches = () if kind is ControllerKind.LQG else asked.controller.notches
         controller = replace(asked.controller, kind=kind, goal=goal, notches=notches)

@@ -15,6 +15,7 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.controllers.decentralised import Decentralised, channels
+from flexstage.control.controllers.family import CONTROLLERS, Family
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import LQG, Disturbances
@@ -22,7 +23,7 @@ from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
-from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching
+from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching, OfferedKind
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchAt, PrefilterAt
 from flexstage.control.system import System, static
@@ -117,10 +118,10 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
     if asked.goal is not None:
-        sought = find(given.plant, loops, Asked(_KINDS[asked.law], _wish(asked, asked.goal), given.floor, forward))
+        sought = find(given.plant, loops, Asked(_KINDS[ControllerKind(asked.law.value)], _wish(asked, asked.goal), given.floor, forward))
         return Control(sought.controller.system(given.step), sought.controller, sought, gains)
     task = Task(
-        kind=_KINDS[asked.law],
+        kind=_tuned(asked.law),
         goal=Goal(asked.bandwidth, asked.sensitivity if asked.sensitivity is not None else _SENSITIVITY),
         notches=tuple(_notch(each, given) for each in asked.notches),
         automatic=asked.notching is Notching.AUTOMATIC,
@@ -129,6 +130,14 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     )
     found = tune(given.plant, loops, task)
     return Control(found.controller.system(given.step), found.controller, found, gains)
+
+
+def _tuned(law: ControllerKind | OfferedKind) -> Kind | Family:
+    """What tuning calls a kind; a family that another package offers."""
+    family = None if isinstance(law, ControllerKind) else CONTROLLERS.get(law.value)
+    if isinstance(law, ControllerKind) or family is None:
+        return _KINDS[ControllerKind(law.value)]
+    return family
 
 
 def _wish(asked: ControllerSetup, goal: GoalSetup) -> Wish:

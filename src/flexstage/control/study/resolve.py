@@ -12,7 +12,7 @@ from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
-from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.electronics import GaugeSettings, Hardware, hardware
 from flexstage.control.measured_plant import measured_plant
 from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
@@ -163,20 +163,11 @@ def _delay_findings(samples: float) -> Iterator[Finding]:
 
 
 def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:
-    power = setup.amplifier
     return hardware(
         mechanism,
         rate=rate,
         delay=delay,
-        amplifiers=AmplifierSettings(
-            bandwidth=power.bandwidth,
-            resistance=power.resistance,
-            current=power.current,
-            slew=power.slew,
-            noise_density=power.noise,
-            bits=power.bits,
-            current_noise=power.current_noise,
-        ),
+        amplifiers=setup.amplifier.settings,
         gauges={name: _sensing(setup.gauges, item.unit) for name, item in expand(mechanism).gauges.items() if not item.members},
     )
 

@@ -12,8 +12,6 @@ from flexstage.base.quantity import (
     ACCELERATION,
     ACCELERATION_NOISE,
     ANGLE,
-    CURRENT,
-    CURRENT_NOISE,
     DISPLACEMENT,
     FREQUENCY,
     JERK,
@@ -22,22 +20,40 @@ from flexstage.base.quantity import (
     POSITIVE,
     RATE,
     RATIO,
-    RESISTANCE,
-    SLEW,
     SPEED,
     TIME,
     VELOCITY_NOISE,
-    VOLTAGE_NOISE,
     Bound,
 )
-from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, StackKind
+from flexstage.control.controllers.family import CONTROLLERS
+from flexstage.control.study.amplifiers import AMPLIFIERS, AmplifierForm, AmplifierSetup
+from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, OfferedKind, StackKind
 from flexstage.control.tuning.aim import Aim
+from flexstage.mechanism.node import ChoiceNode, Wanted
 from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
 _OVER, _SPREAD = Bound(low=0.02, high=1.0), Bound(low=0.0, high=0.3)
 _CREEP = Bound(low=-0.2, high=0.2)
+
+
+@dataclass(frozen=True)
+class KindNode(ChoiceNode):
+    """A kind of controller: those that stand here, and those of `CONTROLLERS`, which other packages add to."""
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """The kinds by what a file calls them."""
+        return {each.value: each for each in ControllerKind} | {name: OfferedKind(name) for name in CONTROLLERS}
+
+    def wanted(self, value: Any) -> Wanted:
+        """One of the kinds."""
+        return None if value in self.words.values() else ("a kind of controller", f"Give one of {', '.join(self.words)}")
+
+
+KINDS = KindNode(ControllerKind)
+"""Kinds of controllers as files and options name them."""
 GAINS = ("proportional", "integral", "derivative")
 """Keys of a law's gains."""
 
@@ -52,25 +68,6 @@ class Motion:
     rx: Annotated[float, ANGLE] | None = None
     ry: Annotated[float, ANGLE] | None = None
     rz: Annotated[float, ANGLE] | None = None
-
-
-@dataclass(frozen=True)
-class AmplifierSetup:
-    """Amplifiers and their converter: first order on the stack's capacitance; absent all of this they are ideal.
-
-    `bandwidth` as stated, or that of the output `resistance`, 1/(2 pi R C). `current` is the largest they give and `slew` their fastest
-    change of voltage: they limit the rate of strokes. `noise` is white at their output, `bits` those of the converter over the full
-    voltage. Voltages are turned into free strokes by each stack's range. Those of voice coils drive the current: `bandwidth`, `current`,
-    `current_noise` and `bits` count.
-    """
-
-    bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
-    resistance: Annotated[float, RESISTANCE, POSITIVE] | None = None
-    current: Annotated[float, CURRENT, POSITIVE] | None = None
-    slew: Annotated[float, SLEW, POSITIVE] | None = None
-    noise: Annotated[float, VOLTAGE_NOISE, NOT_NEGATIVE] | None = None
-    bits: int | None = None
-    current_noise: Annotated[float, CURRENT_NOISE, NOT_NEGATIVE] | None = None
 
 
 @dataclass(frozen=True)
@@ -174,7 +171,7 @@ class ControllerSetup:
     a `goal` laws and notches are searched for instead, within `sensitivity`.
     """
 
-    kind: ControllerKind | None = None
+    kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
     coordinates: Axes = Axes.PLATFORM
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
     sensitivity: Annotated[float, RATIO, _PEAK] | None = None
@@ -194,7 +191,7 @@ class ControllerSetup:
         return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
-    def law(self) -> ControllerKind:
+    def law(self) -> ControllerKind | OfferedKind:
         """Its kind, PI where none is stated."""
         return self.kind or ControllerKind.PI
 
@@ -301,7 +298,7 @@ class LoopSetup:
     seconds: Annotated[float, TIME, POSITIVE] | None = None
     seed: int = 0
     compensate: tuple[Compensation, ...] = (Compensation.LOST_MOTION,)
-    amplifier: AmplifierSetup = field(default_factory=AmplifierSetup)
+    amplifier: Annotated[AmplifierForm, AMPLIFIERS] = field(default_factory=AmplifierSetup)
     gauges: GaugeSetup = field(default_factory=GaugeSetup)
     floor: Floor = field(default_factory=Floor)
     controller: ControllerSetup = field(default_factory=ControllerSetup)
@@ -311,4 +308,5 @@ class LoopSetup:
     def to_json(self) -> dict[str, Any]:
         """The keys of its file with plain values, SI."""
         kind, word = self.trajectory.TOLD_BY
-        return asdict(self) | {"trajectory": {kind: word, **asdict(self.trajectory)}}
+        chosen = {"amplifier": {"kind": self.amplifier.kind, **asdict(self.amplifier)}}  # type: ignore[call-overload]
+        return asdict(self) | chosen | {"trajectory": {kind: word, **asdict(self.trajectory)}}

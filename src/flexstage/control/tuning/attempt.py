@@ -11,13 +11,14 @@ import numpy as np
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.family import Family, Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.resolvent import resolvent
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, open_gains
-from flexstage.control.tuning.laws import Place, laws
+from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.view import View, resonances
 
 _HIGH = 0.3
@@ -39,7 +40,7 @@ class Task:
     `expected` is what an observer expects, `feedforward` (n, f) the strokes by which the reference is fed forward.
     """
 
-    kind: Kind
+    kind: Kind | Family
     goal: Goal
     notches: tuple[Notch, ...] = ()
     automatic: bool = True
@@ -80,7 +81,7 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
         return _attempt_lqg(seen, task, frequency)
     stated: _Options = ((task.notches,),) * len(seen.loops.names)
     first = _decentralised(seen, task, frequency, calm, stated)
-    if first is None or not task.automatic or task.kind is Kind.RESONANT or first.reaches(frequency, task.goal):
+    if first is None or not task.automatic or not _is_notched(task.kind) or first.reaches(frequency, task.goal):
         return first
     best = first
     for options in _choices(_place_notches(seen, first, frequency)):
@@ -90,6 +91,10 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
         if best.reaches(frequency, task.goal):
             break
     return best
+
+
+def _is_notched(kind: Kind | Family) -> bool:
+    return kind.notched if isinstance(kind, Family) else kind is not Kind.RESONANT
 
 
 def _choices(options: _Options) -> Iterator[_Options]:
@@ -137,7 +142,7 @@ class _Chosen:
     response: Array
 
 
-def _choose(seen: View, kind: Kind, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
+def _choose(seen: View, kind: Kind | Family, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
     """Law and notches whose loop by itself is stable, passes 1 where it shall, and has the lowest peak of S, wherever the modes may lie.
 
     Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.lqg import LQG
 from flexstage.control.controllers.notch import Notch
 
@@ -96,7 +97,7 @@ class Judgement:
 class Tuning:
     """A tuned controller: its `kind`, the `goal`, how the loop came out, and the `notches` of each loop; `reason` says it in words."""
 
-    kind: Kind
+    kind: Kind | Family
     goal: Goal
     controller: Decentralised | LQG
     judgement: Judgement

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from flexstage.control.controllers.family import Family, Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
@@ -19,26 +18,18 @@ _FILTER = 10.0
 _BELOW = 0.4
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where a law shall pass: the loop's complex `gain` at `frequency` [Hz] with notches; its `static` gain, first `resonance` [Hz]."""
-
-    frequency: float
-    gain: complex
-    static: float
-    resonance: float | None
-
-
-def laws(kind: Kind, place: Place, step: float | None) -> list[Law]:
+def laws(kind: Kind | Family, place: Place, step: float | None) -> list[Law]:
     """Laws C with |C g| = 1 at the place, sampled as they will be.
 
     PI: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a. PID: these without a derivative, and two equal zeros at w/tan(a/2), filtered at
     ten times the frequency or at most 0.4 of the sampling rate. Integral resonant control: dampings of the first resonance, and the
-    tracking gain that is left. None where the kind has no such law.
+    tracking gain that is left. A family's are its own. None where the kind has no such law.
 
     >>> [found.integral for found in laws(Kind.PI, Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), None)][:1]
     [2.0]
     """
+    if isinstance(kind, Family):
+        return list(kind.laws(place, step))
     turning = 2.0 * np.pi * place.frequency if step is None else 2.0 / step * np.tan(np.pi * place.frequency * step)
     size = 1.0 / abs(place.gain)
     if kind is Kind.PI:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
+from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
 from flexstage.control.plants import Plant
@@ -22,7 +23,7 @@ _FASTEST_BY_FORCE = 100.0
 """A force moves a mass above its resonance as if nothing held it: a low resonance bounds nothing."""
 _OF_RATE = 0.2
 _FINE = 0.05
-_STEPS = {Kind.PI: (1.3, 2.0), Kind.PID: (1.3, 2.0), Kind.RESONANT: (1.3, 2.0), Kind.LQG: (1.6, 4.0)}
+_STEPS, _STEPS_OF_LQG = (1.3, 2.0), (1.6, 4.0)
 _WITHIN = 1.01
 _NOTICED = 20.0
 _CALM = (0.9, 0.8, 0.7, 0.6)
@@ -90,7 +91,7 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     top: float = fastest * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
     top = top if seen.step is None else min(top, _OF_RATE / seen.step)
     slowest = min(_SLOWEST * float(seen.modes[0]), 0.5 * top)
-    finer, coarser = _STEPS[task.kind]
+    finer, coarser = _STEPS_OF_LQG if task.kind is Kind.LQG else _STEPS
     places = [top]
     while places[-1] > slowest:
         places.append(places[-1] / (finer if places[-1] > _FINE * seen.modes[0] else coarser))
@@ -170,7 +171,8 @@ def _help(seen: View, task: Task, wanted: float) -> str:
         if lag > _NOTICED:
             found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(wanted)} Hz")
     others = {Kind.PI: "PID or LQG", Kind.PID: "LQG", Kind.RESONANT: "PI with notches, or LQG", Kind.LQG: "less noise of the gauges"}
-    return "; ".join([*found, f"try {others[task.kind]}, more damping, or a smaller spread of the modes"])
+    other = task.kind.others if isinstance(task.kind, Family) else others[task.kind]
+    return "; ".join([*found, f"try {other}, more damping, or a smaller spread of the modes"])
 
 
 def _sentence(task: Task, best: Attempt, bandwidth: float) -> str:

@@ -1,0 +1,21 @@
+"""A kind of amplifier: switching, as fast as a tenth of its carrier."""
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from flexstage.base.quantity import FREQUENCY, POSITIVE
+from flexstage.control.electronics import AmplifierSettings
+from flexstage.control.study.amplifiers import AmplifierForm
+
+
+@dataclass(frozen=True)
+class Switching(AmplifierForm):
+    """An amplifier that switches at its `carrier`."""
+
+    kind: ClassVar[str] = "switching"
+    carrier: Annotated[float, FREQUENCY, POSITIVE] = 100e3
+
+    @property
+    def settings(self):
+        """First order at a tenth of the carrier."""
+        return AmplifierSettings(bandwidth=0.1 * self.carrier)
