@@ -19,16 +19,18 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.statics import statics
+from flexstage.analysis.workspace.workspace import workspace
 from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio import solids
 from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.palette import insert, snippets
 from flexstage.apps.studio.questions import slopes
-from flexstage.apps.studio.results import all_figures, drawn, figures
+from flexstage.apps.studio.reading import _made, design, follow
+from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.wire import array, encode
-from flexstage.apps.studio.writing import _in_its_line, write
+from flexstage.apps.studio.writing import _in_its_line, write, written
 from flexstage.base.quantity import LENGTH
 from flexstage.base.unit import show
 from flexstage.cases.double_triangle import double_triangle
@@ -428,6 +430,29 @@ def test_a_number_written_into_its_line_is_what_patch_writes():
     assert write(tagged, "stage.toml", "parts.neck.thickness", 1.6e-3) == patch(tagged, {"parts.neck.thickness": "1.6 mm"})
 
 
+def test_a_followed_number_gives_the_design_that_the_text_says():
+    """Parts that stay are those of the design before, so that what is known of them stays known; a wrong step is not followed."""
+    wrote = written(TEXT, "followed.toml", THICKNESS, 0.77e-3)
+    assert (wrote.text, wrote.stated) == (patch(TEXT, {THICKNESS: "0.77 mm"}), "0.77 mm")
+    _made.cache_clear()
+    before = design(TEXT, "followed.toml")
+    follow(wrote.text, "followed.toml", TEXT, THICKNESS, wrote.stated)
+    after = design(wrote.text, "followed.toml")
+    assert after == loads(wrote.text)
+    assert all(after.bodies[name] is body for name, body in before.bodies.items())
+    assert dumps(after) == dumps(loads(wrote.text))
+
+
+@pytest.mark.parametrize("stage", [parallelogram(), double_triangle()])
+def test_strokes_stress_and_buckling_at_rest_are_those_of_the_workspace(stage):
+    text = dumps(stage)
+    whole = workspace(stage, ideal(stage), lumped(stage), lost=lost_motion(ideal(stage), lumped(stage)))
+    wanted = [*whole.corrected.symmetric.tolist(), float(whole.stress.least), float(whole.buckling.least)]
+    told = reach(text, "", text, 1)
+    assert [each.value for each in told.figures] == wanted
+    assert ([each.low for each in told.strokes], told.missing) == (whole.corrected.low.tolist(), {})
+
+
 @on_page
 async def test_what_the_palette_inserts_is_a_design_again(page, studio):
     told = await page.ask(say.Palette)
@@ -584,6 +609,7 @@ async def test_a_sweep_of_the_text_that_is_not_saved(page, studio):
 @on_page
 async def test_what_takes_long_is_told_before(page, studio):
     await page.settle()
+    await asyncio.gather(*studio.session._work)
     studio.session._took["figures"] = (4.0, len(page.state.links))
     heard = []
     tell, studio.session._tell = studio.session._tell, lambda message: (heard.append(message), tell(message))

@@ -14,7 +14,7 @@ from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.stability import Stability, stability
-from flexstage.analysis.standing import standing, under_load
+from flexstage.analysis.standing import drawn, kinematics, standing, under_load
 from flexstage.analysis.stroke import Stroke
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
@@ -31,10 +31,8 @@ from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
 from flexstage.models.batch.choice import Choice, choose
-from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
@@ -104,7 +102,7 @@ class Bench:
     @cached_property
     def kinematics(self) -> Kinematics:
         """The ideal model."""
-        return ideal(self.mechanism)
+        return kinematics(self.mechanism)
 
     @cached_property
     def model(self) -> LinearModel:
@@ -175,7 +173,7 @@ class Bench:
     @cached_property
     def buckling(self) -> Buckling:
         """Columns and the whole stage over all strokes, from no voltage."""
-        return buckling(self.mechanism, lumped(self.mechanism), self._loaded)
+        return buckling(self.mechanism, drawn(self.mechanism), self._loaded)
 
     def deflection(self, point: str) -> Deflection:
         """Motion of a point under gravity and stated forces, strokes held."""

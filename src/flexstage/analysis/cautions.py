@@ -14,7 +14,7 @@ from flexstage.analysis.course import path_findings
 from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.seating import seating, seating_findings
-from flexstage.analysis.standing import drawn, load_factors, standing
+from flexstage.analysis.standing import drawn, kinematics, load_factors, standing
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.small import small_motion
@@ -35,7 +35,6 @@ from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.mechanism.outline import outlines
-from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.contact import Contact
@@ -204,11 +203,11 @@ def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
 def _large_motions(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
     try:
-        kinematics = ideal(mechanism)
-        single = single_strokes(mechanism, kinematics)
+        found = kinematics(mechanism)
+        single = single_strokes(mechanism, found)
     except DesignError:
         return ()
-    return tuple(small_motion(mechanism, kinematics).cautions(single))
+    return tuple(small_motion(mechanism, found).cautions(single))
 
 
 def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
@@ -327,7 +326,7 @@ def _tension_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 def _blockages(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Strokes that cannot move, or a platform that cannot; nothing where the ideal model is refused, which tells why."""
     try:
-        found = ideal(mechanism)
+        found = kinematics(mechanism)
     except DesignError:
         return ()
     if found.mobility or found.actuators:
@@ -344,7 +343,7 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     ()
     """
     found: list[Finding] = []
-    for read in (requirements, ideal, standing):
+    for read in (requirements, kinematics, standing):
         try:
             read(mechanism)
         except DesignError as error:

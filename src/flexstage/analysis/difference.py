@@ -13,6 +13,9 @@ from flexstage.analysis.lost_motion import LostMotion
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.statics import Statics
+from flexstage.analysis.workspace.buckling import Buckling
+from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.analysis.workspace.workspace import Workspace
 from flexstage.base.quantity import SHARE
 from flexstage.mechanism.address import get, quantity_of
@@ -103,7 +106,7 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
         *frequency_figures(analysis.modes),
         *stiffness_figures(analysis.statics),
         *loss_figures(analysis.lost_motion),
-        *reach_figures(analysis.workspace),
+        *_workspace_figures(analysis.workspace),
     )
     named = {figure.name: figure for figure in reversed(found)}
     return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
@@ -144,14 +147,17 @@ def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
         yield KeyFigure(f"loss.{name}", "1", float(found.loss.at(name, name)))
 
 
-def reach_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
+def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
+    if reach is not None:
+        yield from reach_figures(reach.single if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
+
+
+def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:
     """Strokes of the platform, and how far hinges and columns are from their limits."""
-    if reach is None:
-        return
-    strokes = reach.single if reach.corrected is None else reach.corrected
-    for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
-        yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
-    if reach.stress is not None and reach.stress.links:
-        yield KeyFigure("safety", "1", float(reach.stress.least))
-    if reach.buckling is not None and reach.buckling.links:
-        yield KeyFigure("buckling", "1", float(reach.buckling.least))
+    if strokes is not None:
+        for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
+            yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
+    if stress is not None and stress.links:
+        yield KeyFigure("safety", "1", float(stress.least))
+    if buckling is not None and buckling.links:
+        yield KeyFigure("buckling", "1", float(buckling.least))

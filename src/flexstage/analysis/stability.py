@@ -506,7 +506,7 @@ def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
             )[1]
             space = np.linalg.qr(np.concatenate([space, solved[corner]], axis=-1))[0][:, : normal.shape[-1]]
         small = space.T @ normal @ space
-        bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
+        bounds = np.linalg.eigvalsh(np.tensordot(weights, small, axes=1))[:, 0]
         least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
         if least in solved:
             return corners[least], solved[least][:, 0]

@@ -9,6 +9,8 @@ from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.finding import DesignError, require
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 
@@ -45,6 +47,17 @@ def drawn(mechanism: Mechanism) -> LinearModel:
     18
     """
     return lumped(mechanism)
+
+
+@lru_cache(maxsize=2)
+def kinematics(mechanism: Mechanism) -> Kinematics:
+    """The ideal kinematics, kept in the same way.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> kinematics(parallelogram()).mobility
+    1
+    """
+    return ideal(mechanism)
 
 
 @lru_cache(maxsize=2)

@@ -255,8 +255,14 @@ def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
 
 def _end_face(link: _Thing) -> tuple[Array, Array]:
     """Points (n, 3) on a link's end face at its origin, and the share of the face that each stands for; the first lie near its rim."""
-    _, y, z = 0.5 * first_design(np.real(link.outline.size), 1)
-    if link.outline.is_round:
+    _, y, z = (0.5 * first_design(np.real(link.outline.size), 1)).tolist()
+    return _face(y, z, is_round=link.outline.is_round)
+
+
+@lru_cache(maxsize=64)
+def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
+    """The same by the half sides of the face; many links have the same."""
+    if is_round:
         radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
         angles = 2.0 * np.pi * (np.arange(16) + 0.5) / 16

@@ -33,6 +33,12 @@ class Outline:
     corners: Array | None = None
     is_ball: bool = False
 
+    @property
+    def designs(self) -> tuple[int, ...]:
+        """The batch axes of where it stands and how large it is."""
+        corners = () if self.corners is None else self.corners.shape[:-2]
+        return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
+
     def reach(self, direction: Array) -> Array:
         """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage; holes do not count.
 

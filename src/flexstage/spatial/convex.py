@@ -147,8 +147,9 @@ def separations(ones: Boxes, others: Boxes) -> Array:
     [1.0]
     """
     turn, face = ones.turns, others.turns
-    edges = [np.cross(turn[..., i], face[..., j]) for i, j in product(range(3), range(3))]
-    directions = np.stack([*(turn[..., i] for i in range(3)), *(face[..., i] for i in range(3)), *edges], axis=1)
+    own_axes, other_axes = np.swapaxes(turn, -1, -2), np.swapaxes(face, -1, -2)
+    edges = np.cross(own_axes[:, :, None], other_axes[:, None]).reshape(-1, 9, 3)
+    directions = np.concatenate([own_axes, other_axes, edges], axis=1)
     lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
     units = np.divide(directions, lengths, out=np.zeros_like(directions), where=lengths > 1e-6)
     between = np.abs(np.einsum("kai,ki->ka", units, others.centres - ones.centres))

@@ -22,6 +22,7 @@ from flexstage.mechanism.outline import Outline, outlines
 
 _TOUCHING = 1e-9
 _AXES = ("x", "y", "z")
+_BOTH_WAYS: Array = np.concatenate([np.eye(3), -np.eye(3)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +117,9 @@ def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
     """
     if not found:
         return np.zeros(3), np.zeros(3), ()
-    high = [_join([outline.reach(axis) for outline in found]) for axis in np.eye(3)]
-    low = [_join([-outline.reach(-axis) for outline in found]) for axis in np.eye(3)]
+    reached = [outline.reach(_BOTH_WAYS.reshape(6, *(1,) * len(outline.designs), 3)) for outline in found]
+    high = [_join([each[axis] for each in reached]) for axis in range(3)]
+    low = [_join([-each[3 + axis] for each in reached]) for axis in range(3)]
     ends = [np.argmin(_first(values)) for values in low] + [np.argmax(_first(values)) for values in high]
     least, most = _join([np.min(values, axis=-1) for values in low]), _join([np.max(values, axis=-1) for values in high])
     return least, most, tuple(found[int(index)].name for index in ends)
@@ -167,9 +169,11 @@ def _directions(outline: Outline, opening: Array) -> Array:
     if outline.is_round:
         corners = (np.array([sx, sy]) * 0.5 * opening for sx in (1.0, -1.0) for sy in (1.0, -1.0))
         normals += [outline.frame.position[..., :2] - corner for corner in corners]
-        normals += list(_AROUND)
     batch = np.broadcast_shapes(opening.shape[:-1], edges.shape[:-2], outline.frame.position.shape[:-1], outline.size.shape[:-1])
     normal = np.stack([np.broadcast_to(each, (*batch, 2)) for each in normals])
+    if outline.is_round:
+        around = _AROUND.reshape(-1, *(1,) * len(batch), 2)
+        normal = np.concatenate([normal, np.broadcast_to(around, (len(_AROUND), *batch, 2))])
     length = np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True))
     unit = np.where(length > _TOUCHING, normal / np.where(length > _TOUCHING, length, 1.0), np.array([1.0, 0.0]))
     flat = np.concatenate([unit, np.zeros_like(unit[..., :1])], axis=-1)

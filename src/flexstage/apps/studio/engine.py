@@ -18,7 +18,8 @@ from flexstage.base.threads import one_thread
 _HERE = "flexstage.apps.studio"
 TASKS: Mapping[str, str] = {
     "read": "reading:read",
-    "write": "writing:write",
+    "write": "writing:written",
+    "follow": "reading:follow",
     "insert": "palette:insert",
     "place": "questions:place",
     "fit": "dragging:fit",
@@ -54,6 +55,14 @@ class Reading:
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     links: Mapping[str, int | None] | None = None
+
+
+@dataclass(frozen=True)
+class Written:
+    """A text with a number set, and what was set; empty where the other text with that number is not quite this design."""
+
+    text: str
+    stated: str
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import first_design
 from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.unit import show
-from flexstage.mechanism.address import provenance
+from flexstage.mechanism.address import provenance, set_text
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.locate import link_path, locate
@@ -33,10 +34,28 @@ _FROM_NOUGHT = 10.0
 """How far it goes from nought, in the unit that is shown."""
 
 
-@lru_cache(maxsize=8)
 def design(text: str, file: str) -> Mechanism:
     """The design that a text says; raises `DesignError` with all that is wrong with it."""
-    return loads(text, where=Path(file).name, folder=Path(file).parent)
+    return _made(_Source(text, file, lambda: loads(text, where=Path(file).name, folder=Path(file).parent)))
+
+
+def follow(text: str, file: str, before: str, address: str, stated: str) -> None:
+    """Take a text for another one with a number set, as `write` has found it to be: parts that stay are those of that design."""
+    _made(_Source(text, file, lambda: set_text(design(before, file), address, stated)))
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A text in its file, and how its design is made."""
+
+    text: str
+    file: str
+    make: Callable[[], Mechanism] = field(compare=False)
+
+
+@lru_cache(maxsize=8)
+def _made(source: _Source) -> Mechanism:
+    return source.make()
 
 
 def read(text: str, file: str, stored: str) -> Reading:
@@ -108,6 +127,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
         yield from place.node.numbers(value, place.address)
 
 
+@lru_cache(maxsize=2)
 def _stored_values(text: str, file: str) -> Mapping[str, float]:
     try:
         return {address: float(value) for address, value, _ in _numbers(design(text, file)) if np.ndim(value) == 0}
@@ -128,7 +148,7 @@ def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str
             address,
             _group(address),
             number,
-            show(number, quantity) if quantity.si not in ("1", "mixed") else f"{number:.12g}",
+            _text(number.hex(), quantity),
             quantity.si,
             unit,
             factor,
@@ -142,6 +162,14 @@ def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str
         )
 
 
+@lru_cache(maxsize=4096)
+def _text(bits: str, quantity: Quantity) -> str:
+    """A number as the file says it; most of a design's stay when one is changed."""
+    value = float.fromhex(bits)
+    return show(value, quantity) if quantity.si not in ("1", "mixed") else f"{value:.12g}"
+
+
+@lru_cache(maxsize=256)
 def _shown(quantity: Quantity) -> tuple[str, float]:
     """The unit that a quantity is shown in, and what one is in SI."""
     try:

@@ -25,7 +25,10 @@ from flexstage.analysis.modes import Modes
 from flexstage.analysis.requirements import Verdict
 from flexstage.analysis.response import response
 from flexstage.analysis.statics import Statics, statics
-from flexstage.analysis.workspace.stroke import SingleAxis
+from flexstage.analysis.workspace.buckling import Buckling, buckling
+from flexstage.analysis.workspace.stops import single_strokes, with_stops
+from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.stroke import SingleAxis, single_axis
 from flexstage.apps.studio.protocol import (
     Cautions,
     Curve,
@@ -116,10 +119,9 @@ def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
 
 def reach(text: str, file: str, stored: str, revision: int) -> Reach:
     """Strokes of the platform, and how far hinges and columns are from their limits."""
-    timer, (found, missing) = Timer(), _workspace(text, file)
-    strokes = () if found is None else tuple(_strokes(found.single if found.corrected is None else found.corrected))
-    reasons = {} if found is None else {name: str(reason) for name, reason in found.reasons.items()}
-    return Reach(revision, tuple(_with_old(reach_figures(found), "reach", stored, text, file)), strokes, missing | reasons, timer.spent)
+    timer, (found, missing) = Timer(), _reached(text, file)
+    strokes = () if found[0] is None else tuple(_strokes(found[0]))
+    return Reach(revision, tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing, timer.spent)
 
 
 def cautions(text: str, file: str, revision: int) -> Cautions:
@@ -181,16 +183,23 @@ def judged(text: str, file: str) -> tuple[Verdict, ...]:
 
 
 @lru_cache(maxsize=8)
-def _workspace(text: str, file: str) -> tuple[Any, dict[str, str]]:
-    from flexstage.analysis.complete import required_command
-    from flexstage.analysis.workspace.workspace import workspace
-
+def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress | None, Buckling | None], dict[str, str]]:
+    """Of the workspace what is shown: strokes, stress and buckling, as `workspace` has them; with reasons for what is not there."""
     known, attempt = bench(text, file), Attempts()
-    lost = attempt.of("corrected", lambda: known.lost)
-    model = attempt.of("model", lambda: known.model)
-    command = required_command(known.mechanism)
-    found = attempt.of("workspace", lambda: workspace(known.mechanism, known.kinematics, model, lost=lost, command=command))
-    return found, attempt.missing
+    strokes = attempt.of("workspace", lambda: single_strokes(known.mechanism, known.kinematics))
+    if strokes is None:
+        return (None, None, None), attempt.missing
+    unloaded = known.limits.from_zero
+    corrected = attempt.of("corrected", lambda: _corrected(known))
+    stress = attempt.of("stress", lambda: hinge_stress(known.mechanism, known.model, unloaded) if known.assembly.thrusts else known.stress)
+    buckled = attempt.of("buckling", lambda: buckling(known.mechanism, known.model, unloaded))
+    return (corrected or strokes, stress, buckled), attempt.missing
+
+
+def _corrected(known: Bench) -> SingleAxis:
+    """Strokes along single axes, lost motion made up by command."""
+    lost = known.lost
+    return single_axis(*with_stops(known.mechanism, known.kinematics, lost.correction, known.limits), provenance=lost.provenance)
 
 
 def _strokes(found: SingleAxis) -> Iterator[Stroke]:
@@ -272,7 +281,7 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
     except DesignError:
         return ()
     if kind == "reach":
-        return tuple(reach_figures(_workspace(stored, file)[0]))
+        return tuple(reach_figures(*_reached(stored, file)[0]))
     attempt = Attempts()
     return _key_figures(*(attempt.of(name, each) for name, each in _key_results(known)))  # type: ignore[arg-type]
 

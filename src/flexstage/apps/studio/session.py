@@ -129,8 +129,11 @@ class Session:
                 raise refuse(request.address, "the text was changed meanwhile", "Set it again")
             plan = self._plan
             if plan is not None and (plan.fits, plan.address) == (text, request.address):
-                self._plan = replace(plan, fits=written)
-            self._take(self.history.change(written, page))
+                self._plan = replace(plan, fits=written.text)
+            if written.stated and self._quick is not self._model and text == self._design:
+                call = ("follow", written.text, self._file, text, request.address, written.stated)
+                self._start(self._model.do(*call, urgency=Urgency.SOON))
+            self._take(self.history.change(written.text, page))
         tell(say.Done(request.id, self.history.revision))
 
     async def _insert(self, request: say.Insert, page: int, tell: Tell) -> None:

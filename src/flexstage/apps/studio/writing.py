@@ -7,11 +7,11 @@ import re
 
 import numpy as np
 
+from flexstage.apps.studio.engine import Written
 from flexstage.apps.studio.reading import design
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.unit import show
 from flexstage.mechanism.address import get, quantity_of, set_text
-from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.store import patch
 from flexstage.mechanism.store.lines import line_numbers, line_of
 
@@ -23,11 +23,16 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
 
     Raises `DesignError` in the checks' words where that is no such number, or where the design would not be one any more.
     """
+    return written(text, file, address, value).text
+
+
+def written(text: str, file: str, address: str, value: str | float) -> Written:
+    """The same, with what was set."""
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
     quick = "" if isinstance(value, str) else _in_its_line(text, file, address, stated)
-    written = quick or patch(text, {address: stated}, where=file)
-    require_valid(design(written, file))
-    return written
+    found = quick or patch(text, {address: stated}, where=file)
+    is_followed = design(found, file) == set_text(design(text, file), address, stated)
+    return Written(found, stated if is_followed else "")
 
 
 def _in_its_line(text: str, file: str, address: str, stated: str) -> str:

@@ -6,6 +6,7 @@ import base64
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -67,7 +68,7 @@ class StageData:
     motions: tuple[Motion, ...]
     notes: tuple[str, ...]
 
-    @property
+    @cached_property
     def links(self) -> tuple[int, ...]:
         """Part numbers of hinges and actuators."""
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 
@@ -124,12 +125,14 @@ class Skeleton:
 
     def at_origin(self, twists: Mapping[str, Array]) -> Array:
         """Twists (b + 1, 6) at the stage's origin, the ground's first; bodies that are not named stand still."""
-        rows = np.zeros((len(self.references) + 1, 6))
-        for place, (name, point) in enumerate(self.references.items(), start=1):
-            if name in twists:
-                rows[place] = np.real(twists[name])
-                rows[place, :3] += np.cross(point, rows[place, 3:])
+        own = [np.real(twists[name]) if name in twists else np.zeros(6) for name in self.references]
+        rows = np.array([np.zeros(6), *own])
+        rows[1:, :3] += np.cross(self._points, rows[1:, 3:])
         return rows
+
+    @cached_property
+    def _points(self) -> Array:
+        return np.array(list(self.references.values())).reshape(-1, 3)
 
 
 def body_twists(
