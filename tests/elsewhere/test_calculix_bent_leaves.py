@@ -1,8 +1,9 @@
 """Large displacements of leaves against CalculiX's solids, stored: `calculix/bent_leaves.py` makes the decks and runs `ccx`.
 
 Each is solved on three meshes, and the finest is compared; its last step changed no number by more than 0.2 %. Guides and upright
-leaves agree to 0.2 % across, 0.5 % along, 0.9 % in their small rotation. In the leaf bent and twisted at once the twist is 1.3 % off
-and the third displacement 1.2 %: strain that is odd across the width, by the slope of its curving times the twist, is not in the law.
+leaves agree to 0.2 % across, 0.5 % along, 0.9 % in their small rotation; leaves bent and twisted to 0.6 % in twist and the third
+displacement. Without the curling of a twisted section, which its clamps forbid, both were 1.2 % off. The smallest rotation of the bent
+leaf is 1.7 % off: strain that is odd across the width, by the slope of its curving times the twist, is not in the law.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ AGREED: dict[str, dict[str, float]] = {
     "guide 5": {"y": 2e-3, "x": 5e-3, "rz": 1e-2},
     "guide 20": {"y": 2e-3, "x": 5e-3, "rz": 1e-2},
     "upright": {"y": 2e-3, "x": 5e-3},
-    "twist": {"rx": 1e-2, "x": 2e-2},
-    "bend": {"y": 1e-3, "x": 3e-3, "rz": 1e-3, "rx": 2e-2, "z": 2e-2},
+    "twist": {"rx": 1e-2, "x": 1e-2},
+    "bend": {"y": 1e-3, "x": 3e-3, "rz": 1e-3, "rx": 1e-2, "z": 1e-2, "ry": 2e-2},
 }
 
 
