@@ -74,6 +74,19 @@ def test_mass_and_frequencies_do_not_depend_on_the_order_of_ends(gravity: tuple[
     assert other.base_inertia[:6] == pytest.approx(one.base_inertia[:6], rel=most, abs=most)
 
 
+def test_a_soft_rod_vibrates_alike_from_either_end():
+    """Its weight stretches and shears it by a thousandth, and turns in the frame of the body it starts from: so do its points with it."""
+    soft = fs.Material(young=5e7, poisson=0.3, density=8000.0)
+    head = fs.Body(mass=0.05, inertia=fs.Inertia(1e-5, 1e-5, 1e-5), centre=(0.1, 0.0, 0.0), reference=(0.1, 0.0, 0.0))
+    found = []
+    for joins, along in ((("ground", "platform"), 1.0), (("platform", "ground"), -1.0)):
+        link = fs.Link(joins, "rod", at=(0.05, 0.0, 0.0), along=(along, 0.0, 0.0), bends=fs.Z)
+        rod = fs.Rod("soft", length=0.1, diameter=0.03)
+        each = fs.Mechanism("", {"soft": soft}, {"rod": rod}, {"platform": head}, {"rod": link}, gravity=(30.0, 60.0, -10.0))
+        found.append(fs.modes(linearise(equilibrium(nonlinear(each, resolution=FINE)))).frequencies[:12])
+    assert found[1] == pytest.approx(found[0], rel=1e-7)
+
+
 @pytest.mark.parametrize("swap", [False, True])
 def test_small_motions_are_the_slopes_of_large_ones(swap: bool):
     """Compliance about a loaded state with weight, by two more equilibria."""
