@@ -153,6 +153,7 @@ from flexstage.models.nonlinear.linearise import (
     linearise as linearise,
 )
 from flexstage.models.nonlinear.path import (
+    branch as branch,
     path as path,
     trace as trace,
 )
@@ -162,6 +163,9 @@ from flexstage.models.nonlinear.slopes import (
 )
 from flexstage.models.nonlinear.stage import (
     nonlinear as nonlinear,
+)
+from flexstage.models.nonlinear.state import (
+    Effort as Effort,
 )
 from flexstage.parts.body import (
     Block as Block,

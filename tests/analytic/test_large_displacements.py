@@ -8,8 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.polynomial import Legendre, legendre
+from scipy.optimize import brentq
+from scipy.special import ellipk
 
 from flexstage.analysis.drift import drift
+from flexstage.base.finding import DesignError
 from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import DEFAULT, Resolution
@@ -22,8 +25,9 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.path import path, trace
+from flexstage.models.nonlinear.path import branch, path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import Effort
 from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
@@ -318,6 +322,54 @@ def test_a_drive_is_followed_where_no_load_could_go():
     traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
     assert found.state.converged.all()
     assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_buckled_column_is_an_elastica(side: float):
+    """P L^2 / (E I) = K(k)^2 and y / L = 2 k / K(k), k the sine of half the angle at its end, to 76 degrees both ways."""
+    found = branch(cantilever(), {"platform.fx": -RIGIDITY}, side=side, step=0.2, points=8)
+    angle, across = found.state.rotation()[1:, 2], found.state.displacement()[1:, 1]
+    sine = np.sin(0.5 * angle)
+    assert found.values[1:] == pytest.approx(ellipk(sine**2) ** 2, rel=1e-6)
+    assert across == pytest.approx(2.0 * sine / ellipk(sine**2), rel=1e-6)
+    assert found.motions.tolist()[1:] == [0] * 8
+    assert np.sign(angle[0]) == np.sign(angle[-1]) == -side
+    assert abs(angle[-1]) > 1.3
+
+
+def pressed_guide() -> Nonlinear:
+    """Two leaves of `THIN` side by side, so far apart that the couple which their forces exert takes no difference between them."""
+    sides = {"left": -200.0, "right": 200.0}
+    links = {
+        name: Link(("ground", "platform"), "leaf", at=(0.5, side, 0.0), along=(1.0, 0.0, 0.0), bends=Z) for name, side in sides.items()
+    }
+    return nonlinear(stage(THIN, {"platform": body(1.0, 0.0, 0.0)}, links))
+
+
+def test_a_pressed_guide_buckles_aside():
+    """Each leaf is four quarters of an elastica: P L^2 / (E I) = 4 K(k)^2 a leaf, aside by 2 k / K(k) of its length."""
+    found = branch(pressed_guide(), {"platform.fx": -2.0 * RIGIDITY}, step=0.05, points=6)
+    aside = np.abs(found.state.displacement()[1:, 1])
+    modulus = np.array([brentq(lambda k, u=each: 2.0 * k / ellipk(k * k) - u, 0.0, 0.9, xtol=1e-14) for each in aside])
+    assert found.values[0] == pytest.approx(np.pi**2, rel=1e-7)
+    assert found.values[1:] == pytest.approx(4.0 * ellipk(modulus**2) ** 2, rel=1e-6)
+    assert aside[-1] > 0.2
+
+
+def test_what_turns_does_not_branch():
+    with pytest.raises(DesignError, match="nothing branches"):
+        branch(vee(), {"platform.fy": -1.0})
+
+
+def test_past_a_limit_the_load_is_found_again():
+    """Asked for, a load beyond the limit is followed by arc length to where it is whole; else its case ends at the limit, and says so."""
+    model, push = vee(), {"platform.fy": np.array([-40.0, -70.0])}
+    stopped, snapped = equilibrium(model, push), equilibrium(model, push, effort=Effort(past=True))
+    assert stopped.converged.tolist() == [True, False]
+    assert stopped.reached[1] == pytest.approx(critical(model, {"platform.fy": -70.0}).factor, rel=5e-3)
+    assert snapped.converged.all()
+    assert unstable_motions(snapped).tolist() == [0, 0]
+    assert snapped.displacement()[:, 1] == pytest.approx([stopped.displacement()[0, 1], -3.028e-3], rel=1e-3)
 
 
 @pytest.mark.parametrize(("section", "share"), [(LeafSection.BEAM, 1.0), (LeafSection.PLATE, np.sqrt(1.0 - 0.3 + 0.09))])

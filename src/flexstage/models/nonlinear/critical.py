@@ -20,7 +20,7 @@ from flexstage.models.nonlinear.state import Effort
 WEIGHT = "weight"
 """The load that is the stage's own weight, payloads included."""
 _FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
-_NEAR = Effort(halvings=0, iterations=12)
+_NEAR = Effort(halvings=0, iterations=12, arcs=0)
 """Each state starts from one beside it."""
 _ROUGH = 1e-6
 """How far a count is bisected where no stiffness goes through zero."""
@@ -132,8 +132,8 @@ def _close(search: _Search, low: float, high: float, last: State, tolerance: flo
             if sharp is None:
                 high, close = middle, 0.03 * close
             else:
-                return _told(search, sharp, search.at(sharp, last))
-    return _told(search, 0.5 * (low + high), last)
+                return _told(search, sharp, search.at(sharp, last), "")
+    return _told(search, 0.5 * (low + high), last, _inside(last))
 
 
 def _zero(search: _Search, low: float, high: float, start: State, tolerance: float) -> float | None:
@@ -163,17 +163,20 @@ def _lowest(state: State) -> tuple[float, Array]:
     return values[0], free @ vectors[:, 0] / scale
 
 
-def _told(search: _Search, factor: float, state: State) -> Critical:
-    model = search.model
-    _, motion = _lowest(state)
-    bent = _system(state).bent
+def _inside(state: State) -> str:
+    """The flexure that gives way by itself, or none."""
     weakest = [
         (float(np.min(np.abs(np.linalg.eigvalsh(_indefinite(system(each.tangent))[place, 0])))), name)
-        for group, each in zip(model.flexures, bent, strict=True)
+        for group, each in zip(state.model.flexures, _system(state).bent, strict=True)
         for place, name in enumerate(group.names)
     ]
-    inside = min(weakest, default=(1.0, ""))
-    own = inside[1] if inside[0] < 1e-7 else ""
+    size, name = min(weakest, default=(1.0, ""))
+    return name if size < 1e-7 else ""
+
+
+def _told(search: _Search, factor: float, state: State, own: str) -> Critical:
+    model = search.model
+    _, motion = _lowest(state)
     gravity = search.load.get(WEIGHT, 0.0) * model.gravity[None]
     pushed = model.dead(replace(state.loads, inputs=_inputs(search), gravity=gravity, constant=0.0 * state.loads.constant))
     work = _work(model, state, pushed, motion)

@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
+from flexstage.models.nonlinear.arc import rescue
 from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, equilibrate
 from flexstage.models.nonlinear.stage import Nonlinear
@@ -127,8 +128,9 @@ def equilibrium(
 
     `hold` imposes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`: component of the rotation vector [rad])
     and finds what holds them. `weight` and `stated` are shares of gravity and of stated forces and preloads. Wrenches are dead: they keep
-    their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once; a case without an
-    equilibrium that Newton's method finds is NaN and says so in `status`. Raises `DesignError` for names that the stage does not have.
+    their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once, or in steps, or by arc
+    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. Raises `DesignError` for
+    names that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -148,7 +150,7 @@ def equilibrium(
     whole = Loads(inputs, flat[-2][:, None] * model.gravity, flat[-1])
     holding = _hold(model, held, flat[len(given) : len(given) + len(held)], cases)
     first = _first(model, start, holding, cases)
-    found = equilibrate(model, first, whole, holding, effort)
+    found = rescue(model, whole, holding, equilibrate(model, first, whole, holding, effort), effort)
     return state(model, whole, holding, found, (shape, tuple(held)))
 
 

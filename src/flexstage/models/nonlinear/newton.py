@@ -25,7 +25,10 @@ TOLD = ("status", "iterations", "residual", "reached")
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Poses of b cases, each with its status, its iterations, the last residual of its flexures, and the share of its load `reached`."""
+    """Poses of b cases, each with its status, its iterations, the last residual of its flexures, and the share of its load `reached`.
+
+    A case that failed has the pose of that share, if there is one above zero, or the one it began from.
+    """
 
     pose: Pose
     status: Array
@@ -41,7 +44,7 @@ class Found:
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort = USUAL) -> Found:
     """The equilibrium of every case, the whole load at once; what fails so is loaded in steps."""
     cases = np.arange(len(loads.inputs))
-    chunks = [_search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
+    chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
     found = join(chunks)
     return _by_steps(model, start, loads, hold, (effort, found))
 
@@ -78,21 +81,23 @@ def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, tried: tu
     while (active := np.flatnonzero((share < 1.0) & (width >= 0.5**effort.halvings))).size:
         aim = np.minimum(1.0, share[active] + width[active])
         target = replace(hold.of(active), value=aim[:, None] * hold.value[active])
-        again = _search(model, pose.of(active), loads.of(active).times(aim), target, effort)
+        again = search(model, pose.of(active), loads.of(active).times(aim), target, effort)
         good = again.status == Status.CONVERGED
         width[active] *= np.where(good, 2.0, 0.5)
         share[active[good]] = aim[good]
         pose = pose.put(active[good], again.pose.of(np.flatnonzero(good)))
         whole = np.flatnonzero(aim == 1.0)
         found = _merge(found, failed[active[whole]], again.of(whole))
-    return replace(found, reached=put(found.reached, failed, share))
+    reached = replace(found, reached=put(found.reached, failed, share))
+    lost = reached.status[failed] != Status.CONVERGED
+    return replace(reached, pose=reached.pose.put(failed[lost], pose.of(np.flatnonzero(lost))))
 
 
 def _merge(found: Found, cases: Array, other: Found) -> Found:
     return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
 
 
-def _search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
+def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
     """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
     compiled = kernel() is not None and tables(model) is not None
     if compiled and not model.hinges.names and not len(hold.body):

@@ -9,14 +9,12 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.condense import solve
-from flexstage.models.nonlinear.critical import Kind, unstable_motions
+from flexstage.models.nonlinear.arc import Course, Point, first_point, follow_course
+from flexstage.models.nonlinear.critical import WEIGHT, Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
-from flexstage.models.nonlinear.graph import advance, assemble, exerted_by
-from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import USUAL, Found, join, lack, motion
+from flexstage.models.nonlinear.newton import USUAL, join
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
+from flexstage.models.nonlinear.state import Effort, Loads
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +74,7 @@ def path(
     >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
-    values, rest, locked = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {})
+    values, rest, locked, effort = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(effort, arcs=0)
     known = {channel.name for channel in model.inputs}
 
     def at(some: Array, start: State | None) -> State:
@@ -131,60 +129,64 @@ def trace(
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
-    rate = Loads(np.array([[load.get(name, 0.0) for name in names]]), np.zeros((1, 3)), np.zeros(1))
-    tracing = _Tracing(model, start.loads, rate, start.hold, effort)
-    found, factors, last = [Found(start.pose, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))], [0.0], None
-    for _ in range(points):
-        after = _step(tracing, found[-1].pose, factors[-1], last, step)
-        if after is None:
-            break
-        found.append(after[0])
-        factors.append(after[1])
-        last = after[2]
-    whole, count = join(found), len(factors)
-    inputs = start.loads.inputs + np.array(factors)[:, None] * rate.inputs
-    loads = Loads(inputs, np.repeat(start.loads.gravity, count, axis=0), np.repeat(start.loads.constant, count))
-    held = replace(start.hold, value=np.repeat(start.hold.value, count, axis=0))
-    states = state(model, loads, held, whole, ((count,), start.held))
-    return Path("factor", np.array(factors), states, unstable_motions(states), start.held)
+    course = _course(load, start, effort)
+    begin = first_point(course, start.pose, 0.0)
+    return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
 
 
-@dataclass(frozen=True, eq=False)
-class _Tracing:
-    model: Nonlinear
-    rest: Loads
-    rate: Loads
-    hold: Hold
-    effort: Effort
+def branch(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    *,
+    side: float = 1.0,
+    step: float = 0.02,
+    points: int = 60,
+    rest: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
 
-    def loads(self, factor: float) -> Loads:
-        return Loads(self.rest.inputs + factor * self.rate.inputs, self.rest.gravity, self.rest.constant)
+    The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
+    against it. Steps and points are as in `trace`. Raises `DesignError` as `critical` does; where the load turns instead (a limit, which
+    `trace` passes); where a flexure gives way by itself, its ends at rest; and where no equilibrium is found on the branch.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = branch(nonlinear(parallelogram()), {"platform.fy": 1e3}, points=2, weight=0.0)
+    >>> found.values.size, bool(np.ptp(found.state.displacement()[:, 0]) > 1e-3)
+    (3, True)
+    """
+    given = critical(model, load, rest=rest, weight=weight)
+    if given.kind is Kind.LIMIT:
+        raise refuse("load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.trace")
+    if given.link:
+        advice = "Draw it as two parts with a light body between them"
+        raise refuse(given.link, f"at {given.factor:.6g} times the load it gives way between its ends, which rest", advice)
+    start = given.state
+    course = _course(load, start, effort, given.factor)
+    begin, others = first_point(course, start.pose, given.factor), np.zeros(len(course.scale) - model.freedoms)
+    into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
+    found = [begin, *follow_course(course, begin, step, points, into=into)]
+    if len(found) == 1:
+        raise refuse("load", f"no equilibrium is found beside the bifurcation at {given.factor:.6g} times the load", "Try a smaller step")
+    return _along(course, found, start.held)
 
 
-def _step(tracing: _Tracing, pose: Pose, factor: float, last: Array | None, length: float) -> tuple[Found, float, Array] | None:
-    """The next point: its pose, factor and the step (n,) to it; `None` where none is found."""
-    model, effort = tracing.model, tracing.effort
-    scale = np.concatenate(
-        [np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), np.zeros(len(model.hinges.locked) + len(tracing.hold.body))]
-    )
-    whole, sign = np.zeros(len(scale)), 1.0
-    with np.errstate(all="ignore"):
-        for iteration in range(effort.iterations):
-            system = assemble(model, pose, tracing.loads(factor), tracing.hold)
-            pushed = np.append(exerted_by(model, pose, tracing.rate)[0], np.zeros(len(tracing.hold.body)))
-            right = np.stack([-system.residual[0], pushed], axis=-1)
-            own, along = solve(system.stiffness, right[None])[0].T
-            if iteration == 0:
-                sign = 1.0 if last is None or (along * scale) @ (last * scale) >= 0.0 else -1.0
-                change = sign * length / float(np.linalg.norm(along * scale))
-            else:
-                change = -float((whole * scale) @ (own * scale) / ((whole * scale) @ (along * scale)))
-            moved = own + change * along
-            size, gap = float(motion(model, moved[None], model.size)[0]), float(lack(model, system)[0])
-            if not np.isfinite(size + gap) or size > 20.0 * length:
-                return None
-            pose, inside = advance(model, pose, system.bent, moved[None], np.ones(1))
-            factor, whole, size = factor + change, whole + moved, max(size, float(inside[0]))
-            if iteration and size < effort.step and gap < effort.gap and abs(change) <= 1e-9 * max(abs(factor), abs(factor - change)):
-                return Found(pose, np.array([Status.CONVERGED]), np.array([iteration + 1]), np.array([gap]), np.ones(1)), factor, whole
-    return None
+def _course(load: Mapping[str, float], start: State, effort: Effort, factor: float = 0.0) -> Course:
+    """A load that changes by a factor, from a state that has it so many times."""
+    model = start.model
+    rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
+    gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], np.zeros(1))
+    begun = replace(start.loads, inputs=start.loads.inputs - factor * gain.inputs, gravity=start.loads.gravity - factor * gain.gravity)
+    return Course(model, begun, start.hold, gain, 0.0 * start.hold.value, effort)
+
+
+def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
+    factors, count = np.array([each.factor for each in found]), len(found)
+    loads, hold = course.at(0.0)
+    inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
+    along = Loads(inputs, gravity, np.repeat(loads.constant, count))
+    whole = join([each.found for each in found])
+    states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
+    return Path("factor", factors, states, unstable_motions(states), held)

@@ -23,7 +23,9 @@ class Status(IntEnum):
 class Effort:
     """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
 
-    `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load.
+    `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load;
+    and what still fails follows its load by arc length, `arcs` steps at most, `past` limits too if that is asked for: the load may then
+    fall and rise again to where it is whole, as a stage does that snaps through.
     """
 
     step: float = 1e-9
@@ -31,6 +33,8 @@ class Effort:
     iterations: int = 25
     limit: float = 0.3
     halvings: int = 8
+    arcs: int = 30
+    past: bool = False
 
 
 @dataclass(frozen=True, eq=False)
