@@ -102,6 +102,7 @@ NOISE_DENSITY = Quantity("noise density", "m/Hz^0.5", "nm/Hz^0.5", "0.05 nm/Hz^0
 ROTATION_NOISE = Quantity("angular noise density", "rad/Hz^0.5", "nrad/Hz^0.5", "5 nrad/Hz^0.5")
 VOLTAGE_NOISE = Quantity("voltage noise density", "V/Hz^0.5", "uV/Hz^0.5", "2 uV/Hz^0.5")
 CURRENT_NOISE = Quantity("current noise density", "A/Hz^0.5", "uA/Hz^0.5", "1 uA/Hz^0.5")
+FORCE_NOISE = Quantity("force noise density", "N/Hz^0.5", "mN/Hz^0.5", "1 mN/Hz^0.5")
 ACCELERATION_NOISE = Quantity("acceleration density", "m/s^2/Hz^0.5", "um/s^2/Hz^0.5", "3 um/s^2/Hz^0.5")
 VELOCITY_NOISE = Quantity("velocity density", "m/s/Hz^0.5", "um/s/Hz^0.5", "0.5 um/s/Hz^0.5")
 SPEED = Quantity("speed", "m/s", "mm/s", "2 mm/s")

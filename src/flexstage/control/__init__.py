@@ -36,8 +36,8 @@ HOMES = {
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
     "study.setup": (
-        "AmplifierSetup ControllerSetup FileMotion Floor GaugeSetup GoalSetup HystereticStacks LoopNumbers LoopSetup Motion NotchAt "
-        "PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
+        "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor GaugeSetup GoalSetup HystereticStacks LoopNumbers LoopSetup Motion "
+        "NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
     "study.compare": "compare_controllers",

@@ -100,6 +100,7 @@ from flexstage.control.study.file import (
 from flexstage.control.study.setup import (
     AmplifierSetup as AmplifierSetup,
     ControllerSetup as ControllerSetup,
+    DampingSetup as DampingSetup,
     FileMotion as FileMotion,
     Floor as Floor,
     GaugeSetup as GaugeSetup,

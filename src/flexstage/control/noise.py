@@ -18,6 +18,7 @@ from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.control.closed import Loop
 from flexstage.control.curves import points_around, rates_of
 from flexstage.control.electronics import Amplifier, Sensor
+from flexstage.control.plants import SENSED
 from flexstage.control.resolvent import resolvent
 from flexstage.control.stability import require_stable
 from flexstage.control.system import System, select
@@ -188,7 +189,7 @@ def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
     ['ground.x']
     """
-    found = dict(floor)
+    found = dict(floor) | {name: Spectrum(density**2) for name, density in closed.plant.heard.items()}
     bounded = bounded_amplifiers(closed, outputs)
     for name, amplifier in closed.plant.hardware.amplifiers.items():
         if amplifier.noise_density and name not in bounded:
@@ -197,6 +198,8 @@ def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str
 
 
 def _source(name: str) -> Source:
+    if name.startswith(f"{SENSED}."):
+        return Source(Kind.GAUGE, name)
     return Source(Kind.FLOOR if name.startswith(f"{GROUND}.") else Kind.AMPLIFIER, name)
 
 

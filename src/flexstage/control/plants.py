@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER
 from flexstage.control.coordinates import Coordinates, coordinates
@@ -25,6 +26,8 @@ from flexstage.models.linear.port import ports
 from flexstage.models.linear.state_space import state_space
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
+SENSED = "sensed"
+"""Heads the names of inputs that sensors of inner loops hear as noise."""
 _REPEATED = 1e-3
 
 
@@ -37,7 +40,8 @@ class Plant:
     rounding),
     `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
     `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
-    compliance is a static term; `note` says what was simplified.
+    compliance is a static term; `note` says what was simplified. `heard` are the noise densities of further inputs: those of sensors of
+    inner loops.
     """
 
     system: Annotated[System, INNER]
@@ -49,6 +53,7 @@ class Plant:
     left_out: int
     note: str
     provenance: str
+    heard: Annotated[Mapping[str, float], INNER] = field(default_factory=lambda: Table({}))
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -70,12 +75,14 @@ def plant(
     modes: int | None = None,
     points: tuple[str, ...] = (),
     damping: Damping | None = None,
+    links: tuple[str, ...] = (),
 ) -> Plant:
     """The plant by a model of a stage, `kinematics` telling what its loop's coordinates are.
 
     `modes` is how many to keep; absent, all below half the sampling rate (what samples can tell apart), and all of a continuous loop; never
     fewer than the loop has coordinates, and never one of a pair without the other (frequencies within 0.1 %). What the others add
-    statically stays. `points` are further bodies or points whose motion is given. Raises `DesignError` for a batch of designs, for
+    statically stays. `points` are further bodies or points whose motion is given, `links` those whose axial forces `<link>.fx` [N] are.
+    Raises `DesignError` for a batch of designs, for
     gauges that do not tell the pose and actuators that cannot make it, for a design without damping.
 
     >>> from flexstage.control.electronics import hardware
@@ -97,7 +104,8 @@ def plant(
     twists = tuple(f"{place}.{name}" for place in dict.fromkeys((PLATFORM, *points)) for name in COMPONENTS)
     grounds = tuple(f"{GROUND}.{name}" for name in COMPONENTS)
     wrenches = tuple(f"{PLATFORM}.{name}" for name in FORCES)
-    space = state_space(model, ports(model, (*loop.gauges, *twists), (*loop.actuators, *grounds, *wrenches)), law, kept)
+    forces = tuple(f"{name}.fx" for name in links)
+    space = state_space(model, ports(model, (*loop.gauges, *twists, *forces), (*loop.actuators, *grounds, *wrenches)), law, kept)
     stage = _with_relative(from_state_space(space), model, twists)
     system, states = _with_hardware(stage, space.states, loop, given)
     return Plant(

@@ -20,6 +20,11 @@ from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Content, Mark, Table, field_column, make_table
 
 _SMALL, _NOTHING = 1e-12, 1e-16
+_LEAST_DAMPED = 0.01
+_FORCE_NOTE = (
+    "Without stacks: frequency z without their axial stiffness. Most: (w - z)/(2 z), of one leg or decoupled ones. Alone: by this gain, "
+    "no other mode near and none of its own damping."
+)
 _BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
 _MARGIN_NOTE = (
     "Margins of one loop at a time, cut at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
@@ -68,6 +73,43 @@ def _controller(found: LoopStudy) -> str:
     where = f"{asked.law.value.upper() if len(asked.law.value) < 4 else asked.law.value} in {asked.coordinates.value} coordinates"
     frequencies = sorted({round(each.frequency, 1) for each in found.controller.notches})
     return f"{where}, notches at {', '.join(f'{each:g}' for each in frequencies)} Hz" if frequencies else where
+
+
+def damping_table(found: LoopStudy) -> Table | None:
+    """What force feedback does to each mode of the plant; `None` where there is none."""
+    inner = found.damping
+    if inner is None:
+        return None
+    rows = [
+        (
+            Cell(f"{number(each.frequency, 4)}", Mark.STRONG),
+            number(each.zero, 4),
+            percent(each.ratio),
+            percent(each.most),
+            percent(each.alone),
+            number(each.damped_frequency, 4),
+            percent(each.damped_ratio),
+        )
+        for each in inner.modes
+        if each.most > _LEAST_DAMPED
+    ]
+    heads = [
+        Column("mode", "Hz"),
+        Column("without stacks", "Hz"),
+        Column("damping"),
+        Column("most"),
+        Column("alone"),
+        Column("becomes", "Hz"),
+        Column("damping"),
+    ]
+    rest = ", ".join(f"{name} {percent(share)}" for name, share in zip(inner.coordinates, inner.left_at_rest, strict=True))
+    least = ", ".join(f"{name} {percent(share)}" for name, share in zip(inner.coordinates, inner.softest, strict=True))
+    notes = [
+        f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {number(inner.corner, 4)} Hz: {', '.join(inner.legs)}.",
+        _FORCE_NOTE,
+        f"Static stiffness left at rest: {rest}. Left at least, below the first mode: {least}.",
+    ]
+    return make_table("Force feedback in the legs", heads, rows, notes=notes)
 
 
 def law_table(found: LoopStudy) -> Table | None:

@@ -83,6 +83,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     sensitivity: Annotated[
         str | None, text_option("--sensitivity", "NUMBER", "Highest peak of the sensitivity S that tuning allows.")
     ] = None,
+    damping: Annotated[
+        str | None,
+        text_option("--damping", "RATIO", "Integral force feedback in the legs, for modes of this damping, e.g. 50%. Default: none."),
+    ] = None,
     rate: Annotated[
         str | None, text_option("--rate", "VALUE", "Sampling rate. Default: 10 kHz, or 10 times the highest platform mode.")
     ] = None,
@@ -191,6 +195,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
                 "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
             },
         ),
+        "damping": None
+        if damping is None
+        else _override(given.damping or forms.DampingSetup(), {"ratio": values.value("--damping", damping, RATIO)}),
         "hysteresis": _hysteresis(hysteresis),
         "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     }
@@ -411,6 +418,7 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
 
 def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.loop_table(found)
+    yield tables.damping_table(found)
     yield tables.law_table(found)
     yield tables.margin_table(found)
     yield tables.measured_table(found)

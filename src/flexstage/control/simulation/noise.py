@@ -46,6 +46,8 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
     inputs = given.system.input_names
     for name, spectrum in floor.items():
         found[name] = series(spectrum, samples, step, (seed, Stream.FLOOR, inputs.index(name)))
+    for name, heard in given.heard.items():
+        found[name] = series(Spectrum(heard**2), samples, step, (seed, Stream.FLOOR, inputs.index(name)))
     for number, name in enumerate(given.gauges):
         density = given.hardware.sensors.get(name, Sensor()).noise_density
         if density:

@@ -10,6 +10,7 @@ from flexstage.base.finding import Finding
 from flexstage.control.study.choices import Compensation, ControllerKind, Notching
 from flexstage.control.study.setup import (
     ControllerSetup,
+    DampingSetup,
     FileMotion,
     Floor,
     GaugeSetup,
@@ -46,6 +47,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     yield from _gauges(setup.gauges)
     yield from _floor(setup.floor)
     yield from _controller(setup.controller)
+    yield from _damping(setup.damping) if setup.damping is not None else ()
     yield from _compensation(setup)
     yield from _hysteresis(setup.hysteresis) if setup.hysteresis is not None else ()
     yield from _trajectory(setup.trajectory)
@@ -122,6 +124,17 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
     if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
+
+
+def _damping(found: DampingSetup) -> Iterator[Finding]:
+    if found.ratio is not None and found.gain is not None:
+        yield Finding("damping", "both a damping ratio and a gain are given", "Give one of them: the other follows")
+    if found.order not in (1, 2):
+        yield Finding("damping.order", f"found {found.order}", "Give 2, which keeps the stiffness at rest, or 1")
+    if found.gauges and found.noise is not None:
+        yield Finding(
+            "damping.noise", "it is that of force sensors, and strain gauges sense the legs", "Leave it out: theirs is in the design"
+        )
 
 
 def _goal(found: ControllerSetup) -> Iterator[Finding]:

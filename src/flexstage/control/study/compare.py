@@ -17,9 +17,10 @@ from flexstage.base.record import VIEW, Along
 from flexstage.control.controllers.family import CONTROLLERS
 from flexstage.control.noise import Kind, NoiseBudget
 from flexstage.control.study.choices import ControllerKind, OfferedKind
-from flexstage.control.study.setup import LoopSetup, StepMotion
+from flexstage.control.study.setup import ControllerSetup, DampingSetup, LoopSetup, StepMotion
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment.pipeline import Identification, Told
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
@@ -104,20 +105,32 @@ def compare_controllers(
     found: dict[str, Rival] = {}
     missed: dict[str, str] = {}
     last: DesignError | None = None
-    kinds = (*_OWN, *map(OfferedKind, CONTROLLERS))
-    for number, kind in enumerate(kinds):
+    rivals = _rivals(mechanism, asked, tested=test is not None)
+    for number, (name, one) in enumerate(rivals.items()):
         if tell is not None:
-            tell(f"tuning {kind.value}", number / len(kinds))
-        goal = asked.controller.goal if kind in _SEARCHED else None
-        notches = () if kind is ControllerKind.LQG else asked.controller.notches
-        controller = replace(asked.controller, kind=kind, goal=goal, notches=notches)
+            tell(f"tuning {name}", number / len(rivals))
         try:
-            found[kind.value] = rival(loop_study(mechanism, replace(asked, controller=controller), there=there, test=test))
+            found[name] = rival(loop_study(mechanism, one, there=there, test=test))
         except DesignError as error:
-            missed[kind.value], last = "; ".join(str(each) for each in error.findings), error
+            missed[name], last = "; ".join(str(each) for each in error.findings), error
     if last is not None and not found:
         raise last
     return Comparison(Table(found), Table(missed))
+
+
+def _rivals(mechanism: Mechanism, asked: LoopSetup, *, tested: bool) -> dict[str, LoopSetup]:
+    """The set-up with each kind of controller, and PI on legs that force feedback damps, where stacks are in them."""
+    kinds = (*_OWN, *map(OfferedKind, CONTROLLERS))
+    found = {kind.value: replace(asked, controller=_of_kind(asked, kind)) for kind in kinds}
+    if asked.damping is None and not tested and expand(mechanism).strokes:
+        found[f"{ControllerKind.PI.value}, damped"] = replace(found[ControllerKind.PI.value], damping=DampingSetup())
+    return found
+
+
+def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> ControllerSetup:
+    goal = asked.controller.goal if kind in _SEARCHED else None
+    notches = () if kind is ControllerKind.LQG else asked.controller.notches
+    return replace(asked.controller, kind=kind, goal=goal, notches=notches)
 
 
 def rival(study: LoopStudy) -> Rival:

@@ -12,12 +12,15 @@ from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
+from flexstage.control.damping.damped_plant import ActiveDamping
+from flexstage.control.damping.legs import legs
 from flexstage.control.electronics import GaugeSettings, Hardware, hardware
 from flexstage.control.measured_plant import measured_plant
 from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.damping import damp
 from flexstage.control.study.floor import floor_spectra
 from flexstage.control.study.setup import GaugeSetup, LoopSetup
 from flexstage.experiment.identification.identified import Identified
@@ -42,6 +45,7 @@ class ResolvedSetup:
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
     brought somewhere, where it has already sagged. Where the plant is a measured one, `predicted` is that of the model.
+    `damping` is what inner loops do, which the plants then have.
     """
 
     mechanism: Mechanism
@@ -54,6 +58,7 @@ class ResolvedSetup:
     highest: float
     displaced: bool = False
     predicted: Plant | None = None
+    damping: ActiveDamping | None = None
 
     @property
     def rate(self) -> float:
@@ -88,9 +93,23 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
     require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
     given = _hardware(mechanism, setup, rate, delay)
-    whole = plant(model, kinematics, given)
-    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes)
-    return ResolvedSetup(mechanism, setup, kinematics, model, found, whole, Table(floor_spectra(setup.floor)), highest, there is not None)
+    sensed = () if setup.damping is None else legs(mechanism, model, setup.damping.gauges)
+    links = tuple(each.sensed for each in sensed)
+    whole = plant(model, kinematics, given, links=links)
+    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes, links=links)
+    damped = None if setup.damping is None else damp(found, whole, model, sensed, setup.damping)
+    return ResolvedSetup(
+        mechanism=mechanism,
+        setup=setup,
+        kinematics=kinematics,
+        model=model,
+        plant=found if damped is None else damped.plant,
+        whole=whole if damped is None else damped.whole,
+        floor=Table(floor_spectra(setup.floor)),
+        highest=highest,
+        displaced=there is not None,
+        damping=None if damped is None else damped.found,
+    )
 
 
 def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
@@ -105,6 +124,10 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     flexstage.base.finding.DesignError: --record: B: no input of the record is called so. There are u; a loop needs all.
     --record: S: no output of the record is called so. There are y; a loop needs all.
     """
+    if given.setup.damping is not None:
+        raise refuse(
+            "damping", "the plant is that of a test, which tells no forces in the legs", "Record the stage with its inner loops closed"
+        )
     seen = measured_plant(given.plant, given.model, found)
     return replace(given, plant=seen, whole=seen, predicted=given.plant)
 

@@ -13,6 +13,7 @@ from flexstage.base.quantity import (
     ACCELERATION_NOISE,
     ANGLE,
     DISPLACEMENT,
+    FORCE_NOISE,
     FREQUENCY,
     JERK,
     NOISE_DENSITY,
@@ -35,6 +36,7 @@ from flexstage.models.theory import Model
 _PEAK = Bound(low=1.0, open_low=True)
 _SHARE = Bound(low=0.0, high=0.5, open_low=True)
 _OVER, _SPREAD = Bound(low=0.02, high=1.0), Bound(low=0.0, high=0.3)
+_DAMPED = Bound(low=0.0, high=1.0, open_low=True)
 _CREEP = Bound(low=-0.2, high=0.2)
 
 
@@ -197,6 +199,26 @@ class ControllerSetup:
 
 
 @dataclass(frozen=True)
+class DampingSetup:
+    """Integral force feedback in the legs, under the loop of the pose: each stack gives way at the rate of its leg's tension.
+
+    `ratio` is the damping wanted of the modes that the loop feels most, or the `gain` is stated. `corner` of the high pass (absent: a tenth
+    of the lowest of these modes without the stacks' stiffness) and its `order`: 2 keeps the stiffness at rest, 1 leaves a / (a + gain) of
+    it. The tension is that of a sensor of force in each leg, of white `noise`, or of strain `gauges` on links of the legs, whose noise and
+    bandwidth are theirs. `lag` and `delay` are those of the electronics, which are analogue.
+    """
+
+    ratio: Annotated[float, RATIO, _DAMPED] | None = None
+    gain: Annotated[float, RATE, POSITIVE] | None = None
+    corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    order: int = 2
+    gauges: tuple[str, ...] = ()
+    noise: Annotated[float, FORCE_NOISE, NOT_NEGATIVE] | None = None
+    lag: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+
+
+@dataclass(frozen=True)
 class HystereticStacks:
     """The stacks' hysteresis: a model in a `file`, as `flexstage hysteresis` writes it, or only the `width` of the loop per stroke.
 
@@ -302,6 +324,7 @@ class LoopSetup:
     gauges: GaugeSetup = field(default_factory=GaugeSetup)
     floor: Floor = field(default_factory=Floor)
     controller: ControllerSetup = field(default_factory=ControllerSetup)
+    damping: DampingSetup | None = None
     hysteresis: HystereticStacks | None = None
     trajectory: TrajectorySetup = field(default_factory=StepMotion)
 

@@ -19,6 +19,7 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.base.threads import one_thread
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.curves import Curves, curves
+from flexstage.control.damping.damped_plant import ActiveDamping
 from flexstage.control.disk import DiskMargin, disk_margins
 from flexstage.control.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.noise import NoiseBudget, noise_budget
@@ -87,6 +88,11 @@ class LoopStudy(InNotebook):
     def plant(self) -> Annotated[Plant, VIEW]:
         """The plant with the modes that the loop feels."""
         return self.settled.plant
+
+    @property
+    def damping(self) -> Annotated[ActiveDamping | None, VIEW]:
+        """What force feedback in the legs does, which the plant then has; null where there is none."""
+        return self.settled.damping
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
@@ -226,6 +232,18 @@ def _cautions(given: ResolvedSetup) -> list[Finding]:
     if silent:
         what = f"noise is not stated of {', '.join(silent)}; only their steps count"
         found.append(Finding("gauges", what, "State noise_density in the design, or gauges.noise in the set-up"))
+    if given.damping is not None:
+        yielding = given.damping
+        worst = int(np.argmin(yielding.softest))
+        what = f"against forces on the platform the stage is down to {100.0 * yielding.softest[worst]:.3g} % of its stiffness at rest"
+        advice = "The loop of the pose has to hold them; a higher corner or a lower ratio yields less"
+        found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
+        found.append(
+            Finding("damping", "its own strokes are not held against the amplifiers' limits", "Keep a share of the stroke for them")
+        )
+        quiet = [each.actuator for each in yielding.sensed if each.noise is None]
+        if quiet:
+            found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))
     if given.setup.hysteresis is not None:
         what = "margins, noise and poles are those of stacks without it, and without creep"
         found.append(Finding("hysteresis", what, "See the simulations for what it does"))

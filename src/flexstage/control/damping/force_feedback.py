@@ -1,0 +1,130 @@
+"""Integral force feedback: a leg that gives way at the rate of its own tension takes energy out of every mode that strains it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.control.system import System
+from flexstage.models.linear.model import Channel
+
+
+@dataclass(frozen=True)
+class ForceFeedback:
+    """Stroke = G(s) T / k of a leg's tension T [N] and axial stiffness k [N/m]; G = g / (s + a), or with `order` 2 g s / (s + a)^2.
+
+    `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high pass (Preumont, Dufour & Malekian, J. Guid. Control Dyn. 15 (1992) 390; Preumont,
+    Vibration Control of Active Structures, 2018, ch. 7 and 8). Without it the leg would yield to every load at rest, and take back every
+    command: order 1 leaves a / (a + g) of its stiffness, order 2 all of it below a^2 / g. `lag` [Hz] is that of the sensor's electronics,
+    `delay` [s] by its Pade form of second order. Raises `DesignError` for numbers that cannot be.
+    """
+
+    gain: float
+    corner: float
+    order: int = 2
+    lag: float = np.inf
+    delay: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be."""
+        require(
+            Finding("force feedback", f"its {name} is {value:g}", "Give a positive number")
+            for name, value in (("gain", self.gain), ("corner", self.corner), ("lag", self.lag))
+            if not value > 0.0
+        )
+
+    @property
+    def numerator(self) -> Array:
+        """Of G, lag and delay, highest power first."""
+        high = np.array([self.gain]) if self.order == 1 else np.array([self.gain, 0.0])
+        return np.polymul(high, [1.0, -6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else high
+
+    @property
+    def denominator(self) -> Array:
+        """Of G, lag and delay, highest power first."""
+        turning = 2.0 * np.pi * self.corner
+        found = np.array([1.0, turning]) if self.order == 1 else np.array([1.0, 2.0 * turning, turning**2])
+        if np.isfinite(self.lag):
+            found = np.polymul(found, [0.5 / (np.pi * self.lag), 1.0])
+        return np.polymul(found, [1.0, 6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else found
+
+    def at(self, rates: Array) -> Array:
+        """G at complex rates s [1/s]."""
+        return np.polyval(self.numerator, rates) / np.polyval(self.denominator, rates)
+
+    def system(self, stiffness: float, tension: Channel, stroke: Channel) -> System:
+        """From tension [N] to stroke [m], in controllable form.
+
+        >>> law = ForceFeedback(gain=600.0, corner=1.0)
+        >>> found = law.system(17e6, Channel("T", "N"), Channel("u", "m"))
+        >>> bool(np.allclose(found.transfer(np.array([40.0]))[0, 0, 0] * 17e6, law.at(80j * np.pi)))
+        True
+        """
+        bottom = self.denominator / self.denominator[0]
+        count = len(bottom) - 1
+        top = np.zeros(count)
+        top[count - len(self.numerator) :] = self.numerator / self.denominator[0] / stiffness
+        A = np.vstack([-bottom[1:], np.eye(count)[:-1]])
+        return System(A, np.eye(count)[:, :1], top[None, :], np.zeros((1, 1)), (tension,), (stroke,))
+
+    @property
+    def left_at_rest(self) -> float:
+        """The share of a leg's axial stiffness that is left at rest: a / (a + g), or all of it.
+
+        >>> round(ForceFeedback(gain=2.0 * np.pi * 9.0, corner=1.0, order=1).left_at_rest, 6)
+        0.1
+        """
+        turning = 2.0 * np.pi * self.corner
+        return turning / (turning + self.gain) if self.order == 1 else 1.0
+
+    @property
+    def kept_below(self) -> float:
+        """Below this frequency [Hz] a leg keeps more than half of its axial stiffness, |G| < 1: a^2 / (2 pi g); 0 of order 1 with g > a."""
+        turning = 2.0 * np.pi * self.corner
+        if self.order == 1:
+            return 0.0 if self.gain > turning else np.inf
+        return turning**2 / (2.0 * np.pi * self.gain)
+
+
+def most_damping(frequency: float, zero: float) -> float:
+    """The most damping of a mode by integral force feedback, (w - z) / (2 z).
+
+    w is its frequency, z that with the actuators' axial stiffness removed, of one leg or decoupled legs with one gain (Preumont 2018,
+    ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be made to creep
+    back without swinging.
+
+    >>> most_damping(110.0, 100.0)
+    0.05
+    """
+    return (frequency - zero) / (2.0 * zero)
+
+
+def best_gain(frequency: float, zero: float) -> float:
+    """The gain [1/s] of most damping, 2 pi w (w/z)^(1/2) of frequencies in Hz.
+
+    >>> roots = np.roots([1.0, best_gain(1.2, 1.0), (2.4 * np.pi) ** 2, best_gain(1.2, 1.0) * (2.0 * np.pi) ** 2])
+    >>> pair = roots[np.argmax(roots.imag)]
+    >>> round(-pair.real / abs(pair), 9), round(most_damping(1.2, 1.0), 9)
+    (0.1, 0.1)
+    """
+    return 2.0 * np.pi * frequency * float(np.sqrt(frequency / zero))
+
+
+def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
+    """The pole [1/s] that an undamped mode comes to: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 that goes on from j w as g grows.
+
+    >>> pole = damping_of_pair(ForceFeedback(best_gain(1.2, 1.0), 1e-6, order=1), 1.2, 1.0)
+    >>> round(-pole.real / abs(pole), 5)
+    0.1
+    """
+    w, z = 2.0 * np.pi * frequency, 2.0 * np.pi * zero
+    pole = 1j * w
+    for share in np.geomspace(1e-3, 1.0, 60):
+        closed = np.polyadd(np.polymul(law.denominator, [1.0, 0.0, w**2]), share * np.polymul(law.numerator, [1.0, 0.0, z**2]))
+        roots = np.roots(closed)
+        roots = roots[roots.imag >= 0.0]
+        pole = complex(roots[np.argmin(np.abs(roots - pole))])
+    return pole

@@ -1,0 +1,155 @@
+"""The legs of a stage as inner loops see them: which link's tension is sensed, and what the stage is without their axial stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.mechanism import LinkProbe, Mechanism
+from flexstage.mechanism.pattern import copy_names
+from flexstage.mechanism.sight import link_names
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.model import LinearModel
+
+_NEXT_TO_NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class Leg:
+    """An actuator's leg: the `link` that is its stack of axial `stiffness` [N/m], the link whose tension is `sensed`.
+
+    `noise` [N/Hz^(1/2)] and `lag` [Hz] are those of the strain gauge that senses it, None where it is a sensor of force.
+    """
+
+    actuator: str
+    link: str
+    sensed: str
+    stiffness: float
+    noise: float | None = None
+    lag: float | None = None
+
+
+def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = ()) -> tuple[Leg, ...]:
+    """The legs of all actuators that impose a stroke along their link; `gauges`: strain gauges in them, else each stack has a sensor.
+
+    A strain gauge on a stack reads its free stroke too, which is taken off as it is commanded; elsewhere in the leg it reads tension alone.
+    Raises `DesignError` for stages without stacks, models that tell no forces of links, gauges that are on no link of a leg.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> legs(parallelogram(), lumped(parallelogram()))[0].sensed
+    'B/pzt'
+    """
+    assembly, outputs = expand(mechanism), {each.name for each in model.outputs}
+    strokes = assembly.strokes
+    require(_findings(assembly, model, outputs))
+    placed = _places(mechanism)
+    require(_gauge_findings(gauges, placed))
+    found = {name: Leg(name, link, link, _axial(model, link)) for name, link in strokes.items()}
+    for gauge in gauges:
+        link = placed[gauge]
+        owner = next((name for name, stack in strokes.items() if link == stack or _unit(link) == _unit(stack) != ""), None)
+        require(
+            []
+            if owner is not None
+            else [Finding(f"damping.gauges {gauge}", f"{link} is in no leg of an actuator", "Take a gauge in a leg")]
+        )
+        if owner is not None:
+            part = assembly.gauges[gauge].gauge
+            noise = None if part.noise_density is None else float(part.noise_density) * _axial(model, link)
+            found[owner] = replace(found[owner], sensed=link, noise=noise, lag=None if part.bandwidth is None else float(part.bandwidth))
+    if not gauges:
+        return tuple(found.values())
+    sensed = {placed[gauge] for gauge in gauges}
+    return tuple(each for each in found.values() if each.sensed in sensed)
+
+
+def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 0.0) -> LinearModel:
+    """The model whose legs have but a share of their stacks' axial stiffness, at least a billionth (what is then free has 0 Hz, nearly).
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> bare = without_stiffness(model, legs(parallelogram(), model))
+    >>> bool(eigen(bare).values[0] < 0.1 * eigen(model).values[0])
+    True
+    """
+    changed = dict(model.stiffness)
+    for each in found:
+        law = np.array(changed[each.link].law, dtype=float)
+        law[..., 0, 0] *= max(left, _NEXT_TO_NOTHING)
+        changed[each.link] = replace(changed[each.link], law=law)
+    return replace(model, stiffness=changed)
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Frequencies [Hz] of modes (k,) and of what they become without the legs' axial stiffness, `zeros` (k,)."""
+
+    frequencies: Array
+    zeros: Array
+
+
+def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
+    """Modes with and without the legs' axial stiffness, each by the shape that is most like its own (kinetic energy).
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> pairs = pair_zeros(model, legs(parallelogram(), model))
+    >>> pairs.frequencies[:2].round(1).tolist(), pairs.zeros[:2].round(1).tolist()
+    ([875.4, 1674.4], [875.4, 190.0])
+    """
+    stiff, soft = eigen(model), eigen(without_stiffness(model, found))
+    alike = (stiff.shapes.T @ model.inertia_matrix @ soft.shapes) ** 2
+    rows, columns = scipy.optimize.linear_sum_assignment(-alike)
+    frequencies = np.sqrt(stiff.values) / (2.0 * np.pi)
+    zeros = np.sqrt(np.maximum(soft.values, 0.0)) / (2.0 * np.pi)
+    return Pairs(frequencies[rows], zeros[columns])
+
+
+def _axial(model: LinearModel, link: str) -> float:
+    return float(np.real(np.asarray(model.stiffness[link].law)[..., 0, 0]))
+
+
+def _unit(link: str) -> str:
+    return link.rpartition("/")[0]
+
+
+def _places(mechanism: Mechanism) -> Mapping[str, str]:
+    """Links of single strain gauges by the gauges' names."""
+    probes = {key: place for key, place in mechanism.gauges.items() if isinstance(place, LinkProbe)}
+    pairs = (zip(copy_names(key), link_names(place.link), strict=True) for key, place in probes.items())
+    return {name: link for group in pairs for name, link in group}
+
+
+def _findings(assembly: Assembly, model: LinearModel, outputs: set[str]) -> Iterator[Finding]:
+    if not assembly.strokes:
+        yield Finding(
+            "damping",
+            "no stack is in a leg: nothing gives way at the rate of a force",
+            "Leave damping out, and take a PID for force actuators",
+        )
+        return
+    untold = [name for name, link in assembly.strokes.items() if link not in model.stiffness or f"{link}.fx" not in outputs]
+    if untold:
+        what = f"the model tells no forces in the legs of {', '.join(untold)}"
+        yield Finding("damping", what, 'Take model = "lumped", as drawn')
+    for name, link in assembly.strokes.items():
+        along = np.asarray(assembly.actuator(name).free_deformation)
+        if link in model.stiffness and np.any(np.abs(along[..., 1:]) > 0.0):
+            yield Finding(
+                "damping", f"{name} moves across its link, not along it", "Force feedback is worked out for strokes along their link"
+            )
+
+
+def _gauge_findings(gauges: tuple[str, ...], placed: Mapping[str, str]) -> Iterator[Finding]:
+    for name in gauges:
+        if name not in placed:
+            yield Finding(f"damping.gauges {name}", "the stage has no strain gauge of this name", suggest_nearest(name, placed))

@@ -1,0 +1,193 @@
+"""Force feedback in the legs: closed forms of Preumont, poles by an independent eigenvalue solve, and what stiffness it costs."""
+
+import numpy as np
+import pytest
+import scipy
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.registry import case
+from flexstage.control.damping.damped_plant import as_felt, close_damping, describe_damping
+from flexstage.control.damping.force_feedback import ForceFeedback, best_gain, most_damping
+from flexstage.control.damping.legs import legs, pair_zeros
+from flexstage.control.electronics import AmplifierSettings, hardware
+from flexstage.control.plants import plant
+from flexstage.control.reduction import reduce_modes
+from flexstage.control.study.resolve import resolve
+from flexstage.control.study.setup import DampingSetup, LoopSetup
+from flexstage.mechanism.store import dumps, loads
+from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+
+ONE_LEG = """
+format = "flexstage 1"
+name = "a block on one stack and a spring"
+[materials.steel]
+density = "7850 kg/m^3"
+young = "200 GPa"
+poisson = 0.3
+[damping]
+law = "modal"
+ratio = 1e-9
+[parts.stack]
+kind = "piezo"
+stroke = "15 um"
+stiffness = "2 N/um"
+length = "20 mm"
+diameter = "10 mm"
+[parts.coil]
+kind = "spring"
+diagonal = ["{guide} N/um", "0 N/um", "0 N/um", "0 N m/rad", "0 N m/rad", "0 N m/rad"]
+[sensors.probe]
+range = "100 um"
+[bodies.platform]
+solids = {{ block = {{ shape = "block", material = "steel", size = ["40 mm", "40 mm", "40 mm"] }} }}
+[links]
+leg = {{ joins = ["ground", "platform"], part = "stack", at = ["0 mm", "0 mm", "0 mm"], along = "x" }}
+guide = {{ joins = ["ground", "platform"], part = "coil", at = ["0 mm", "0 mm", "0 mm"], along = "x" }}
+[gauges]
+S = {{ gauge = "probe", body = "platform", pose = {{ at = ["20 mm", "0 mm", "0 mm"] }}, positive = "opens" }}
+"""
+
+
+def damped_by(stage, law, **given):
+    """The plant of a stage's lumped model without clock, with the inner loops closed, and what they do."""
+    model = lumped(stage)
+    found = legs(stage, model)
+    bare = plant(model, ideal(stage), hardware(stage, **given), links=tuple(each.sensed for each in found))
+    felt = as_felt(bare, found)
+    closed = close_damping(bare, law, felt)
+    return model, felt, bare, closed
+
+
+def nodal_poles(model, legs, law):
+    """Poles [1/s] by one descriptor of all nodal coordinates: M q'' + D q' + K q = sum b k u, u = G (g q - u) of every leg."""
+    K, M = model.stiffness_matrix, model.inertia_matrix
+    size, order = len(K), len(law.denominator) - 1
+    inverse, shapes = scipy.linalg.eigh(M, K)
+    moving = inverse > 1e-9 * inverse[-1]
+    omega, shapes = inverse[moving] ** -0.5, shapes[:, moving] * inverse[moving] ** -0.5
+    D = M @ shapes @ np.diag(2.0 * model.damping.ratio * omega) @ shapes.T @ M
+    whole, even, unit = 2 * size + order * len(legs), np.diag(K) ** -0.5, omega[0]  # all numbers of one size: small poles stay exact
+    A, E = np.zeros((whole, whole)), np.eye(whole)
+    A[:size, size : 2 * size] = np.eye(size)
+    A[size : 2 * size, :size] = -K * even * even[:, None]
+    A[size : 2 * size, size : 2 * size] = -D * even * even[:, None] * unit
+    E[size : 2 * size, size : 2 * size] = M * even * even[:, None] * unit**2
+    bottom, top = law.denominator / law.denominator[0], law.numerator / law.denominator[0]
+    powers = unit ** np.arange(1.0, order + 1.0)
+    for number, leg in enumerate(legs):
+        stretch = np.asarray(model.stiffness[leg.link].operator)[0] * even
+        axial = np.asarray(model.stiffness[leg.link].law)[0, 0]
+        at, reads = 2 * size + order * number, np.zeros(order)
+        reads[order - len(top) :] = top
+        A[size : 2 * size, at : at + order] += axial * np.outer(stretch, reads / powers)
+        A[at, :size] += stretch * axial / leg.stiffness
+        A[at, at : at + order] += (-bottom[1:] - axial / leg.stiffness * reads) / powers
+        A[at + 1 : at + order, at : at + order - 1] = np.eye(order - 1)
+    poles = unit * scipy.linalg.eigvals(A, E)
+    return poles[np.isfinite(poles) & (np.abs(poles) < 1e7)]
+
+
+@pytest.mark.parametrize("guide", [0.7, 1.0, 20.0])
+def test_one_leg_reaches_its_closed_form(guide):
+    """(w - z)/(2 z) at w (w/z)^(1/2), by the whole plant."""
+    stage = loads(ONE_LEG.format(guide=guide))
+    model, felt, bare, _ = damped_by(stage, ForceFeedback(1.0, 1e-3, order=1))
+    pairs = pair_zeros(model, felt)
+    place = int(np.argmax(pairs.frequencies / pairs.zeros))
+    w, z = pairs.frequencies[place], pairs.zeros[place]
+    assert w / z == pytest.approx(np.sqrt((2.0 + guide) / guide), rel=1e-7)
+
+    def least(gain):
+        law = ForceFeedback(float(gain), 1e-4 * z, order=1)
+        poles = close_damping(bare, law, felt).system.poles
+        pair = poles[(poles.imag > 1e-3 * np.abs(poles)) & (np.abs(poles) < 2.5 * np.pi * w) & (np.abs(poles) > 1.8 * np.pi * z)]
+        return -np.max(-pair.real / np.abs(pair), initial=0.0)
+
+    best = scipy.optimize.minimize_scalar(least, bounds=(0.5 * best_gain(w, z), 1.5 * best_gain(w, z)), method="bounded")
+    wanted = most_damping(w, z)
+    assert -best.fun == pytest.approx(wanted, rel=1e-3)
+    assert best.x == pytest.approx(best_gain(w, z), rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "double-triangle"])
+def test_poles_of_stages_are_those_of_an_independent_solve(name):
+    stage = case(name)
+    law = ForceFeedback(900.0, 2.0, lag=20e3)
+    model, felt, _, closed = damped_by(stage, law)
+    wanted, found = nodal_poles(model, felt, law), closed.system.poles
+    distance = np.min(np.abs(found[:, None] - wanted[None, :]), axis=0)
+    assert len(wanted) > 20
+    assert np.max(distance / np.abs(wanted)) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "double-triangle", "xy-stage"])
+def test_modes_apart_are_damped_as_if_alone(name):
+    """Within 10 % where modes lie further apart than their damping and keep their shape without the stacks; repeated ones count as one."""
+    found = resolve(case(name), LoopSetup(damping=DampingSetup(ratio=0.04))).damping
+    gained = [each for each in found.modes if each.alone > 0.005]
+    assert gained
+    for each in gained:
+        others = [abs(other.frequency / each.frequency - 1.0) for other in gained]
+        if min((gap for gap in others if gap > 1e-3), default=1.0) > each.damped_ratio:
+            assert each.damped_ratio - each.ratio == pytest.approx(each.alone, rel=0.1), each
+
+
+def test_stiffness_at_rest_is_that_of_legs_with_what_is_left_of_theirs():
+    stage = case("double-triangle")
+    model = lumped(stage)
+    for order in (1, 2):
+        law = ForceFeedback(300.0, 4.0, order)
+        _, felt, bare, _ = damped_by(stage, law)
+        bare = reduce_modes(bare, 0.01)
+        closed = close_damping(bare, law, felt)
+        told = describe_damping(bare, closed, law, felt, pair_zeros(model, felt))
+        K = model.stiffness_matrix.copy()
+        for leg in felt:
+            stretch, axial = np.asarray(model.stiffness[leg.link].operator)[0], leg.stiffness
+            K -= (1.0 - law.left_at_rest) * axial * np.outer(stretch, stretch)
+        rows = [[each.name for each in model.outputs].index(f"platform.{name}") for name in told.coordinates]
+        seen = model.output[rows]
+        soft, stiff = (np.diag(seen @ np.linalg.solve(matrix, seen.T)) for matrix in (K, model.stiffness_matrix))
+        assert told.left_at_rest == pytest.approx(stiff / soft, rel=1e-6)
+        assert np.all(told.softest <= told.left_at_rest + 1e-12)
+
+
+def test_a_slow_amplifier_bounds_the_gain_and_says_so():
+    asked = LoopSetup(damping=DampingSetup(gain=2e4, delay=1e-3))
+    with pytest.raises(DesignError, match="the inner loops are unstable: they grow by"):
+        resolve(case("double-triangle"), asked)
+    lagging = damped_by(case("parallelogram"), ForceFeedback(500.0, 5.0), amplifiers=AmplifierSettings(bandwidth=3e3))[3]
+    assert lagging.system.growth < 0.0
+
+
+def test_strain_gauges_in_the_legs_sense_what_sensors_of_force_do():
+    """On the stack, with its stroke taken off, and on the hinge in series: the same poles; their noise is the gauge's times the link."""
+    text = dumps(case("parallelogram")).replace("[gauges]\n", '[gauges]\nG = { gauge = "strain", link = "B/LINK" }\n')
+    text = text.replace(
+        "[sensors.probe]", '[sensors.strain]\nkind = "strain"\nrange = "1 um"\nnoise_density = "1e-3 nm/Hz^0.5"\n\n[sensors.probe]'
+    )
+    bare = resolve(case("parallelogram"), LoopSetup(damping=DampingSetup(gain=900.0)))
+    for link in ("pzt", "front"):
+        stage = loads(text.replace("B/LINK", f"B/{link}"))
+        found = resolve(stage, LoopSetup(damping=DampingSetup(gain=900.0, gauges=("G",))))
+        axial = np.asarray(lumped(stage).stiffness[f"B/{link}"].law)[0, 0]
+        assert found.damping.sensed[0].noise == pytest.approx(1e-12 * axial)
+        assert found.plant.heard == {"sensed.B": found.damping.sensed[0].noise}
+        if link == "pzt":
+            assert found.damping.modes[0].damped_ratio == pytest.approx(bare.damping.modes[0].damped_ratio, rel=1e-9)
+
+
+BAD = {
+    "no stack is in a leg": ("voice-coil-stage", DampingSetup()),
+    "the stage has no strain gauge of this name": ("parallelogram", DampingSetup(gauges=("Q",))),
+    "both a damping ratio and a gain are given": ("parallelogram", DampingSetup(ratio=0.3, gain=100.0)),
+    "found 3. Give 2": ("parallelogram", DampingSetup(order=3)),
+}
+
+
+@pytest.mark.parametrize("told", BAD)
+def test_what_cannot_be_is_said(told):
+    name, asked = BAD[told]
+    with pytest.raises(DesignError, match=told):
+        resolve(case(name), LoopSetup(damping=asked))
