@@ -103,3 +103,20 @@ def test_a_channel_that_comes_later_than_the_others_is_named(side: str, number: 
     word, name = "late" if seconds > 0.0 else "early", ("y" if side == "outputs" else "u") + str(number)
     assert len(told) == 1
     assert told[0].startswith(f"{name} looks {word} by 1.2 ms")
+
+
+@pytest.mark.parametrize("noise", [2e-3, 2e-2])
+def test_both_modes_of_a_pair_are_found_where_noise_goes_with_the_response(noise: float) -> None:
+    known = truth((118.0, 118.0, 231.0), outputs=3, inputs=3)
+    lines = np.geomspace(80.0, 400.0, 700)
+    exact = known.response(lines)
+    draw = np.random.default_rng(5).standard_normal((2, *exact.shape))
+    found = identify(replace(responses(lines, 0.0), values=exact * (1.0 + noise * np.sqrt(0.5) * (draw[0] + 1j * draw[1]))))
+    assert found.frequencies.round(0).tolist() == [118.0, 118.0, 231.0]
+    residues = found.shapes[:, :2] @ found.participation[:2]
+    directions = np.linalg.svd(known.shapes[:, :2] @ known.participation[:2])[1], np.linalg.svd(residues)[1]
+    assert directions[1][1] / directions[1][0] == pytest.approx(directions[0][1] / directions[0][0], rel=10.0 * noise)
+    spread = np.abs(found.frequencies - known.frequencies) / found.frequency_deviations
+    assert np.max(spread[2:]) < 4.0
+    assert np.sum(found.frequencies[:2]) == pytest.approx(236.0, abs=8.0 * np.max(found.frequency_deviations[:2]))
+    np.testing.assert_array_equal(found.widening, 1.0)

@@ -106,6 +106,11 @@ def test_a_loop_of_six_axes_designed_on_a_record_with_delay_is_the_one_of_the_tr
     compared(double_triangle(), shaken(double_triangle(), 60.0, 200e-6), 200e-6)
 
 
+@pytest.mark.full
+def test_a_loop_of_six_axes_designed_at_uneven_lines_is_the_one_of_the_truth() -> None:
+    compared(double_triangle(), swept(double_triangle(), np.geomspace(30.0, 700.0, 1500), 200e-6), 200e-6)
+
+
 def test_a_record_of_another_stage_is_refused() -> None:
     lines = np.geomspace(20.0, 6000.0, 300)
     with pytest.raises(DesignError, match="it seems to be of another stage"):

@@ -133,7 +133,8 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
 
     Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation; where
     the inputs are near the mode what transients are, a blow at a record's begin, the transients count as inputs. Modes that only together
-    explain anything fall through: each is free to take the other's part.
+    explain anything fall through: each is free to take the other's part. So are both modes of a pair, which is why responses, where there
+    is nothing but inputs, are not asked: infinite.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -144,6 +145,8 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
     modal = found.modal
     count, total = modal.participation.shape
     inputs = total if band.inputs is None else band.inputs
+    if inputs == band.cells.width:
+        return np.full(count, np.inf)
     largest = count * (1 + total) + np.argmax(np.abs(modal.shapes), axis=0) * count + np.arange(count)
     strength = np.empty(count)
     driving = [total if _is_blow(band, pole, inputs) else inputs for pole in modal.poles]

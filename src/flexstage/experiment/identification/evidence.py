@@ -11,6 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.cross_spectra import Segments, Spectra, Tell, Window, pool, spectra
+from flexstage.experiment.identification.growth import noise_growth
 from flexstage.experiment.identification.lines import Cells, Lines, block_count, record_lines
 from flexstage.experiment.identification.smear import SMEARING, Smear
 from flexstage.experiment.identification.tones import Tone, remove_tones
@@ -225,8 +226,18 @@ def _of_responses(known: Responses) -> Evidence:
         smear=Smear(window, 1.0 / step) if even and window in SMEARING else None,
         rounding=_rounding(known.outputs, size),
         resolution=step,
-        shaped=None if known.coherence is None else lambda cells: _coherent_shape(known, cells),
+        shaped=_shape(known, output_scale),
     )
+
+
+def _shape(known: Responses, output_scale: Array) -> Callable[[Cells], Array] | None:
+    """How noise goes with frequency: as coherence says, else in proportion to the response where lines show it, else even."""
+    if known.coherence is not None:
+        return lambda cells: _coherent_shape(known, cells)
+    growth = noise_growth(known.frequencies, known.values / output_scale[:, None])
+    if not np.any(growth):
+        return None
+    return lambda cells: 1.0 + growth[:, None] * cells.own_power.T / cells.count
 
 
 def _coherent_shape(known: Responses, cells: Cells) -> Array:
