@@ -8,10 +8,18 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
 from flexstage.analysis.judge import judge
-from flexstage.analysis.load_effect import FELT, load_effect
+from flexstage.analysis.load_effect import FELT, felt_links, load_effect
 from flexstage.analysis.stability import prestress, stability
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.control.study.resolve import resolve
+from flexstage.control.study.rest import rest_errors
+from flexstage.control.study.setup import LoopSetup
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.expansion import expansion
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.spatial.frame import transport
 from tests.analytic.test_stability import leaves
 
 
@@ -99,3 +107,125 @@ def test_the_second_order_of_a_stroke_is_told():
     assert found.error == pytest.approx(0.5 * (50e-6 / length) ** 2, rel=1e-3)
     assert found.link in stage.links
     assert "bends by" in found.text
+
+
+def pushed(payload: float) -> fs.Mechanism:
+    """A soft stack against a platform on two thin leaves that a payload presses on; leaves as beams, without mass of their own."""
+    stage = parallelogram()
+    leaf, stack = stage.parts["leaf"], stage.parts["stack"]
+    assert isinstance(leaf, fs.Leaf)
+    assert isinstance(stack, fs.Piezo)
+    leaf = replace(leaf, thickness=0.3e-3, section=fs.LeafSection.BEAM)
+    stack = replace(stack, stiffness=5e4, preload=None, mass=0.0)
+    light = {name: replace(each, density=1e-6) for name, each in stage.materials.items()}
+    load = {"load": fs.Payload("platform", mass=payload, at=(0.0, 0.0, 0.0), point=True)}
+    parts = {**stage.parts, "leaf": leaf, "stack": stack}
+    return replace(stage, parts=parts, materials=light, payloads=load, gravity=(0.0, 9.80665, 0.0), requirements={"loss": "at most 8 %"})
+
+
+def test_lost_motion_is_that_of_the_loaded_stage():
+    """The guide's stiffness k against the stack's s: k / (k + s), k that of beam columns under the payload."""
+    stage = pushed(6.0)
+    still = fs.lost_motion(fs.ideal(stage), fs.lumped(stage)).loss.values[0, 0]
+    length, rigidity, weight = 0.025, 2.0 * 71.7e9 * 0.025 * 0.0003**3 / 12.0, 6.0 * 9.80665
+    u = 0.5 * length * np.sqrt(weight / rigidity)
+    softened = weight / length / (np.tan(u) / u - 1.0) / (12.0 * rigidity / length**3)
+    wanted = 1.0 / (1.0 + (1.0 / still - 1.0) / softened)
+    found = fs.analyse(stage)
+    assert found.lost_motion is not None
+    lost = found.lost_motion.loss.values[0, 0]
+    assert lost == pytest.approx(wanted, rel=2e-3)
+    assert abs(lost / still - 1.0) > 0.3
+    assert sum(found.lost_motion.of("B").values()) == pytest.approx(lost, rel=1e-12)
+    assert float(np.asarray(found.verdicts[0].value)) == pytest.approx(lost, rel=1e-12)
+    budget = found.error_budget
+    assert budget is not None
+    (stroke,) = budget.command.values()
+    assert budget.ideal.at("x", "lost motion") == pytest.approx(lost * stroke, rel=1e-9)
+
+
+def test_link_by_link_a_state_has_the_same_statics_and_at_rest_the_budget_of_the_lumped_model():
+    stage = parallelogram()
+    model = fs.nonlinear(stage)
+    for loads in ({}, {"platform.fy": -3e4, "platform.fx": 200.0}):
+        state = fs.equilibrium(model, loads, weight=0.0, stated=0.0)
+        whole, links = (fs.statics(linearise(state, inner=inner)).compliance.values for inner in (True, False))
+        size = np.sqrt(np.diagonal(whole))
+        assert np.max(np.abs(links - whole) / np.outer(size, size)) < 1e-12
+    still = linearise(fs.equilibrium(model, weight=0.0, stated=0.0), inner=False)
+    drawn, rest = (fs.lost_motion(fs.ideal(stage), each) for each in (fs.lumped(stage), still))
+    for name, share in drawn.of("B").items():
+        assert rest.of("B")[name] == pytest.approx(share, rel=3e-3, abs=1e-9)  # Mindlin's clamp
+    assert abs(rest.of("B")["geometric"]) < 1e-9
+
+
+@pytest.fixture(scope="module")
+def long_travel() -> fs.Mechanism:
+    return fs.case("long-travel-xy")
+
+
+def test_drift_of_a_loaded_stage_is_that_of_one_that_is_warmer(long_travel: fs.Mechanism):
+    warm, cold = (fs.equilibrium(fs.nonlinear(long_travel, temperature=step)) for step in (1.0, -1.0))
+    found = fs.drift(long_travel, felt_links(long_travel)).motion
+    for place in ("platform", "sample"):
+        rate = 0.5 * (warm.displacement(place) - cold.displacement(place))
+        drifted = [found.at(f"{place}.{axis}", "uniform") for axis in "xyz"]
+        assert drifted == pytest.approx(rate.tolist(), rel=1e-4, abs=1e-4 * np.max(np.abs(rate)))
+
+
+def test_drift_of_a_loaded_stage_is_what_its_flexures_do_to_a_small_load(long_travel: fs.Mechanism):
+    """By reciprocity: how the forces on flexures change with a load, times what does not fit them, here by differences."""
+    model, step = fs.nonlinear(long_travel), 1e-3
+    ahead, back = (fs.equilibrium(model, {"platform.fy": load}) for load in (step, -step))
+    thermal = _Thermal(expand(long_travel), expansion(long_travel, None), np.zeros(3))
+    moved = np.zeros(4)
+    for name, link in thermal.assembly.links.items():
+        if isinstance(link.part, fs.Leaf):
+            misfit = transport(np.array([0.5 * float(np.asarray(link.part.length)), 0.0, 0.0])) @ thermal.misfit(link)
+            moved -= (ahead.wrench(name) - back.wrench(name)) / (2.0 * step) @ misfit
+    found = fs.drift(long_travel, felt_links(long_travel)).of().values[1]
+    assert found == pytest.approx(moved, rel=1e-5, abs=1e-14)
+    drawn = fs.drift(long_travel, fs.lumped(long_travel)).of().values[1]
+    assert abs(found[2] / drawn[2]) > 10.0  # the load seeks its plumb line
+
+
+def test_drift_about_rest_is_that_of_the_lumped_model():
+    stage = parallelogram()
+    still = linearise(fs.equilibrium(fs.nonlinear(stage), weight=0.0, stated=0.0), inner=False)
+    drawn, rest = fs.drift(stage, fs.lumped(stage)), fs.drift(stage, still)
+    size = np.max(np.abs(drawn.motion.values))
+    assert rest.motion.values == pytest.approx(drawn.motion.values, abs=1e-4 * size)
+    forces = rest.forces.part(drawn.forces.rows, drawn.forces.columns).values
+    assert forces == pytest.approx(drawn.forces.values, abs=1e-3 * np.max(np.abs(drawn.forces.values)))
+    with pytest.raises(fs.DesignError, match="Take the lumped model"):
+        fs.drift(stage, linearise(fs.equilibrium(fs.nonlinear(stage))))
+
+
+def test_what_bends_flexures_is_felt_like_a_load():
+    """No weight; leaves that are bent when free, or warmer on one face, clamped straight: the change goes with the square."""
+    stage = replace(upright(1e-6), gravity=(0.0, 0.0, 0.0))
+    straight = load_effect(stage)
+    assert straight is not None
+    assert not straight.text
+    steel = replace(stage.materials["steel"], expansion=1e-5)
+    changes = []
+    for warmth in (20.0, 60.0):
+        leaf = stage.parts["leaf"]
+        assert isinstance(leaf, fs.Leaf)
+        bent = {**stage.parts, "leaf": replace(leaf, warmth=warmth)}
+        found = load_effect(replace(stage, parts=bent, materials={"steel": steel}))
+        assert found is not None
+        assert "not straight when free" in found.text
+        assert (found.model is not None) == (abs(found.change) >= FELT)
+        changes.append(abs(found.change))
+    assert changes[1] / changes[0] == pytest.approx(9.0, rel=0.05)
+    assert changes[0] < FELT < changes[1]
+
+
+def test_a_loop_is_that_of_the_loaded_stage():
+    stage = pushed(6.0)
+    found = resolve(stage, LoopSetup())
+    assert found.loaded is not None
+    assert found.model is found.loaded.model
+    sagged = rest_errors(found, fs.lost_motion(found.kinematics, found.model)).load
+    assert sagged == pytest.approx(fs.equilibrium(fs.nonlinear(stage)).twist(), rel=1e-9)

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.show.command.displaced import Place, stance_at
+from flexstage.show.command.displaced import Place, footing
 from tests.laws.test_nonlinear import guide
 
 
@@ -64,7 +64,7 @@ def test_weight_is_a_load_that_grows():
 
 def test_options_bring_a_stage_where_it_is_to_be():
     stage = parallelogram()
-    about = stance_at(stage, Place(["platform.x=0.2 mm"], ["platform.fy=5 N"]))
+    about = footing(stage, Place(["platform.x=0.2 mm"], ["platform.fy=5 N"])).stance
     model = fs.nonlinear(stage)
     sag = float(fs.equilibrium(model, {"platform.fy": 5.0}).displacement()[0])
     same = fs.linearise(fs.equilibrium(model, {"platform.fy": 5.0}, hold={"platform.x": sag + 2e-4}))
@@ -77,4 +77,4 @@ def test_options_bring_a_stage_where_it_is_to_be():
 )
 def test_options_that_mean_nothing_are_refused(at: list[str], load: list[str]):
     with pytest.raises(fs.DesignError):
-        stance_at(parallelogram(), Place(at, load))
+        footing(parallelogram(), Place(at, load))

@@ -74,9 +74,9 @@ class Bench:
         return self._along[name]
 
     def reach(self, point: str) -> ForceReach:
-        """How far forces move a point, and what limits it."""
+        """How far forces move a point, and what limits it: by the drawn stage."""
         if point not in self._reaches:
-            self._reaches[point] = reach(self.mechanism, self.kinematics, self.model, point=point)
+            self._reaches[point] = reach(self.mechanism, self.kinematics, self.drawn, point=point)
         return self._reaches[point]
 
     @property
@@ -105,9 +105,19 @@ class Bench:
         return kinematics(self.mechanism)
 
     @cached_property
-    def model(self) -> LinearModel:
+    def drawn(self) -> LinearModel:
         """The lumped model, of a stage that stands under its dead load."""
         return standing(self.mechanism)
+
+    @cached_property
+    def model(self) -> LinearModel:
+        """The model that is measured: the lumped one, or small motions about a state."""
+        return self.drawn
+
+    @cached_property
+    def links(self) -> LinearModel:
+        """The model link by link, for lost motion and drift."""
+        return self.model
 
     @cached_property
     def loaded(self) -> LoadEffect | None:
@@ -116,11 +126,11 @@ class Bench:
 
     @cached_property
     def felt(self) -> Bench:
-        """The bench of stiffness and modes under the dead load: this one where that is not felt."""
+        """The bench of stiffness, modes, lost motion and drift under the dead load: this one where that is not felt."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = Bench(self.mechanism, self.command)
-        other.__dict__["model"] = self.loaded.model
+        other.__dict__ |= {"model": self.loaded.model, "links": self.loaded.links, "kinematics": self.kinematics}
         return other
 
     @cached_property
@@ -136,7 +146,7 @@ class Bench:
     @cached_property
     def lost(self) -> LostMotion:
         """Lost motion."""
-        return lost_motion(self.kinematics, self.model)
+        return lost_motion(self.kinematics, self.links)
 
     @cached_property
     def modes(self) -> Modes:
@@ -168,7 +178,7 @@ class Bench:
     @cached_property
     def drift(self) -> Drift:
         """Motion by temperature."""
-        return drift(self.mechanism, self.model)
+        return drift(self.mechanism, self.links)
 
     @cached_property
     def buckling(self) -> Buckling:

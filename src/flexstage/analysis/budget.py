@@ -8,8 +8,8 @@ import numpy as np
 
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget, Evidence, command_strokes, error_budget
+from flexstage.analysis.load_effect import felt_links
 from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
@@ -32,9 +32,9 @@ def budget(
 ) -> ErrorBudget:
     """Error budget at a point of the platform over a box of commands (half widths by coordinate [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes held) by the lumped model. `drifted` absent: the ground as the description has it (`ground_of`). No
-    change of temperature (0, or `None`: 1 K where drift is known) asks for no drift: what states no expansion then leaves it out, and
-    `reasons` say so.
+    Lost motion and drift (strokes held) by the lumped model, of the loaded stage where its dead load is felt. `drifted` absent: the ground
+    as the description has it (`ground_of`). No change of temperature (0, or `None`: 1 K where drift is known) asks for no drift: what
+    states no expansion then leaves it out, and `reasons` say so.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)
@@ -47,7 +47,7 @@ def budget(
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
         raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
-    kinematics, model = ideal(mechanism), standing(mechanism)
+    kinematics, model = ideal(mechanism), felt_links(mechanism)
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
     corners = command_strokes(kinematics, command, depth=len(design_shape(mechanism, kinematics)))
     evidence = Evidence(

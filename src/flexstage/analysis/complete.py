@@ -52,10 +52,11 @@ class Analysis:
     `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the
     ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
     the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. `loaded` says what
-    the dead load changes; where it is felt, statics, modes, responses and their verdicts are those of the loaded stage (`felt`), all else
-    and `linear` are of the drawn one. `second_order` is the error of small displacements over the required strokes, or those reached. The
-    error budget is that of the required strokes, or of all single-axis strokes at once, and of one kelvin. `freedoms` (stiffness along
-    the motions left and along what links hold; None where six are left) and `mass` of the platform belong to the statics.
+    the dead load changes; where it is felt, statics, modes, responses (`felt`), lost motion, drift, error budget and their verdicts are
+    those of the loaded stage, all else and `linear` are of the drawn one. `second_order` is the error of small displacements over the
+    required strokes, or those reached. The error budget is that of the required strokes, or of all single-axis strokes at once, and of one
+    kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of the platform
+    belong to the statics.
     """
 
     mechanism: Mechanism
@@ -129,16 +130,16 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     verdicts = judge(mechanism)
     kinematics = ideal(mechanism)
     linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
-    weighed = linear if loading is None or loading.model is None else loading.model
+    weighed, linked = (linear, linear) if loading is None or loading.model is None else (loading.model, loading.links)
     attempt = Attempts()
-    lost = attempt.of_ground("lost_motion", linear, _RIGID, lambda known: lost_motion(kinematics, known))
+    lost = attempt.of_ground("lost_motion", linked, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)
     command = required_command(mechanism)
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
     hinged = linear if model is Model.LUMPED else None
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
     stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
-    drifted = attempt.of_ground("drift", hinged, _UNLUMPED, lambda known: drift(mechanism, known))
+    drifted = attempt.of_ground("drift", linked if model is Model.LUMPED else None, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
         mechanism=mechanism,
         model=model,

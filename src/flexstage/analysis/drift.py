@@ -12,6 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.analysis.lost_motion import LOADED
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
@@ -25,7 +26,7 @@ from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.arguments import takes_models
-from flexstage.models.linear.model import LinearModel, strain_forces
+from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
 from flexstage.models.linear.static import displacement
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
@@ -99,7 +100,8 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     `ground` names the ground's material (absent: as `ground_of` finds it in the description; `none`: it does not grow). Motions are counted
     from the ground's `datum`. A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states
     no expansion, where the ground's material is not known, where locked freedoms cannot follow the growth, and for a model whose stiffness
-    is not that of links: mapped, or loaded.
+    is not that of links: mapped, or about a state with the flexures' inner modes. About a state link by link
+    (`linearise(state, inner=False)`) growth is that of the drawn stage, and what it meets the stiffness of the loaded one.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -113,15 +115,17 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     fitted = _fit_misfits(thermal.assembly, misfits)
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
     size = len(model.coordinates)
-    if other := [name for name in model.stiffness if name not in strains]:
-        raise refuse(
-            "drift", f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none", "Take the lumped model"
-        )
-    whole = {name: _without_modes(strains[name], part.law.shape[-1] - 6) for name, part in model.stiffness.items()}
+    if LOADED in model.stiffness:
+        strains[LOADED] = _stacked(fitted, model.stiffness[LOADED])
+    if other := _unlinked(model, strains):
+        what = f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none"
+        raise refuse("drift", what, "Take the lumped model")
+    whole = {name: _without_modes(strains[name], part.law.shape[-1] - strains[name].shape[-2]) for name, part in model.stiffness.items()}
     load = _load(model, whole, size)
     motion = displacement(model, -load)
     twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
-    forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in model.stiffness.items()}
+    parts = {name: part for name, part in model.stiffness.items() if name in misfits}
+    forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in parts.items()}
     return Drift(
         motion=_motions(thermal, twists),
         gauges=_gauges(thermal, twists),
@@ -146,6 +150,20 @@ def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
     moved = drifted.of(PLATFORM)
     readings = drifted.gauges.part(gauge_inverse.columns, FIELDS)
     return Matrix(moved.values - gauge_inverse.values @ readings.values, moved.rows, moved.columns, moved.unit)
+
+
+def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
+    """What has a stiffness and is no link; about a state, links whose deformation is not that of their two ends alone."""
+    about = LOADED in model.stiffness
+    return [
+        name for name, part in model.stiffness.items() if name not in strains or (about and part.law.shape[-1] != strains[name].shape[-2])
+    ]
+
+
+def _stacked(fitted: _Fitted, part: Contribution) -> Array:
+    """The motions of all bodies that follow the growth (n, 4), as the load turns with them."""
+    twists = list(fitted.twists.values())
+    return np.concatenate(_broadcast(twists), axis=-2) if twists else np.zeros((part.law.shape[-1], 4))
 
 
 def _without_modes(strain: Array, inner: int) -> Array:

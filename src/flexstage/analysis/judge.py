@@ -19,7 +19,8 @@ from flexstage.mechanism.mechanism import Mechanism
 def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
     """Judge every `[require]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
 
-    Stiffness and frequencies are those of the loaded stage where its dead load is felt (1 %).
+    Stiffness, frequencies, lost motion, strokes that make up for it, and drift are those of the loaded stage where its dead load is felt
+    (1 %).
 
     What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
     that cannot be read.
@@ -78,13 +79,13 @@ def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
 
 
 def _verdict(bench: Bench, line: Requirement) -> Verdict:
-    stiff = line.kind.softening > 0.0
-    value = value_or_reason(bench.felt if stiff else bench, line)
+    felt = line.kind.softening > 0.0 or line.kind.felt
+    value = value_or_reason(bench.felt if felt else bench, line)
     if isinstance(value, str):
         return Verdict(line, None, value)
     drawn = Verdict(line, value)
-    weighed = stiff and bench.felt is not bench
-    doubt = "" if weighed else _loaded_doubt(bench, drawn) or _large_doubt(bench, drawn)
+    weighed = felt and bench.felt is not bench
+    doubt = ("" if weighed else _loaded_doubt(bench, drawn)) or _large_doubt(bench, drawn)
     return Verdict(line, None, doubt) if doubt else drawn
 
 

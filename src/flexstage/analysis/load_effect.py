@@ -1,10 +1,10 @@
-"""The loaded stage: by how much weight, payloads, preloads and forces change it, and small motions about it where that is felt."""
+"""The loaded stage: by how much weight, payloads, preloads, forces and bent flexures change it, and small motions about it where felt."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Annotated
 
 import numpy as np
@@ -20,11 +20,13 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.critical import unstable_motions
-from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import nonlinear
+from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS
 
+_BENT = "what bends flexures that are not straight when free"
 FELT = 0.01
 """Change of a stiffness or a frequency from which results are those of the loaded stage."""
 _MODES = 6
@@ -32,17 +34,25 @@ _MODES = 6
 
 @dataclass(frozen=True, eq=False)
 class LoadEffect:
-    """By how much its dead load (weight, payloads, preloads, stated forces) changes a stage.
+    """By how much its dead load (weight, payloads, preloads, stated forces; curvature and warmth of its flexures) changes a stage.
 
     `change` is the largest relative change of the platform's stiffness along an axis or of one of the first frequencies, and `figure` which
     it is; where `figure` is empty it is a bound of any stiffness, from linearised buckling. `model` is small motions about the loaded state
-    where the change is felt (1 % or more), else None. `why` says why it could not be worked out.
+    where the change is felt (1 % or more), else None; `links` the same link by link, for lost motion and drift, and `state` that state.
+    `why` says why it could not be worked out.
     """
 
     change: Annotated[float, RATIO]
     figure: str
     why: str
     model: Annotated[LinearModel | None, INNER]
+    state: Annotated[State | None, INNER] = None
+    cause: str = "weight, payloads and forces"
+
+    @cached_property
+    def links(self) -> LinearModel | None:
+        """Small motions about the loaded state link by link: flexures follow their ends as at rest."""
+        return None if self.model is None or self.state is None else linearise(self.state, inner=False)
 
     @property
     def text(self) -> str:
@@ -51,21 +61,23 @@ class LoadEffect:
         >>> LoadEffect(0.004, "frequency 1", "", None).text
         'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are of the unloaded stage.'
         """
-        size = f"{100.0 * abs(self.change):.2g} %"
+        cause, size = f"{self.cause[0].upper()}{self.cause[1:]}", f"{100.0 * abs(self.change):.2g} %"
         if self.model is not None:
             return (
-                f"Weight, payloads and forces change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses and their "
-                "requirements are those of the loaded stage, at large displacements; all else is of the drawn one."
+                f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses, lost motion, drift, "
+                "error budget, loops and their requirements are those of the loaded stage, at large displacements; all else is as drawn."
             )
+        if self.why and not self.change:
+            return f"By how much {self.cause} change the stage is not known, as {self.why}; results are of the unloaded stage."
         if self.why:
-            return f"Weight, payloads and forces may change a stiffness by up to {size}; results are of the unloaded stage, as {self.why}."
+            return f"{cause} may change a stiffness by up to {size}; results are of the unloaded stage, as {self.why}."
         if self.figure:
-            what = f"Weight, payloads and forces change stiffness and frequencies by up to {size} ({self.figure})"
+            what = f"{cause} change stiffness and frequencies by up to {size} ({self.figure})"
             return f"{what}: results are of the unloaded stage."
         if not self.change:
             return ""
         return (
-            f"Weight, payloads and forces change no stiffness by more than {size}, no frequency by more than "
+            f"{cause} change no stiffness by more than {size}, no frequency by more than "
             f"{50.0 * abs(self.change):.2g} %: results are of the unloaded stage."
         )
 
@@ -75,7 +87,8 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """How a stage changes under its dead load; `None` of a batch of designs and of stages whose load factor is not known.
 
     Linearised buckling bounds the change of every stiffness by 1 / load factor. Only where that is 1 % or more the change is worked out, in
-    the drawn position first, and where it is felt at large displacements. Raises `DesignError` where the stage has no elastic model.
+    the drawn position first, and where it is felt at large displacements. Flexures that are not straight when free have no such bound: they
+    are taken at large displacements at once. Raises `DesignError` where the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None
@@ -84,31 +97,58 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     found = under_load(mechanism)
     if found is None or np.ndim(found.dead) or np.iscomplexobj(found.dead) or found.refusals:
         return None
-    bound = _bound(found)
-    if bound < FELT:
+    bound, bent = _bound(found), any(_is_bent(part) for part in mechanism.parts.values())
+    cause = f"weight, payloads, forces and {_BENT}" if bent else LoadEffect.cause
+    if bound < FELT and not bent:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)
     if is_large(mechanism, still):
-        return LoadEffect(bound, "", f"its {len(still.coordinates):,} freedoms are too many for that of the loaded one", None)
+        return LoadEffect(bound, "", f"its {len(still.coordinates):,} freedoms are too many for that of the loaded one", None, cause=cause)
     near = _compare(still, prestress(mechanism, still))
-    if abs(near.change) < FELT:
+    if abs(near.change) < FELT and not bent:
         return near
     try:
-        return _felt(mechanism)
+        return replace(_felt(mechanism), cause=cause)
     except DesignError as error:
-        return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), None)
+        return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), None, cause=cause)
+
+
+def felt_links(mechanism: Mechanism) -> LinearModel:
+    """The lumped model link by link; where the dead load is felt, small motions about the loaded stage.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> "geometric" in felt_links(parallelogram()).stiffness
+    False
+    """
+    drawn = standing(mechanism)
+    found = None if drawn.designs else load_effect(mechanism)
+    return drawn if found is None or found.links is None else found.links
 
 
 def _bound(found: Stability) -> float:
     return max(1.0 / float(found.dead), float(found.stiffens))
 
 
+def _is_bent(part: Part) -> bool:
+    """Whether a part is not straight when it is free."""
+    return bool(getattr(part, "is_bent", False))
+
+
+def _straight(mechanism: Mechanism) -> Mechanism:
+    """The stage with all its flexures straight when free."""
+    parts = {name: getattr(part, "straight", part) for name, part in mechanism.parts.items()}
+    return replace(mechanism, parts=parts) if any(map(_is_bent, mechanism.parts.values())) else mechanism
+
+
 def _felt(mechanism: Mechanism) -> LoadEffect:
-    model = nonlinear(mechanism)
-    state = equilibrium(model)
+    state = equilibrium(nonlinear(mechanism))
+    unloaded = equilibrium(nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
     if int(unstable_motions(state)):
         raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
-    return _compare(linearise(equilibrium(model, weight=0.0, stated=0.0)), linearise(state))
+    if not bool(state.converged):
+        raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
+    found = _compare(linearise(unloaded), linearise(state))
+    return replace(found, state=state if found.model is not None else None)
 
 
 def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:

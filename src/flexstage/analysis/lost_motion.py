@@ -22,6 +22,8 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
+LOADED = "geometric"
+"""What the load takes as it turns with the stage and bends it, in the budget of a loaded or displaced stage."""
 
 
 class Shares(dict[str, Array]):
@@ -93,11 +95,12 @@ class LostMotion(InNotebook):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compare an elastic model with the ideal kinematics of the same stage.
 
-    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i
-    with all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij =
-    sum_e f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin &
-    Moon). Small motions. Of a model about a displaced state the ideal motion is still that of the drawn position, and there is no budget.
-    Raises `DesignError` where the strokes do not determine the platform.
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i with
+    all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij = sum_e f_e^(i)
+    . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small
+    motions. Of a model about a displaced state the ideal motion is still that of the drawn position; its budget, which needs a model link
+    by link (`linearise(state, inner=False)`), has one more share, `geometric`: the load's turning and what it bends. Raises `DesignError`
+    where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -117,7 +120,7 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
         transfer=Matrix(transfer, names, names, "1"),
         loss=Matrix(loss, names, names, "1"),
         parasitic=Matrix(gain.values - ideal_part, _PLATFORM_TWIST, names, gain.unit),
-        budget=_budget(kinematics, model, sense),
+        budget=_budget(kinematics, model, sense, loss),
         correction=Matrix(correction, names, kinematics.coordinates, _stroke_units(kinematics)),
         energy=_energy(kinematics, model),
         length=kinematics.length,
@@ -136,8 +139,8 @@ def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
     return ratio_units(("m",) * len(kinematics.actuators), units)
 
 
-def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[str, Matrix]:
-    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none of a displaced stage's flexures."""
+def _budget(kinematics: Kinematics, model: LinearModel, sense: Array, loss: Array) -> dict[str, Matrix]:
+    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none where flexures have inner modes."""
     names = kinematics.actuators
     rows = model.output_index(_PLATFORM_TWIST)
     loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
@@ -153,6 +156,8 @@ def _budget(kinematics: Kinematics, model: LinearModel, sense: Array) -> dict[st
             shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free.get(link, ALL)}
     if kinematics.mobility < len(names):
         shares[INTERNAL] = _internal(kinematics, model, sense, strains)
+    if LOADED in strains:
+        shares[LOADED] = loss - sum(shares.values())
     return {name: Matrix(share, names, names, "1") for name, share in shares.items()}
 
 

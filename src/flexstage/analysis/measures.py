@@ -71,7 +71,8 @@ class MeasureKind:
     The first sentence of that function's docstring says what it means. `pointed`: it may be asked at a point. `extreme`: the function gives
     pieces (..., m), of which the measure is the least or largest; an optimiser sees every actuator, hinge and stack then, not only the
     worst one. `softening`: with which power of 1 - 1/factor it changes where the dead load softens it most. `over_strokes`: it is about all
-    strokes. `analytic`: it may be differentiated by complex step. `along`: it is about a path of the design, perhaps at a place on it.
+    strokes. `felt`: it rests on lost motion or drift, which the dead load changes. `analytic`: it may be differentiated by complex step.
+    `along`: it is about a path of the design, perhaps at a place on it.
     """
 
     form: str
@@ -82,6 +83,7 @@ class MeasureKind:
     extreme: Extreme | None = None
     softening: float = 0.0
     over_strokes: bool = False
+    felt: bool = False
     analytic: bool = True
     along: bool = False
 
@@ -121,7 +123,7 @@ class Measure:
     path: str = ""
 
 
-@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST)
+@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
 def stroke(bench: Bench, asked: Measure) -> Array:
     """Stroke both ways along one axis, lost motion made up by command.
 
@@ -140,7 +142,7 @@ def stroke(bench: Bench, asked: Measure) -> Array:
     return np.where(np.concatenate([able, able], axis=-1), both, np.inf)
 
 
-@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST)
+@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
 def corner(bench: Bench, _: Measure) -> Array:
     """Share of the actuators' strokes, and of the gaps of stops, that all required strokes at once ask for."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
@@ -304,19 +306,19 @@ def _stated(coils: dict[str, VoiceCoil], field: str) -> Array:
     return stack(list(values.values()))
 
 
-@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST)
+@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, felt=True)
 def loss(bench: Bench, _: Measure) -> Array:
     """Largest share of its stroke an actuator loses."""
     return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
 
 
-@partial(MeasureKind, "loss.<actuator>", RATIO)
+@partial(MeasureKind, "loss.<actuator>", RATIO, felt=True)
 def own_loss(bench: Bench, asked: Measure) -> Array:
     """Share of its stroke the actuator loses."""
     return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
 
 
-@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST)
+@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, felt=True)
 def crosstalk(bench: Bench, _: Measure) -> Array:
     """Largest stroke one actuator appears to make when another does."""
     values = bench.lost.loss.values
@@ -330,7 +332,7 @@ def map_error(bench: Bench, asked: Measure) -> Array:
     return bench.map_error[..., COMPONENTS.index(asked.name)]
 
 
-@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True)
+@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
 def drift(bench: Bench, asked: Measure) -> Array:
     """Motion per kelvin of uniform temperature, strokes held, the ground of the material of its links."""
     return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -48,6 +49,11 @@ class Stance(InNotebook):
     linear: Annotated[LinearModel, INNER]
     doubts: Annotated[tuple[Finding, ...], INNER]
     provenance: str
+
+    @cached_property
+    def links(self) -> LinearModel:
+        """The same small motions link by link: flexures follow their ends as at rest, as lost motion asks for."""
+        return linearise(self.state, locked=self.locked, inner=False)
 
     @property
     def cautions(self) -> tuple[Finding, ...]:

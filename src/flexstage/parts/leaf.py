@@ -62,6 +62,11 @@ class Leaf(Shaped):
         return self.curvature is not None or self.warmth is not None
 
     @property
+    def straight(self) -> Leaf:
+        """The leaf as if it were straight when it is free."""
+        return replace(self, curvature=None, warmth=None)
+
+    @property
     def warps(self) -> bool:
         """Whether its ends may warp as it twists."""
         return self.section is LeafSection.BEAM or self.ends is LeafEnds.FREE

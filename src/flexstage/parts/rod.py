@@ -38,6 +38,11 @@ class Rod(Shaped):
         return self.curvature is not None
 
     @property
+    def straight(self) -> Rod:
+        """The rod as if it were straight when it is free."""
+        return replace(self, curvature=None)
+
+    @property
     def intended(self) -> tuple[Freedom, ...]:
         """The freedoms the rod is meant to have."""
         return others((Freedom.X,))

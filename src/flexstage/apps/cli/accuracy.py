@@ -12,7 +12,6 @@ from flexstage.analysis import drift as drifting
 from flexstage.analysis import sensitivities as derivatives
 from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.standing import standing
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.reach import reach
 from flexstage.base.quantity import TEMPERATURE
@@ -21,6 +20,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
+from flexstage.show.command.displaced import Place, footing
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
@@ -62,10 +62,20 @@ def workspace(
         reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
         answer("workspace", mechanism, lambda: reached, lambda: reach_tables(reached), model=model, json=json, csv=csv, xlsx=xlsx)
         return
-    lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, linear)
+    stands = footing(mechanism, Place(), model)
+    lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, stands.links)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
-    answer("workspace", mechanism, lambda: found, lambda: _workspace_tables(found), model=model, json=json, csv=csv, xlsx=xlsx)
+    answer(
+        "workspace",
+        mechanism,
+        lambda: stands.body(found),
+        lambda: [*stands.tables(), *_workspace_tables(found)],
+        model=model,
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+    )
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -97,16 +107,17 @@ def drift(
 ) -> None:
     """Thermal drift of platform, named points and gauges.
 
-    Per kelvin and per kelvin per metre, by the lumped model.
+    Per kelvin and per kelvin per metre, by the lumped model; of the loaded stage where its dead load is felt.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
-    found = drifting.drift(mechanism, standing(mechanism), ground=ground)
+    stands = footing(mechanism, Place())
+    found = drifting.drift(mechanism, stands.links, ground=ground)
     answer(
         "drift",
         mechanism,
-        lambda: found,
-        lambda: [drift_table(found), gauge_drift_table(found)],
+        lambda: stands.body(found),
+        lambda: [*stands.tables(), drift_table(found), gauge_drift_table(found)],
         model=Model.LUMPED,
         json=json,
         csv=csv,
@@ -167,5 +178,15 @@ def budget(
 
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
+    stands = footing(mechanism, Place())
     found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
-    answer("budget", mechanism, lambda: found, lambda: error_budget_tables(found), model=Model.LUMPED, json=json, csv=csv, xlsx=xlsx)
+    answer(
+        "budget",
+        mechanism,
+        lambda: stands.body(found),
+        lambda: [*stands.tables(), *error_budget_tables(found)],
+        model=Model.LUMPED,
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+    )

@@ -32,19 +32,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import known_point, open_design
-from flexstage.show.command.displaced import (
-    At,
-    Held,
-    Load,
-    Warmth,
-    load_text,
-    model_there,
-    place,
-    stance_at,
-    stance_cautions,
-    stance_tables,
-    with_stance,
-)
+from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
@@ -130,23 +118,23 @@ def stiffness(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
     point, brought = _point_and_place(at or ())
-    there = stance_at(mechanism, place(brought, load, hold, temperature), model)
-    linear = model_there(mechanism, model, there)
+    there = footing(mechanism, place(brought, load, hold, temperature), model)
+    linear = there.linear
     found = statics(linear, load_point=known_point(linear, load_at or point), read_point=known_point(linear, point))
-    sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there is None else None
+    sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.stance is None else None
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
     answer(
         "stiffness",
         mechanism,
-        lambda: with_stance(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing), there),
-        lambda: [load_text(mechanism, model, there), *stance_tables(there), *_stiffness_tables(found, freedoms, mass, sagging)],
+        lambda: there.body(stiffness_body(found, sagging, freedoms=freedoms, mass=mass, missing=attempt.missing)),
+        lambda: [*there.tables(), *_stiffness_tables(found, freedoms, mass, sagging)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=stance_cautions(there),
+        cautions=there.cautions,
     )
 
 
@@ -190,18 +178,18 @@ def lost_motion(  # noqa: PLR0913 (its options)
     --temperature those of the stage where it then is; the ideal motion stays that of the drawn position.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = stance_at(mechanism, place(at, load, hold, temperature), model)
-    found = losses.lost_motion(ideal(mechanism), model_there(mechanism, model, there, loaded=False))
+    there = footing(mechanism, place(at, load, hold, temperature), model)
+    found = losses.lost_motion(ideal(mechanism), there.links)
     answer(
         "lost-motion",
         mechanism,
-        lambda: with_stance(found, there),
-        lambda: [*stance_tables(there), *_loss_tables(found)],
+        lambda: there.body(found),
+        lambda: [*there.tables(), *_loss_tables(found)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=stance_cautions(there),
+        cautions=there.cautions,
     )
 
 
@@ -241,21 +229,25 @@ def modes(  # noqa: PLR0913 (its options)
     ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)
     if ending == ".glb" and asked:
         raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {asked.options}, or write a page (.html)")
-    there = stance_at(mechanism, asked, model)
-    linear = model_there(mechanism, model, there)
+    there = footing(mechanism, asked, model)
+    linear = there.linear
     found = platform_modes(mechanism, linear)
     if view is not None:
-        save(view, _moving(mechanism, linear, found, ending) if there is None else _moving_there(mechanism, there, found), "--view")
+        save(
+            view,
+            _moving(mechanism, linear, found, ending) if there.stance is None else _moving_there(mechanism, there.stance, found),
+            "--view",
+        )
     answer(
         "modes",
         mechanism,
-        lambda: with_stance(found, there),
-        lambda: [load_text(mechanism, model, there), *stance_tables(there), mode_table(found)],
+        lambda: there.body(found),
+        lambda: [*there.tables(), mode_table(found)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=stance_cautions(there),
+        cautions=there.cautions,
     )
 
 
@@ -315,8 +307,8 @@ def response(  # noqa: PLR0913 (its options)
     that of the stage where it then is.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = stance_at(mechanism, place(at, load, hold, temperature), model)
-    linear = model_there(mechanism, model, there)
+    there = footing(mechanism, place(at, load, hold, temperature), model)
+    linear = there.linear
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
@@ -326,10 +318,9 @@ def response(  # noqa: PLR0913 (its options)
     answer(
         "response",
         mechanism,
-        lambda: with_stance(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken})), there),
+        lambda: there.body(SideBySide((response_body(found, law), {} if shaken is None else {"random": shaken}))),
         lambda: [
-            load_text(mechanism, model, there),
-            *stance_tables(there),
+            *there.tables(),
             response_table(found),
             None if shaken is None else random_table(shaken),
         ],
@@ -337,7 +328,7 @@ def response(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=stance_cautions(there),
+        cautions=there.cautions,
     )
 
 

@@ -233,7 +233,7 @@ def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float 
 
 def _shares(known: Bench, name: str) -> dict[str, float]:
     """Its share of each actuator's lost motion."""
-    found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.lost.actuators.items()}
+    found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.felt.lost.actuators.items()}
     return {actuator: share if abs(share) > NOISE else 0.0 for actuator, share in found.items()}
 
 
@@ -316,7 +316,7 @@ def _bearing_or_none(text: str, file: str) -> Bearing | None:
 
 def _inputs(known: Bench) -> Matrix:
     """Inputs per motion of the platform, elasticity made up for."""
-    return matrix(known.reach("platform").per_motion if known.forced else known.lost.correction)
+    return matrix(known.reach("platform").per_motion if known.forced else known.felt.lost.correction)
 
 
 def _ideal(known: Bench) -> Matrix:

@@ -87,10 +87,10 @@ def bench(text: str, file: str) -> Bench:
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Stiffness, modes, responses (of the loaded stage where its load is felt), lost motion; `old` values are those of the stored text."""
+    """Stiffness, modes, responses lost motion (of the loaded stage where its load is felt); `old` values are those of the stored text."""
     timer, known, attempt = Timer(), bench(text, file), Attempts()
     stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
-    lost = attempt.of("loss", lambda: known.lost)
+    lost = attempt.of("loss", lambda: known.felt.lost)
     found = attempt.of("modes", lambda: known.felt.modes)
     heard = attempt.of("response", lambda: _response(known, choice))
     missing = {**attempt.missing, **({} if stiff is None else stiff.reasons)}
@@ -198,7 +198,7 @@ def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress
 
 def _corrected(known: Bench) -> SingleAxis:
     """Strokes along single axes, lost motion made up by command."""
-    lost = known.lost
+    lost = known.felt.lost
     return single_axis(*with_stops(known.mechanism, known.kinematics, lost.correction, known.limits), provenance=lost.provenance)
 
 
@@ -287,7 +287,7 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
 
 
 def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
-    return ("modes", lambda: known.felt.modes), ("stiffness", lambda: statics(known.felt.model)), ("loss", lambda: known.lost)
+    return ("modes", lambda: known.felt.modes), ("stiffness", lambda: statics(known.felt.model)), ("loss", lambda: known.felt.lost)
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:

@@ -45,7 +45,7 @@ from flexstage.experiment.record import Record, Responses
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Held, Load, Warmth, place, stance_at, stance_cautions, stance_tables, with_stance
+from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
@@ -205,19 +205,19 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware)])
     outputs = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
     mechanism = open_design(design, changes, outputs)
-    there = stance_at(mechanism, place(at, load, hold, temperature), asked.model)
+    stands = footing(mechanism, place(at, load, hold, temperature), asked.model)
     if compare:
         _require_comparable(asked, {"--report": report is not None, "--export": bool(exports), "--hardware": hardware is not None})
         with progress_bar() as shown:
             test = None if not record else _tested(record, shown.share)
-            rivals = compare_controllers(mechanism, asked, there=there, test=test, tell=shown.share)
-        shown_tables = [*stance_tables(there), tables.comparison_table(rivals)]
-        beside = stance_cautions(there)
+            rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
+        shown_tables = [*stands.tables(), tables.comparison_table(rivals)]
+        beside = stands.cautions
         answer("loops", mechanism, lambda: rivals, lambda: shown_tables, model=asked.model, json=json, csv=csv, xlsx=xlsx, cautions=beside)
         return
     with progress_bar() as shown:
         test = None if not record else _tested(record, shown.share)
-        found = loop_study(mechanism, asked, there=there, test=test, tell=shown.share)
+        found = loop_study(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
     if report is not None:
         save(report, loop_report(found), "--report")
     for target in exports:
@@ -227,13 +227,13 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     answer(
         "loop",
         mechanism,
-        lambda: with_stance(found, there),
-        lambda: [*stance_tables(there), *_tables(found)],
+        lambda: stands.body(found) if stands.stance is not None else found,
+        lambda: [*stands.tables(), *_tables(found)],
         model=asked.model,
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=(*stance_cautions(there), *found.cautions),
+        cautions=(*stands.cautions, *found.cautions),
         beside=(report,),
     )
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.analysis.complete import platform_modes, read
+from flexstage.analysis.complete import felt, platform_modes
+from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
@@ -29,6 +30,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
+from flexstage.models.theory import Model
 
 _USUAL = 10e3
 _OVER_HIGHEST = 10.0
@@ -44,8 +46,8 @@ class ResolvedSetup:
 
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
-    brought somewhere, where it has already sagged. Where the plant is a measured one, `predicted` is that of the model.
-    `damping` is what inner loops do, which the plants then have.
+    brought somewhere, where it has already sagged; `loaded` what its dead load changes as drawn, whose model it is where that is felt.
+    Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have.
     """
 
     mechanism: Mechanism
@@ -59,6 +61,7 @@ class ResolvedSetup:
     displaced: bool = False
     predicted: Plant | None = None
     damping: ActiveDamping | None = None
+    loaded: LoadEffect | None = None
 
     @property
     def rate(self) -> float:
@@ -72,7 +75,7 @@ class ResolvedSetup:
 
 
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None) -> ResolvedSetup:
-    """Settle a set-up for a stage, drawn or as small motions about where it is brought.
+    """Settle a set-up for a stage, drawn or as small motions about where it is brought, or where its dead load brings it if that is felt.
 
     Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
     that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
@@ -83,7 +86,8 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
     (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
     """
     require(setup_findings(setup))
-    kinematics, model = ideal(mechanism), read(mechanism, setup.model) if there is None else there.linear
+    kinematics, loaded = ideal(mechanism), load_effect(mechanism) if there is None and setup.model is Model.LUMPED else None
+    model = felt(mechanism, setup.model) if there is None else there.linear
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     require(_force_findings(kinematics, setup))
@@ -109,6 +113,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
         highest=highest,
         displaced=there is not None,
         damping=None if damped is None else damped.found,
+        loaded=loaded,
     )
 
 

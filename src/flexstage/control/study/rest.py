@@ -17,6 +17,7 @@ from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
 from flexstage.control.compensation import StaticError, ideal_compensation, lost_motion_compensation, static_error
 from flexstage.control.study.resolve import ResolvedSetup
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.theory import Model
 
 
@@ -51,7 +52,7 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     (0.032, True)
     """
     kinematics = given.kinematics
-    load = np.zeros(6) if given.displaced else np.real(first_design(deflection(given.mechanism, given.model).total, 1))
+    load = _load(given)
     carrying = lost_motion_compensation(lost, kinematics, load)
     other, model = _other_gains(given)
     return RestErrors(
@@ -63,6 +64,14 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
         load_left=static_error(carrying, kinematics, lost.gain, load).offset,
         load_strokes=carrying.offset,
     )
+
+
+def _load(given: ResolvedSetup) -> Array:
+    """How far the dead load moves the platform (6,) [m, rad]: nought where the stage is brought somewhere, as strokes count from there."""
+    if given.displaced:
+        return np.zeros(6)
+    sagged = None if given.loaded is None else given.loaded.state
+    return np.real(first_design(deflection(given.mechanism, given.model).total, 1)) if sagged is None else sagged.twist(PLATFORM)
 
 
 def _other_gains(given: ResolvedSetup) -> tuple[LostMotion | None, Model]:

@@ -8,6 +8,7 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 
+from flexstage.analysis.load_effect import LoadEffect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
@@ -95,6 +96,11 @@ class LoopStudy(InNotebook):
         return self.settled.damping
 
     @property
+    def loaded(self) -> Annotated[LoadEffect | None, VIEW]:
+        """What the dead load changes as drawn: where that is felt, the plant is the loaded stage's."""
+        return self.settled.loaded
+
+    @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
         """The highest of the platform's modes, of as many as the loop has coordinates."""
         return self.settled.highest
@@ -123,7 +129,8 @@ def loop_study(
 ) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
 
-    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up. With a `test` it
+    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up, the lumped one of
+    the loaded stage where its dead load is felt. With a `test` it
     is what that found of strokes and gauges (`measured_plant`), and margins are read off its responses too (`measured`).
 
     Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.

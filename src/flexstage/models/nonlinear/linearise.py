@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.beams.compliance import viscous_damping
+from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.mass import mass
 from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.models.linear.channels import (
@@ -43,6 +44,8 @@ class _Linear:
     elastic: Array
     geometric: Array
     mass: Array
+    rows: Array | None = None
+    """What `elastic` is over (b, r, 12 + m); absent, the coordinates themselves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +83,15 @@ class _Coordinates:
         return np.concatenate([self.body(joins[0]), self.body(joins[1]), inside])
 
 
-def linearise(state: State, *, locked: Sequence[str] = ()) -> LinearModel:
+def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
     """Small motions about a state, all cases of it as a batch: modes, responses and losses of a displaced or loaded stage.
 
     What was held is released: stiffness is that of the free stage under the force that held it, which keeps its direction (of a rotation:
     the moment conjugate to that component of the rotation vector). Coordinates `locked`, of those that were held, stay held. Plate fields
     follow without mass. Stiffness is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are
-    not told (`unknown`). Gauges look along their drawn lines. Raises `DesignError` where no case has a state, and for `locked` names that
+    not told (`unknown`). Gauges look along their drawn lines. Without `inner` coordinates flexures follow their bodies as they do at rest,
+    and each is its 6x6 about its middle, in the frame of its start: the same statics, link by link, as lost motion and drift ask for; modes
+    are then those of Guyan's reduction. Raises `DesignError` where no case has a state, and for `locked` names that
     were not held.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -103,7 +108,11 @@ def linearise(state: State, *, locked: Sequence[str] = ()) -> LinearModel:
             raise refuse(name, "it was not held at this state", suggest_nearest(name, state.held))
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
-    links = {name: item for group, bent in zip(model.flexures, whole.bent, strict=True) for name, item in _flexures(group, bent).items()}
+    links = {
+        name: item if inner else _follow_statically(item, bent, (group.law, place))
+        for group, bent in zip(model.flexures, whole.bent, strict=True)
+        for place, (name, item) in enumerate(_flexures(group, bent).items())
+    }
     own = {name: item.mass.shape[-1] - 12 for name, item in links.items()} | {each.name: len(each.squares) for each in model.elements}
     order = _Coordinates(model, own)
     return _assembled(state, order, _joins(model), (links, [state.held.index(name) for name in locked]))
@@ -127,7 +136,7 @@ def _assembled(
     bending = np.zeros((len(state.pose.position), order.size, order.size))
     for name, item in links.items():
         select = order.link(name, joins[name])
-        stiffness[name] = Contribution(select, item.elastic, _loss(model, name))
+        stiffness[name] = Contribution(select if item.rows is None else item.rows @ select, item.elastic, _loss(model, name))
         bending += select.T @ item.geometric @ select
     rows, remains = _hinges(state)
     for place, name in enumerate(model.hinges.names):
@@ -206,6 +215,22 @@ def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
         name: _Linear(unit[place] * elastic[place], 0.5 * (rest[place] + _transpose(rest[place])), masses[place])
         for place, name in enumerate(group.names)
     }
+
+
+def _follow_statically(item: _Linear, bent: Bent, which: tuple[FlexureLaw, int]) -> _Linear:
+    """A flexure of a group without coordinates of its own: its 6x6 about its middle, all else `geometric`."""
+    law, place = which
+    whole = item.elastic + item.geometric
+    follow = -np.linalg.solve(whole[..., 12:, 12:], whole[..., 12:, :12])
+    basis = np.concatenate([np.broadcast_to(np.eye(12), (*follow.shape[:-2], 12, 12)), follow], axis=-2)
+    condensed = _transpose(basis) @ whole @ basis
+    turned = geometric(law, bent, bent.wrench[..., :3], bent.wrench[..., 3:])[place]
+    length = law.length[place]
+    back = transport(np.array([-0.5 * length, 0.0, 0.0]))  # from the end to the middle
+    rows = back @ (np.repeat([length, 1.0], 3)[:, None] * end_motion(law, bent)[place])
+    second = np.linalg.inv(rows[..., 6:])
+    elastic = _transpose(second) @ (condensed - 0.5 * (turned + _transpose(turned)))[..., 6:, 6:] @ second
+    return _Linear(elastic, condensed - _transpose(rows) @ elastic @ rows, _transpose(basis) @ item.mass @ basis, rows)
 
 
 @dataclass(frozen=True, eq=False)

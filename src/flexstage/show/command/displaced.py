@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
-from flexstage.analysis.load_effect import load_effect
+from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.stance import Stance, stance
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
@@ -67,10 +67,54 @@ def place(at: Sequence[str] | None, load: Sequence[str] | None, hold: Sequence[s
     return Place(at or (), load or (), hold or (), temperature)
 
 
-def stance_at(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Stance | None:
-    """How the stage stands where it is asked for; `None` as drawn. Refused with a model that knows no large displacements."""
+@dataclass(frozen=True, eq=False)
+class Footing:
+    """How the stage of a command stands: brought somewhere (`stance`), or as drawn, its dead load with an `effect`; and its `model`.
+
+    `linear` is small motions about it, `links` the same link by link, for lost motion and drift.
+    """
+
+    mechanism: Mechanism
+    model: Model
+    stance: Stance | None = None
+    effect: LoadEffect | None = None
+
+    @property
+    def linear(self) -> LinearModel:
+        """Small motions about where the stage stands; as drawn by the model that is asked for, under its dead load where that is felt."""
+        return elastic_model(self.mechanism, self.model, loaded=True) if self.stance is None else self.stance.linear
+
+    @property
+    def links(self) -> LinearModel:
+        """The same link by link."""
+        if self.stance is not None:
+            return self.stance.links
+        loaded = None if self.effect is None else self.effect.links
+        return elastic_model(self.mechanism, self.model) if loaded is None else loaded
+
+    def body(self, result: Any) -> Any:
+        """A result, and beside it how the stage stands: brought somewhere, or what its dead load changes."""
+        if self.stance is not None:
+            return SideBySide((result, {"stance": self.stance}))
+        return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
+
+    def tables(self) -> Iterator[Table | str]:
+        """Where the stage stands, before what is told about it."""
+        if self.effect is not None and self.effect.model is not None:
+            yield self.effect.text
+        if self.stance is not None:
+            yield from _stance_tables(self.stance)
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is doubtful where the stage stands."""
+        return () if self.stance is None else self.stance.cautions
+
+
+def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Footing:
+    """How the stage stands where it is asked for. A place is refused with a model that knows no large displacements."""
     if not asked:
-        return None
+        return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
         raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
     known = nonlinear(mechanism)
@@ -82,40 +126,16 @@ def stance_at(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -
         if "=" in name
     )
     warmth = 0.0 if asked.temperature is None else parse(asked.temperature, TEMPERATURE, where="--temperature")
-    return stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth)
+    return Footing(mechanism, model, stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth))
 
 
-def model_there(mechanism: Mechanism, model: Model, found: Stance | None, *, loaded: bool = True) -> LinearModel:
-    """Small motions about where the stage stands; brought nowhere, by the model that is asked for, under its dead load if `loaded`."""
-    return elastic_model(mechanism, model, loaded=loaded) if found is None else found.linear
-
-
-def load_text(mechanism: Mechanism, model: Model, found: Stance | None) -> str | None:
-    """What the dead load changes of a stage that is brought nowhere."""
-    known = load_effect(mechanism) if found is None and model is Model.LUMPED else None
-    return known.text if known is not None and known.model is not None else None
-
-
-def with_stance(body: Any, found: Stance | None) -> Any:
-    """A result, and beside it how the stage stands."""
-    return body if found is None else SideBySide((body, {"stance": found}))
-
-
-def stance_tables(found: Stance | None) -> Iterator[Table]:
-    """Where the stage stands, before what is told about it."""
-    if found is None:
-        return
+def _stance_tables(found: Stance) -> Iterator[Table]:
     yield matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)
     if found.moved is not None:
         yield matrix_table("From there it is brought by", found.moved)
     if found.held is not None:
         kept = f" ({', '.join(found.locked)} stays locked)" if found.locked else ""
         yield matrix_table(f"Held by, counted from the sagged position{kept}", found.held)
-
-
-def stance_cautions(found: Stance | None) -> tuple[Finding, ...]:
-    """What is doubtful where the stage stands."""
-    return () if found is None else found.cautions
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
