@@ -279,14 +279,28 @@ def test_derivatives_pass_through_round_cuts() -> None:
         assert np.allclose(slope, (getattr(high, name) - getattr(low, name)) / (2.0 * step), rtol=1e-6, atol=1e-6 * np.max(np.abs(slope)))
 
 
-def test_a_batch_weighs_as_its_designs_do() -> None:
-    places = np.array([0.0, 0.004, 0.009, 0.014, 0.02, 0.024, 0.03])  # within, cut by different faces, apart
+_PLACES = np.array([0.0, 0.004, 0.009, 0.014, 0.02, 0.024, 0.03, 0.0041, 0.0201, -0.004])  # within, cut by different faces, apart
+
+
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        lambda x: [_tilted(x)],
+        lambda x: [Cylinder("steel", 0.02, 0.01, (x, 0.0, 0.0))],
+        lambda x: [Cylinder("steel", 0.02, 0.01, (0.006, x, 0.0)), Cylinder("steel", 0.015, 0.03, (x, 0.002, 0.003), bore=0.004)],
+    ],
+    ids=["tilted block", "disc", "two discs, one of them bored"],
+)
+def test_a_batch_weighs_as_its_designs_do(drawn: Callable[[Any], list[Solid]]) -> None:
     base = block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005))
-    together = weighed(base, _tilted(places))
-    for number, place in enumerate(places):
-        alone = weighed(base, _tilted(float(place)))
+    steps = _PLACES + 1e-30j
+    together, stepped = weighed(base, *drawn(_PLACES)), weighed(base, *drawn(steps))
+    for number, place in enumerate(_PLACES):
+        alone, beside = weighed(base, *drawn(float(place))), weighed(base, *drawn(steps[number]))
+        size = np.max(np.abs(alone.inertia))
         assert np.isclose(together.mass[number], alone.mass, rtol=ROUND_OFF)
-        assert np.allclose(together.inertia[number], alone.inertia, rtol=0.0, atol=ROUND_OFF * np.max(np.abs(alone.inertia)))
+        assert np.allclose(together.inertia[number], alone.inertia, rtol=0.0, atol=ROUND_OFF * size)
+        assert np.allclose(stepped.inertia[number].imag / 1e-30, beside.inertia.imag / 1e-30, rtol=0.0, atol=1e3 * ROUND_OFF * size / 0.015)
 
 
 @pytest.mark.parametrize(

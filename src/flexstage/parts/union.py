@@ -374,7 +374,7 @@ def _volume(cubic_metres: float) -> str:
 
 
 def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
-    """Moments of a region in the designs `where`, nothing in the others; design by design where its corners differ."""
+    """Moments of a region in the designs `where`, nothing in the others; those together whose corners and edges are alike."""
     numbers = [each for item in cell.rounds for each in (item.axis, item.point)] + [item.point for item in cell.balls]
     radii = [item.radius for item in (*cell.rounds, *cell.balls)]
     shape = np.broadcast_shapes(
@@ -385,13 +385,14 @@ def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
     flat = _flat_cell(cell, shape)
     volume, first, second = np.zeros(count, kind), np.zeros((count, 3), kind), np.zeros((count, 3, 3), kind)
     pending = np.flatnonzero(np.broadcast_to(where, shape))
+    if not (cell.balls or cell.rounds):
+        pending = pending[~_is_flat(np.real(flat.normals[pending]), np.real(flat.offsets[pending]), 2.0 * _FLUSH * scale)]
     while pending.size:
-        if cell.balls or cell.rounds:
-            mine = _design(flat, pending[0])
-            done, values = pending[:1], _ball_moments(mine, scale) if cell.balls else _round_moments(mine, scale)
+        if cell.balls:
+            done, values = pending[:1], _ball_moments(_pick(flat, pending[0]), scale)
         else:
-            done, values = _polytopes(flat.normals[pending], flat.offsets[pending], scale)
-            done = pending[done]
+            alike, values = (_round_moments if cell.rounds else _polytopes)(_pick(flat, pending), scale)
+            done = pending[alike]
         volume[done], first[done], second[done] = values
         pending = np.setdiff1d(pending, done, assume_unique=True)
     return Moments(volume.reshape(shape), first.reshape((*shape, 3)), second.reshape((*shape, 3, 3)))
@@ -409,24 +410,44 @@ def _flat_cell(cell: _Cell, shape: tuple[int, ...]) -> _Cell:
     return _Cell(flat(cell.normals, 2), flat(cell.offsets, 1), rounds, balls)
 
 
-def _design(cell: _Cell, number: int) -> _Cell:
-    """One design of a region with one batch axis."""
-    rounds = tuple(_Round(item.axis[number], item.point[number], item.radius[number]) for item in cell.rounds)
-    balls = tuple(_Ball(item.point[number], item.radius[number]) for item in cell.balls)
-    return _Cell(cell.normals[number], cell.offsets[number], rounds, balls)
+def _pick(cell: _Cell, designs: Array) -> _Cell:
+    """One design, or some, of a region with one batch axis."""
+    rounds = tuple(_Round(item.axis[designs], item.point[designs], item.radius[designs]) for item in cell.rounds)
+    balls = tuple(_Ball(item.point[designs], item.radius[designs]) for item in cell.balls)
+    return _Cell(cell.normals[designs], cell.offsets[designs], rounds, balls)
+
+
+class _Alike:
+    """The first design of a batch decides; `designs` (b,) are those that have decided as it has."""
+
+    def __init__(self, count: int) -> None:
+        self.designs = np.ones(count, dtype=bool)
+
+    def as_first(self, decisions: Array) -> Array:
+        """What the first design decides, of decisions (b, ...)."""
+        same = decisions == decisions[0]
+        self.designs &= same.reshape(len(same), -1).all(axis=1)
+        return np.asarray(decisions[0])
 
 
 _Values = tuple[Array, Array, Array]
 
 
-def _polytopes(normals: Array, offsets: Array, scale: float) -> tuple[Array, _Values]:
+def _is_flat(normals: Array, offsets: Array, within: float) -> Array:
+    """Which polytopes of a batch have two opposite faces (n and -n) that are not apart."""
+    opposite = np.sum((normals[:, :, None] + normals[:, None]) ** 2, axis=-1) < _FLUSH**2
+    return np.asarray((opposite & (offsets[:, :, None] + offsets[:, None] <= within)).any(axis=(1, 2)))
+
+
+def _polytopes(cell: _Cell, scale: float) -> tuple[Array, _Values]:
     """Moments of those polytopes of a batch that have the corners of the first one; which they are."""
-    within = _FLUSH * scale
+    normals, offsets, within = cell.normals, cell.offsets, _FLUSH * scale
     planes = _distinct(np.real(normals[0]), np.real(offsets[0]), within)
     corners = _corners(np.real(normals[0]), np.real(offsets[0]), planes, within)
     empty = (np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3))))
     if len(corners) < 4:
-        return empty
+        done = _empty_alike(np.real(normals), np.real(offsets) / scale)
+        return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3)))
     places = np.linalg.solve(normals[:, corners], offsets[:, corners][..., None])[..., 0]
     beyond = np.einsum("bkx,bvx->bvk", np.real(normals), np.real(places)) - np.real(offsets)[:, None]
     alike = np.flatnonzero(np.all(beyond <= 2.0 * within, axis=(1, 2)))
@@ -441,6 +462,20 @@ def _polytopes(normals: Array, offsets: Array, scale: float) -> tuple[Array, _Va
     middle = np.mean(places[alike], axis=1, keepdims=True)
     arms = (places[alike] - middle)[:, _outward(hull)]
     return alike, _fan(arms, middle[:, 0])
+
+
+def _empty_alike(normals: Array, offsets: Array) -> Array:
+    """Which polytopes of a batch are empty by the same planes as the first, which is one of them.
+
+    Farkas' lemma: there is no r with N r <= b where weights w >= 0 have N^T w = 0 and b . w < 0.
+    """
+    planes, wanted = np.concatenate([normals, offsets[..., None]], axis=-1), np.array([0.0, 0.0, 0.0, -1.0])
+    used = np.swapaxes(planes[:, scipy.optimize.nnls(planes[0].T, wanted)[0] > 0.0], -1, -2)
+    weights = np.linalg.pinv(used) @ wanted
+    miss = _lengths((used @ weights[..., None])[..., 0] - wanted)
+    alike: Array = np.asarray((weights >= 0.0).all(axis=1) & (miss < _FLUSH))
+    alike[0] = True
+    return np.flatnonzero(alike)
 
 
 def _outward(hull: scipy.spatial.ConvexHull) -> Array:
@@ -499,27 +534,34 @@ def _corners(normals: Array, offsets: Array, planes: Sequence[int], within: floa
     return triples[kept]
 
 
-def _round_moments(cell: _Cell, scale: float) -> _Values:
-    """Moments of a region with round faces, of one design: a prism along the rounds' common axis, or nothing."""
+def _round_moments(cell: _Cell, scale: float) -> tuple[Array, _Values]:
+    """Moments of those regions of a batch that have the edges of the first one; which they are.
+
+    Regions with round faces: prisms along the rounds' common axis, or nothing.
+    """
     within = _FLUSH * scale
-    try:
-        found = _prism(cell, within)
-    except _InexactError:
-        volume = _by_numbers(cell, scale)
-        if volume > _FLUSH * scale**3:
-            raise _InexactError(volume) from None
-        found = None
-    if found is None:
-        return np.zeros(()), np.zeros(3), np.zeros((3, 3))
-    frame, (low, high), (area, first, second) = found
-    size, middle = high - low, 0.5 * (low + high)
-    moments = np.zeros((3, 3), dtype=np.result_type(area, size, frame.rotation))
-    moments[0, 0] = area * size**3 / 12.0
-    moments[1:, 1:] = second * size
-    flat = np.concatenate([np.zeros(1), first * size])
-    turn = frame.rotation
-    own = (np.asarray(area * size), turn @ flat, turn @ moments @ turn.T)
-    return _shift(own, frame.position + middle * turn[:, 0])
+    alike = _Alike(len(cell.offsets))
+    with np.errstate(divide="ignore", invalid="ignore"):  # of designs that are not alike
+        try:
+            found = _prism(cell, within, alike)
+        except _InexactError:
+            volume = _by_numbers(_pick(cell, np.array(0)), scale)
+            if volume > _FLUSH * scale**3:
+                raise _InexactError(volume) from None
+            return np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3)))
+        done = np.flatnonzero(alike.designs)
+        if found is None:
+            return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3)))
+        frame, (low, high), (area, first, second) = found
+        size, middle = high - low, 0.5 * (low + high)
+        moments = np.zeros((len(size), 3, 3), dtype=np.result_type(area, size, frame.rotation))
+        moments[:, 0, 0] = area * size**3 / 12.0
+        moments[:, 1:, 1:] = second * size[:, None, None]
+        flat = np.concatenate([np.zeros((len(size), 1)), first * size[:, None]], axis=1)
+        turn = frame.rotation
+        own = (area * size, (turn @ flat[..., None])[..., 0], turn @ moments @ np.swapaxes(turn, -1, -2))
+        volume, first, second = _shift(own, frame.position + middle[:, None] * turn[..., 0])
+    return done, (volume[done], first[done], second[done])
 
 
 def _ball_moments(cell: _Cell, scale: float) -> _Values:
@@ -562,35 +604,50 @@ def _cap(normal: Array, radius: Array, depth: Array) -> _Values:
     return np.asarray(volume), first * normal, along * line + across * (np.eye(3) - line)
 
 
-def _prism(cell: _Cell, within: float) -> tuple[Frame, tuple[Array, Array], _Values] | None:
-    """A region as a prism: its frame (x along the axis), where it begins and ends, and the moments of its section; `None`: it is empty.
+def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Frame, tuple[Array, Array], _Values] | None:
+    """Regions as prisms: their frame (x along the axis), where they begin and end, and the moments of their sections; `None`: empty.
 
     Raises `_InexactError` where rounds are not parallel, or a plane cuts them aslant.
     """
-    axis = cell.rounds[0].axis
-    if any(np.linalg.norm(np.cross(np.real(axis), np.real(other.axis))) > _FLUSH for other in cell.rounds[1:]):
+    axis, radius = cell.rounds[0].axis, np.real(cell.rounds[0].radius)
+    if any(alike.as_first(_lengths(np.cross(np.real(axis), np.real(other.axis))) > _FLUSH) for other in cell.rounds[1:]):
         raise _InexactError(0.0)
     frame = Frame(axes(axis), cell.rounds[0].point)
     slopes = cell.normals @ frame.rotation
-    offsets = cell.offsets - cell.normals @ frame.position
-    steep = np.real(slopes[:, 0])
-    square, sideways = np.hypot(np.real(slopes[:, 1]), np.real(slopes[:, 2])) < _FLUSH, np.abs(steep) < _FLUSH
-    cuts = offsets / np.where(square, slopes[:, 0], 1.0)
-    above, below = np.flatnonzero(square & (steep > 0.0)), np.flatnonzero(square & (steep < 0.0))
-    high, low = cuts[above[np.argmin(np.real(cuts[above]))]], cuts[below[np.argmax(np.real(cuts[below]))]]
-    if np.real(high - low) <= within:
+    offsets = cell.offsets - (cell.normals @ frame.position[..., None])[..., 0]
+    steep = np.real(slopes[..., 0])
+    square = alike.as_first(np.hypot(np.real(slopes[..., 1]), np.real(slopes[..., 2])) < _FLUSH)
+    sideways = alike.as_first(np.abs(steep) < _FLUSH)
+    upward = alike.as_first(square & (steep > 0.0))
+    cuts = offsets / np.where(square, slopes[..., 0], 1.0)
+    high, low = _least(cuts[:, upward]), -_least(-cuts[:, square & ~upward])
+    if alike.as_first(np.real(high - low) <= within):
         return None
-    circles = [((item.point - frame.position) @ frame.rotation[:, 1:], item.radius) for item in cell.rounds]
-    lines = [(slopes[number, 1:], offsets[number]) for number in np.flatnonzero(sideways)]
-    for slope, offset in zip(np.real(slopes[~square & ~sideways]), np.real(offsets[~square & ~sideways]), strict=True):
-        across, radius = float(np.hypot(slope[1], slope[2])), float(np.real(cell.rounds[0].radius))
-        ends = (slope[0] * float(np.real(low)), slope[0] * float(np.real(high)))
-        if min(ends) - radius * across >= offset - within:
+    circles = [(((item.point - frame.position)[:, None, :] @ frame.rotation[..., 1:])[:, 0], item.radius) for item in cell.rounds]
+    lines = [(slopes[:, number, 1:], offsets[:, number]) for number in np.flatnonzero(sideways)]
+    for number in np.flatnonzero(~square & ~sideways):
+        slope, offset = np.real(slopes[:, number]), np.real(offsets[:, number])
+        across = radius * np.hypot(slope[:, 1], slope[:, 2])
+        ends = slope[:, 0] * np.real(low), slope[:, 0] * np.real(high)
+        if alike.as_first(np.minimum(*ends) - across >= offset - within):
             return None
-        if max(ends) + radius * across > offset + within:
+        if alike.as_first(np.maximum(*ends) + across > offset + within):
             raise _InexactError(0.0)
-    section = _section(circles, lines, within)
+    section = _section(circles, lines, within, alike)
     return None if section is None else (frame, (low, high), section)
+
+
+def _least(values: Array) -> Array:
+    """Of values (b, n) that of the least real part."""
+    return np.take_along_axis(values, np.argmin(np.real(values), axis=1)[:, None], axis=1)[:, 0]
+
+
+def _lengths(vectors: Array) -> Array:
+    return np.sqrt(np.sum(vectors * vectors, axis=-1))
+
+
+def _dot(one: Array, other: Array) -> Array:
+    return np.sum(one * other, axis=-1)
 
 
 _Circle: TypeAlias = tuple[Array, Array]
@@ -599,111 +656,122 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Exact to rounding for the trigonometric and other polynomials of second moments along an arc or a side."""
 
 
-def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> _Values | None:
-    """Moments of the region within all circles (centre, radius) and lines (normal, offset): by Green, along what is left of each."""
-    circles, lines = _distinct_edges(circles, lines, within)
+def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> _Values | None:
+    """Moments of the regions within all circles (centre, radius) and lines (normal, offset): by Green, along what is left of each."""
+    circles, lines = _distinct_edges(circles, lines, within, alike)
     sides = [
-        *(_along_line(number, circles, lines) for number in range(len(lines))),
-        *(piece for number in range(len(circles)) for piece in _along_circle(number, circles, lines)),
+        *(_along_line(number, circles, lines, alike) for number in range(len(lines))),
+        *(piece for number in range(len(circles)) for piece in _along_circle(number, circles, lines, alike)),
     ]
     paths = [side for side in sides if side is not None]
-    area = sum((0.5 * np.sum(turn) for _, turn in paths), np.zeros(()))
-    if np.real(area) <= within * within or not paths:
+    if not paths:
         return None
-    first = sum((np.sum(places * turn[:, None], axis=0) / 3.0 for places, turn in paths), np.zeros(2))
-    second = sum((np.einsum("nx,ny,n->xy", places, places, turn) / 4.0 for places, turn in paths), np.zeros((2, 2)))
+    area = sum((0.5 * np.sum(turn, axis=-1) for _, turn in paths), np.zeros(()))
+    if alike.as_first(np.real(area) <= within * within):
+        return None
+    first = sum((np.sum(places * turn[..., None], axis=-2) / 3.0 for places, turn in paths), np.zeros(2))
+    second = sum((np.einsum("bnx,bny,bn->bxy", places, places, turn) / 4.0 for places, turn in paths), np.zeros((2, 2)))
     return np.asarray(area), first, second
 
 
-def _distinct_edges(circles: Sequence[_Circle], lines: Sequence[_Line], within: float) -> tuple[list[_Circle], list[_Line]]:
+def _distinct_edges(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> tuple[list[_Circle], list[_Line]]:
     """The circles and lines that differ from those before them."""
     rounds: list[_Circle] = []
     for centre, radius in circles:
-        same = [np.abs(np.real([*(centre - other), radius - size])).max() < within for other, size in rounds]
+        same = [
+            alike.as_first((np.abs(np.real(centre - other)).max(axis=-1) < within) & (np.abs(np.real(radius - size)) < within))
+            for other, size in rounds
+        ]
         rounds += [] if any(same) else [(centre, radius)]
     straight: list[_Line] = []
     for normal, offset in lines:
-        same = [np.abs(np.real(normal - other)).max() < _FLUSH and abs(np.real(offset - size)) < within for other, size in straight]
+        same = [
+            alike.as_first((np.abs(np.real(normal - other)).max(axis=-1) < _FLUSH) & (np.abs(np.real(offset - size)) < within))
+            for other, size in straight
+        ]
         straight += [] if any(same) else [(normal, offset)]
     return rounds, straight
 
 
-def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line]) -> tuple[Array, Array] | None:
+def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> tuple[Array, Array] | None:
     """Places along the part of a line that bounds the region, and p x dp there."""
     normal, offset = lines[number]
-    along = np.stack([-normal[1], normal[0]])
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
     lows, highs = [], []
     for centre, radius in circles:
-        reach = radius**2 - (offset - normal @ centre) ** 2
-        if np.real(reach) <= 0.0:
+        reach = radius**2 - (offset - _dot(normal, centre)) ** 2
+        if alike.as_first(np.real(reach) <= 0.0):
             return None
-        half, middle = np.sqrt(reach), along @ centre
+        half, middle = np.sqrt(reach), _dot(along, centre)
         lows.append(middle - half)
         highs.append(middle + half)
     for other, (slope, limit) in enumerate(lines):
-        rate, left = slope @ along, limit - offset * (slope @ normal)
         if other == number:
             continue
-        if abs(np.real(rate)) < _FLUSH:
-            if np.real(left) < 0.0:
+        rate, left = _dot(slope, along), limit - offset * _dot(slope, normal)
+        if alike.as_first(np.abs(np.real(rate)) < _FLUSH):
+            if alike.as_first(np.real(left) < 0.0):
                 return None
-        elif np.real(rate) > 0.0:
+        elif alike.as_first(np.real(rate) > 0.0):
             highs.append(left / rate)
         else:
             lows.append(left / rate)
-    low, high = lows[int(np.argmax(np.real(lows)))], highs[int(np.argmin(np.real(highs)))]
-    if np.real(high - low) <= 0.0:
+    low, high = -_least(-np.stack(lows, axis=-1)), _least(np.stack(highs, axis=-1))
+    if alike.as_first(np.real(high - low) <= 0.0):
         return None
-    places = offset * normal + (0.5 * (low + high) + 0.5 * (high - low) * _NODES)[:, None] * along
-    return places, offset * 0.5 * (high - low) * _WEIGHTS
+    half = 0.5 * (high - low)
+    places = offset[:, None, None] * normal[:, None] + (0.5 * (low + high)[:, None] + half[:, None] * _NODES)[..., None] * along[:, None]
+    return places, (offset * half)[:, None] * _WEIGHTS
 
 
-def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line]) -> Iterator[tuple[Array, Array]]:
+def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> Iterator[tuple[Array, Array]]:
     """Places along the arcs of a circle that bound the region, and p x dp there."""
     centre, radius = circles[number]
-    limits = [(normal, (offset - normal @ centre) / radius) for normal, offset in lines]
+    limits = [(normal, (offset - _dot(normal, centre)) / radius) for normal, offset in lines]
     for other, (middle, size) in enumerate(circles):
-        arm = centre - middle
-        apart = np.sqrt(np.sum(arm * arm))
         if other == number:
             continue
-        if np.real(apart) < _FLUSH * np.real(radius):
-            limits.append((np.array([1.0, 0.0]), np.asarray(2.0 if np.real(radius) <= np.real(size) else -2.0)))
+        arm = centre - middle
+        apart = np.sqrt(_dot(arm, arm))
+        if alike.as_first(np.real(apart) < _FLUSH * np.real(radius)):
+            limits.append((np.broadcast_to([1.0, 0.0], arm.shape), np.where(np.real(radius) <= np.real(size), 2.0, -2.0)))
         else:
-            limits.append((arm / apart, (size**2 - apart**2 - radius**2) / (2.0 * radius * apart)))
-    for low, high in _intervals(limits):
-        angles = 0.5 * (low + high) + 0.5 * (high - low) * _NODES
-        outward = np.column_stack([np.cos(angles), np.sin(angles)])
-        yield centre + radius * outward, (radius**2 + radius * (outward @ centre)) * 0.5 * (high - low) * _WEIGHTS
+            limits.append((arm / apart[:, None], (size**2 - apart**2 - radius**2) / (2.0 * radius * apart)))
+    for low, high in _intervals(limits, alike):
+        half = 0.5 * (high - low)
+        angles = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
+        outward = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        turn = radius[:, None] ** 2 + radius[:, None] * (outward @ centre[..., None])[..., 0]
+        yield centre[:, None] + radius[:, None, None] * outward, turn * half[:, None] * _WEIGHTS
 
 
-def _intervals(limits: Sequence[tuple[Array, Array]]) -> Iterator[tuple[Array, Array]]:
+def _intervals(limits: Sequence[tuple[Array, Array]], alike: _Alike) -> Iterator[tuple[Array, Array]]:
     """Intervals of the angle where e(angle) . direction <= limit holds for all limits."""
-    cut = [(direction, limit) for direction, limit in limits if np.real(limit) < 1.0]
-    if any(np.real(limit) <= -1.0 for _, limit in cut):
+    cut = [(direction, limit) for direction, limit in limits if alike.as_first(np.real(limit) < 1.0)]
+    if any(alike.as_first(np.real(limit) <= -1.0) for _, limit in cut):
         return
     if not cut:
-        yield np.asarray(-np.pi), np.asarray(np.pi)
+        whole = np.full(len(alike.designs), np.pi)
+        yield -whole, whole
         return
-    banned = []
-    for direction, limit in cut:
-        middle, half = _angle(direction), np.arccos(limit)
-        low = middle - half
-        turns = 2.0 * np.pi * np.floor((np.real(low) + np.pi) / (2.0 * np.pi))
-        banned.append((low - turns, middle + half - turns))
-    banned.sort(key=lambda ends: float(np.real(ends[0])))
-    reached = max([banned[0][1], *(high - 2.0 * np.pi for _, high in banned)], key=np.real)  # the last may reach round to the first
-    for low, high in [*banned[1:], (banned[0][0] + 2.0 * np.pi, banned[0][1] + 2.0 * np.pi)]:
-        if np.real(low) > np.real(reached):
-            yield reached, low
-        reached = high if np.real(high) > np.real(reached) else reached
+    middle, half = (np.stack(each, axis=-1) for each in zip(*((_angle(way), np.arccos(limit)) for way, limit in cut), strict=True))
+    low = middle - half
+    turns = 2.0 * np.pi * np.floor((np.real(low) + np.pi) / (2.0 * np.pi))
+    order = np.argsort(np.real(low - turns), axis=1, kind="stable")
+    low, high = (np.take_along_axis(ends, order, axis=1) for ends in (low - turns, middle + half - turns))
+    reached = -_least(-np.concatenate([high[:, :1], high - 2.0 * np.pi], axis=1))  # the last may reach round to the first
+    ahead = np.concatenate([low[:, 1:], low[:, :1] + 2.0 * np.pi], axis=1)
+    for following, end in zip(ahead.T, np.roll(high, -1, axis=1).T, strict=True):
+        if alike.as_first(np.real(following) > np.real(reached)):
+            yield reached, following
+        reached = np.where(np.real(end) > np.real(reached), end, reached)
 
 
 def _angle(direction: Array) -> Array:
     """The angle of a direction, analytic in its components."""
-    base = np.arctan2(np.real(direction[1]), np.real(direction[0]))
-    turned = direction[1] * np.cos(base) - direction[0] * np.sin(base)
-    return base + turned / np.sqrt(np.sum(direction * direction))
+    base = np.arctan2(np.real(direction[:, 1]), np.real(direction[:, 0]))
+    turned = direction[:, 1] * np.cos(base) - direction[:, 0] * np.sin(base)
+    return base + turned / np.sqrt(_dot(direction, direction))
 
 
 _SIDES, _FACES = 64, 400
