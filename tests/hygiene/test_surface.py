@@ -39,8 +39,9 @@ def stub(package: str) -> dict[str, str]:
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 
 
-def loaded_by(code: str) -> set[str]:
-    code += "; import sys; print(*{name.partition('.')[0] for name in sys.modules})"
+def loaded_by(code: str, *, whole: bool = False) -> set[str]:
+    """Packages that some code loads, or modules by their whole names."""
+    code += f"; import sys; print(*{{name if {whole} else name.partition('.')[0] for name in sys.modules}})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return set(done.stdout.splitlines()[-1].split())
@@ -109,6 +110,13 @@ def test_help_loads_nothing_heavy() -> None:
         "except SystemExit as end:\n assert not end.code\n0"
     )
     assert not (HEAVY | SOLVER) & loaded_by(code)
+
+
+def test_commands_load_what_only_some_calls_need_when_they_need_it() -> None:
+    """Templates for reports, the editor of design files, pictures, and all of scipy's packages: the help of a command waits for none."""
+    modules = "import flexstage.apps.cli.analyse, flexstage.apps.cli.describe, flexstage.control.commands.loop, sys"
+    names = "jinja2 tomlkit PIL scipy.special scipy.linalg scipy.optimize matplotlib pydantic"
+    assert not set(names.split()) & loaded_by(modules, whole=True)
 
 
 def test_other_models_load_no_solver() -> None:

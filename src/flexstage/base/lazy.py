@@ -1,8 +1,9 @@
-"""Names of a package that are imported at first use (PEP 562): loading the package loads nothing."""
+"""What is imported at first use: names of a package (PEP 562), and modules that few calls of their importer need."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from sys import modules
+from typing import Any
 
 
 def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
@@ -20,3 +21,18 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
         return value
 
     return attribute, lambda: sorted({*home, *(name for name in vars(modules[package]) if name.startswith("__"))})
+
+
+class Late:
+    """A module by its whole name, imported when the first of its names is asked for; type checkers are shown the import itself.
+
+    >>> Late("math").floor(1.5)
+    1
+    """
+
+    def __init__(self, module: str) -> None:
+        self._module = module
+
+    def __getattr__(self, name: str) -> Any:
+        """A name of the module. Raises `AttributeError` for others, and `ImportError` where the module itself is missing."""
+        return getattr(import_module(self._module), name)

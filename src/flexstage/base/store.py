@@ -12,7 +12,6 @@ import functools
 import os
 import platform
 import re
-import secrets
 import shutil
 import tempfile
 import time
@@ -216,7 +215,7 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
 def _part_name(target: Path) -> str:
     """A new name for a file beside another: its own, cut so that no disk finds it too long, and whose it is."""
     stem = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
-    return f".{stem}.{_host()}-{os.getpid()}-{secrets.token_hex(4)}{_PART}"
+    return f".{stem}.{_host()}-{os.getpid()}-{os.urandom(4).hex()}{_PART}"
 
 
 def _write_error(where: str, error: Exception) -> DesignError:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import scipy
@@ -37,7 +37,8 @@ class System:
 
     def __post_init__(self) -> None:
         """Refuse what does not fit together."""
-        require(_findings(self))
+        if not _fits(self):
+            require(_findings(self))
 
     @property
     def input_names(self) -> Annotated[tuple[str, ...], Called("inputs")]:
@@ -75,6 +76,16 @@ class System:
         entry = (self.B / scale[:, None]).astype(complex)
         shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
         return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
+
+
+def _fits(system: System) -> bool:
+    """Whether there is nothing to find: a search makes ten thousand systems."""
+    states, width, height = len(system.A), len(system.inputs), len(system.outputs)
+    shapes = (np.shape(system.A), np.shape(system.B), np.shape(system.C), np.shape(system.D))
+    if shapes != ((states, states), (states, width), (height, states), (height, width)):
+        return False
+    named = len({each.name for each in system.inputs}) == width and len({each.name for each in system.outputs}) == height
+    return named and (system.step is None or 0.0 < system.step < np.inf)
 
 
 def _findings(system: System) -> Iterable[Finding]:
@@ -213,20 +224,27 @@ def _append(parts: tuple[System, ...]) -> System:
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
         require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
-    matrices: list[Any] = [scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD"]
-    shapes = _shapes(parts)
     return System(
-        *(np.reshape(matrix, shape) for matrix, shape in zip(matrices, shapes, strict=True)),
+        *(side_by_side([getattr(part, name) for part in parts]) for name in "ABCD"),
         inputs=tuple(channel for part in parts for channel in part.inputs),
         outputs=tuple(channel for part in parts for channel in part.outputs),
         step=parts[0].step,
     )
 
 
-def _shapes(parts: tuple[System, ...]) -> tuple[tuple[int, int], ...]:
-    """Shapes of the block matrices; blocks without rows or columns included."""
-    states, width, height = (sum(len(each) for each in group) for group in zip(*((p.A, p.inputs, p.outputs) for p in parts), strict=True))
-    return (states, states), (states, width), (height, states), (height, width)
+def side_by_side(blocks: Sequence[Array]) -> Array:
+    """The block-diagonal matrix of some blocks, of which each may lack rows or columns.
+
+    >>> side_by_side([np.ones((1, 2)), np.zeros((0, 1)), 3.0 * np.ones((1, 0))]).tolist()
+    [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0]]
+    """
+    found = np.zeros((sum(len(each) for each in blocks), sum(each.shape[1] for each in blocks)))
+    row = column = 0
+    for each in blocks:
+        below, right = row + len(each), column + each.shape[1]
+        found[row:below, column:right] = each
+        row, column = below, right
+    return found
 
 
 def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Channel, ...]) -> Iterable[Finding]:

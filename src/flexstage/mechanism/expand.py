@@ -208,11 +208,11 @@ def expand(mechanism: Mechanism) -> Assembly:
     >>> len(expand(double_triangle()).links)
     27
     """
-    return _assembly(_Same(mechanism))
+    return _assembly(Same(mechanism))
 
 
-class _Same:
-    """A description as a key: equal only to itself, which is cheaper to tell than a digest."""
+class Same:
+    """A description as a key of what is kept: equal only to itself, which is cheaper to tell than a digest."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
@@ -221,11 +221,11 @@ class _Same:
         return id(self.mechanism)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.mechanism is other.mechanism
+        return isinstance(other, Same) and self.mechanism is other.mechanism
 
 
 @lru_cache(maxsize=2)
-def _assembly(key: _Same) -> Assembly:
+def _assembly(key: Same) -> Assembly:
     """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
     mechanism = key.mechanism
     require([*place_findings(mechanism), *_unknown_names(mechanism), *compound_findings(mechanism)])

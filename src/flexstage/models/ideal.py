@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, cast
 
 import numpy as np
@@ -21,7 +22,7 @@ from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.beams.compliance import law
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, Same, expand
 from flexstage.mechanism.incidence import LARGE, Layout, deformation, free_deformations, is_single, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
@@ -73,6 +74,16 @@ def ideal(mechanism: Mechanism) -> Kinematics:
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()
     [1.0, 0.0, 0.0, 0.0, -0.025, 0.085]
     """
+    return _kept(Same(mechanism)) if is_single(expand(mechanism)) else _read(mechanism)
+
+
+@lru_cache(maxsize=2)
+def _kept(key: Same) -> Kinematics:
+    """Of one design, kept for what else is asked of the same description."""
+    return _read(key.mechanism)
+
+
+def _read(mechanism: Mechanism) -> Kinematics:
     return _ideal_of_large(mechanism) or _ideal(mechanism)
 
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 from flexstage.base.quantity import Quantity
 
@@ -216,15 +217,28 @@ def format_value(value: float, unit: str, digits: int = DIGITS) -> str:
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
+def _power(found: re.Match[str]) -> str:
+    return f"{found[1]}·10{found[2].translate(_SUPERSCRIPT)}"
+
+
+_SETTING: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = (
+    (re.compile(r"\+-(?=\d)"), "±"),
+    (re.compile(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)"), "µ"),
+    (re.compile(r"(?<![\w.])(\d+\.?\d*)e(-?\d+)\b"), _power),
+    (re.compile(r"(\w+)\^0\.5\b"), r"√\1"),
+    (re.compile(r"\^(-?\d+)"), lambda found: found[1].translate(_SUPERSCRIPT)),
+    (re.compile(r"(?<![\w.)])-(?=\d|inf)"), "−"),
+)
+"""What is set otherwise, one after the other."""
+
+
+@lru_cache(maxsize=4096)
 def to_typography(text: str) -> str:
     """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
 
     >>> [to_typography(text) for text in ("-1.2e-5 N/um", "J/m^2", "nm/Hz^0.5", "+-5 um", "digest 9bc8e8")]
     ['−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm', 'digest 9bc8e8']
     """
-    text = re.sub(r"\+-(?=\d)", "±", text)
-    text = re.sub(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)", "µ", text)
-    text = re.sub(r"(?<![\w.])(\d+\.?\d*)e(-?\d+)\b", lambda found: f"{found[1]}·10{found[2].translate(_SUPERSCRIPT)}", text)
-    text = re.sub(r"(\w+)\^0\.5\b", r"√\1", text)
-    text = re.sub(r"\^(-?\d+)", lambda found: found[1].translate(_SUPERSCRIPT), text)
-    return re.sub(r"(?<![\w.)])-(?=\d|inf)", "−", text)
+    for pattern, set_ in _SETTING:
+        text = pattern.sub(set_, text)
+    return text

@@ -6,14 +6,19 @@ import functools
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import jinja2
 from rich.cells import cell_len
 
+from flexstage.base.lazy import Late
 from flexstage.base.text import printable
 from flexstage.show.display import to_typography
 from flexstage.show.table import Column, Mark, Table
+
+if TYPE_CHECKING:
+    import jinja2
+else:
+    jinja2 = Late("jinja2")  # tables on a terminal need none of it
 
 _STYLES = {
     Mark.STRONG: "bold",

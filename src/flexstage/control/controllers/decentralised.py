@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
@@ -15,7 +14,7 @@ from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.coordinates import Coordinates
-from flexstage.control.system import System, connect, rename, select
+from flexstage.control.system import System, connect, rename, select, side_by_side
 from flexstage.models.linear.model import Channel
 
 
@@ -57,7 +56,7 @@ class Decentralised:
         """
         chains = loop_systems(self, step)
         loops, count = self.loops, len(chains)
-        A = np.asarray(scipy.linalg.block_diag(*(each.A for each in chains)))
+        A = side_by_side([each.A for each in chains])
         size = sum(len(each.A) for each in chains)
         entries = [_block_columns([each.B[:, [column]] for each in chains], size) for column in range(3)]
         exit_ = _block_columns([each.C.T for each in chains], size).T
@@ -65,7 +64,7 @@ class Decentralised:
         # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
         found = System(
-            A=np.reshape(A, (size, size)),
+            A=A,
             B=np.hstack([entry @ map_ for entry, map_ in zip(entries, seen, strict=True)]),
             C=loops.drive @ exit_,
             D=np.hstack([loops.drive @ matrix @ map_ for matrix, map_ in zip(direct, seen, strict=True)]),
@@ -91,8 +90,10 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
     >>> round(abs(found[0].transfer(np.array([50.0]))[0, 0, 0]), 12).item()
     0.0
     """
-    notches = control.notches or ((),) * len(control.laws)
-    return tuple(_in_series(law, filters, step) for law, filters in zip(control.laws, notches, strict=True))
+    rows = tuple(zip(control.laws, control.notches or ((),) * len(control.laws), strict=True))
+    alike = {(id(law), id(filters)): (law, filters) for law, filters in rows}  # a symmetric stage has the same row several times
+    made = {key: _in_series(law, filters, step) for key, (law, filters) in alike.items()}
+    return tuple(made[id(law), id(filters)] for law, filters in rows)
 
 
 def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:

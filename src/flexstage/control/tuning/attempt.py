@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
 from typing import TypeAlias
 
 import numpy as np
@@ -117,6 +119,14 @@ def _decentralised(seen: View, task: Task, frequency: float, calm: float, option
         if one is None:
             return None
         found.append(one)
+    key = (*map(id, found), id(task.feedforward))
+    if key not in seen.tried:  # what was found is kept there too, so that no other has its place in memory
+        seen.tried[key] = _together(seen, task, found)
+    return seen.tried[key]
+
+
+def _together(seen: View, task: Task, found: list[_Chosen]) -> Attempt:
+    """The loops at once, judged."""
     notches = tuple(each.notches for each in found)
     controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
     gains = (seen.responses @ seen.loops.drive) * np.stack([each.response for each in found], axis=-1)[:, None, :]
@@ -135,11 +145,21 @@ def _first_alike(seen: View, options: _Options, loop: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class _Chosen:
-    """A loop's law and notches, and their response (f,) from error to command."""
+    """A loop's law and notches, and their `response` (f,) from error to command.
+
+    `nominal` is its score with the modes as they are modelled, `score` gives that wherever they may lie.
+    """
 
     law: Law
     notches: tuple[Notch, ...]
     response: Array
+    nominal: float
+    score: Callable[[Array], float]
+
+    @cached_property
+    def everywhere(self) -> float:
+        """The score wherever the modes may lie."""
+        return self.score(self.response)
 
 
 def _choose(seen: View, kind: Kind | Family, options: _Sets, *, loop: int, frequency: float, calm: float, gain: complex) -> _Chosen | None:
@@ -147,25 +167,40 @@ def _choose(seen: View, kind: Kind | Family, options: _Sets, *, loop: int, frequ
 
     Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
     """
+    best, lowest = None, (np.inf, 0.0)
+    for each in chain.from_iterable(_known(seen, kind, notches, loop=loop, frequency=frequency, gain=gain) for notches in options):
+        slack = -float(np.abs(each.response[0])) if calm else 0.0
+        score = (max(calm, each.nominal), slack)
+        if score < lowest and len(seen.offsets) > 1:
+            score = (max(score[0], each.everywhere), slack)
+        if score < lowest:
+            best, lowest = each, score
+    return best
+
+
+def _known(seen: View, kind: Kind, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex) -> tuple[_Chosen, ...]:
+    """All laws of a kind with these notches, kept as long as the search stays at the frequency."""
+    if seen.tried.get("frequency") != frequency:
+        seen.tried.clear()
+        seen.tried["frequency"] = frequency
+    key = (kind, loop, notches)
+    if key not in seen.tried:
+        seen.tried[key] = tuple(_candidates(seen, kind, notches, loop=loop, frequency=frequency, gain=gain))
+    return seen.tried[key]
+
+
+def _candidates(seen: View, kind: Kind, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex) -> Iterator[_Chosen]:
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
     first = next((each.frequency for each in resonances(seen, loop)), None)
-    best, lowest = None, (np.inf, 0.0)
-    for notches in options:
-        filters = [notch.system(seen.step) for notch in notches]
-        filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
-        notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
-        for law in laws(kind, Place(frequency, notched, static, first), seen.step):
-            response = _sampled_response(law, seen)
-            if response is None:
-                continue
+    filters = [notch.system(seen.step) for notch in notches]
+    filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
+    notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
+    for law in laws(kind, Place(frequency, notched, static, first), seen.step):
+        response = _sampled_response(law, seen)
+        if response is not None:
             whole = response * filtered
-            slack = -float(np.abs(whole[0])) if calm else 0.0
-            score = (max(calm, _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)), slack)
-            if score < lowest and len(seen.offsets) > 1:
-                score = (max(score[0], _score(seen.frequencies, whole * seen.own[:, :, loop], frequency)), slack)
-            if score < lowest:
-                best, lowest = _Chosen(law, notches, whole), score
-    return best
+            nominal = _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)
+            yield _Chosen(law, notches, whole, nominal, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
 
 
 def _product(responses: list[Array]) -> Array:

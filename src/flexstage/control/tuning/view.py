@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -52,6 +53,11 @@ class View:
     def own(self) -> Array:
         """The loops' own responses (v, f, k)."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
+
+    @cached_property
+    def tried(self) -> dict[Any, Any]:
+        """What a search has tried at its present frequency, kept by it: the same laws come again with other sets of notches beside them."""
+        return {}
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri, gammainccinv
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power
@@ -71,7 +71,7 @@ def misfits(band: Band, modal: Modal) -> Array:
             free = max(lines[number - 1] - taken, 1.0)
             ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / free
             freedom = free / float(np.sum(share**2)) if outputs > 1 else free
-            if ratio > float(gammainccinv(freedom, _BY_CHANCE / len(_NEAR))) / freedom:
+            if ratio > float(scipy.special.gammainccinv(freedom, _BY_CHANCE / len(_NEAR))) / freedom:
                 result[mode] = max(result[mode], np.sqrt(ratio))
     return result
 
@@ -155,7 +155,7 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
         covariance = _inverse(found.information, np.append(largest, transients))
         places = count + mode * total + np.arange(driving[mode])
         wald = _wald(modal.participation[mode, : driving[mode]], covariance[np.ix_(places, places)])
-        strength[mode] = wald / float(chdtri(2 * driving[mode], once_in))
+        strength[mode] = wald / float(scipy.special.chdtri(2 * driving[mode], once_in))
     return strength
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtrc
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.confidence import SAME
@@ -128,7 +128,7 @@ def _drive_chance(near: _Near, inputs: int, sensed: float) -> tuple[float, float
     gained = float(np.sum(np.abs(_weighted_residual(free, force, weights)) ** 2)) - left
     more = total - free.shape[1]
     ratio = gained / more * (count - total) / max(left, 1e-300)
-    return float(fdtrc(2 * more, 2 * (count - total), max(ratio, 0.0))), _unexplained_share(near, rest / np.sqrt(weights))
+    return float(scipy.special.fdtrc(2 * more, 2 * (count - total), max(ratio, 0.0))), _unexplained_share(near, rest / np.sqrt(weights))
 
 
 def _unexplained_share(near: _Near, rest: Array) -> float:

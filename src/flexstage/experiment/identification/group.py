@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtrc, chdtri
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import Extent
@@ -114,7 +114,7 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
     place = int(np.argmax(score))
     if score[place] < _NOTICED:
         return np.ones(len(modal.poles))
-    enough = found.cost - 0.5 * float(chdtri(freedoms(modal), _DOUBTED / len(score)))
+    enough = found.cost - 0.5 * float(scipy.special.chdtri(freedoms(modal), _DOUBTED / len(score)))
     more = fit(band, suggest_mode(band, modal, place), enough)
     if more.cost > enough:
         return np.ones(len(modal.poles))
@@ -163,11 +163,11 @@ def _widening(found: Found, band: Band, modal: Modal) -> Array:
 
 
 def _limit(modal: Modal) -> float:
-    return float(chdtri(freedoms(modal), ONCE_IN))
+    return float(scipy.special.chdtri(freedoms(modal), ONCE_IN))
 
 
 def _chance(modal: Modal, strength: float) -> float:
-    return float(chdtrc(freedoms(modal), strength))
+    return float(scipy.special.chdtrc(freedoms(modal), strength))
 
 
 def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:

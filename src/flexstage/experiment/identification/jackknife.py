@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import stdtrit
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.confidence import NORMAL_95
@@ -45,7 +45,7 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     moves = (rest @ (gradient[:, free] * scale)[:, :, None])[:, :count, 0] * scale[:count]
     power, size = np.abs(moves) ** 2, len(moves)
     freedom = np.sum(power, axis=0) ** 2 / np.maximum(np.sum(power**2, axis=0), 1e-300)
-    quantile = -stdtrit(2.0 * np.clip(freedom, 1.0, max(size - 1.0, 1.0)), 0.025)
+    quantile = -scipy.special.stdtrit(2.0 * np.clip(freedom, 1.0, max(size - 1.0, 1.0)), 0.025)
     return np.sqrt((size - 1.0) / size * np.sum(power, axis=0) / 2.0) * quantile / NORMAL_95
 
 

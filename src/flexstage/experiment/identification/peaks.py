@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Annotated
 
 import numpy as np
-from scipy.special import fdtrc
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
@@ -170,7 +170,7 @@ def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
     if len(lines) <= 2 * _REACH or not is_even(lines):
         return []
     ratio = _prominence(rest)
-    chance = fdtrc(2, 2 * _FREE, ratio) * ratio.size
+    chance = scipy.special.fdtrc(2, 2 * _FREE, ratio) * ratio.size
     near = np.any(np.abs(lines[:, None] - np.abs(poles)) < np.maximum(-_WIDTHS * np.real(poles), 3.0 * step), axis=1)
     least = np.where(near, 1.0, np.min(chance, axis=(1, 2)))
     found: list[Peak] = []

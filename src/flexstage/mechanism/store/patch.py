@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
-
-import tomlkit
-from tomlkit.exceptions import TOMLKitError
+from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.lazy import Late
 from flexstage.mechanism.address import get, set_text, set_value
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.grammar import TAGS, node_of
@@ -21,6 +19,12 @@ from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
 from flexstage.mechanism.store.include import INCLUDE, SECTIONS
+
+if TYPE_CHECKING:
+    import tomlkit
+    import tomlkit.exceptions
+else:
+    tomlkit = Late("tomlkit")  # reading a file needs none of it
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
@@ -75,7 +79,7 @@ def _patch_steps(text: str, steps: list[_Step]) -> str:
         try:
             _untag(document, mechanism, changed)
             _set(document, mechanism, changed, address)
-        except TOMLKitError as error:
+        except tomlkit.exceptions.TOMLKitError as error:
             raise refuse(address, f"the file cannot be changed there: {error}", "Write it anew with dump") from None
     return tomlkit.dumps(document)
 

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
-
-import tomlkit
-from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import InlineTable
+from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import refuse
+from flexstage.base.lazy import Late
 from flexstage.mechanism.address import tag_of
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.formulas import NUMBERS
@@ -18,6 +15,13 @@ from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.file import parse_toml
+
+if TYPE_CHECKING:
+    import tomlkit
+    import tomlkit.exceptions
+    import tomlkit.items
+else:
+    tomlkit = Late("tomlkit")  # reading a file needs none of it
 
 
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
@@ -61,7 +65,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
             _put(document, path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
         now = mechanism_from(parse_toml(found, where), shipped_catalogue(), where)
-    except (TOMLKitError, ValueError):  # findings are ValueErrors
+    except (tomlkit.exceptions.TOMLKitError, ValueError):  # findings are ValueErrors
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())
     return found if told and now.changes == mechanism.changes and _same_physics(now, mechanism) else None
@@ -79,7 +83,7 @@ def _put(document: Any, path: tuple[str, ...], address: str, tag: str) -> None:
         table, depth = table[path[depth]], depth + 1
     key = ".".join(path[depth:]) or address
     old = table.get(TAGS)
-    if depth and (old is None or isinstance(old, InlineTable)):  # made anew: what was taken out of the old one left blanks
+    if depth and (old is None or isinstance(old, tomlkit.items.InlineTable)):  # made anew: what was taken out of the old one left blanks
         table[TAGS] = tomlkit.inline_table()
         table[TAGS].update({**(old or {}), key: tag})
         return

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import tomlkit
-from tomlkit.exceptions import TOMLKitError
+from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.lazy import Late
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.grammar import TAGS, node_of
@@ -18,6 +16,12 @@ from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml
 from flexstage.parts.given import Given
+
+if TYPE_CHECKING:
+    import tomlkit
+    import tomlkit.exceptions
+else:
+    tomlkit = Late("tomlkit")  # reading a file needs none of it
 
 KEPT = "-drawn"
 
@@ -62,7 +66,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
         for name, part in parts.items():
             _stand_in(document, name, part, tag)
         after = tomlkit.dumps(document)
-    except (TOMLKitError, KeyError) as error:
+    except (tomlkit.exceptions.TOMLKitError, KeyError) as error:
         raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
     found = require_valid(mechanism_from(parse_toml(after, where), shipped_catalogue(), where))
     if any(found.parts.get(name) != part.given for name, part in parts.items()):

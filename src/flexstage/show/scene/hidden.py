@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image, ImageDraw
 
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+else:
+    Image, ImageDraw = Late("PIL.Image"), Late("PIL.ImageDraw")  # only pictures need them
 
 _PIXELS = 800
 
