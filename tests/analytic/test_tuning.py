@@ -242,7 +242,7 @@ def test_no_motion_creeps_to_its_place(shipped):
 
 
 def test_a_search_tries_no_law_twice_at_a_frequency(sampled, monkeypatch) -> None:
-    """One width for all modes comes after each loop's own choice of widths, stronger integrators after the lowest peak: with the same laws."""
+    """One width for all modes comes after the loops' own choices, stronger integrators after the lowest peak: with the same laws."""
     tried = []
     monkeypatch.setattr("flexstage.control.tuning.attempt.laws", lambda *asked: tried.append(asked) or laws(*asked))
     found = tune(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, Goal()))

@@ -178,7 +178,9 @@ def _choose(seen: View, kind: Kind | Family, options: _Sets, *, loop: int, frequ
     return best
 
 
-def _known(seen: View, kind: Kind, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex) -> tuple[_Chosen, ...]:
+def _known(
+    seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
+) -> tuple[_Chosen, ...]:
     """All laws of a kind with these notches, kept as long as the search stays at the frequency."""
     if seen.tried.get("frequency") != frequency:
         seen.tried.clear()
@@ -189,7 +191,9 @@ def _known(seen: View, kind: Kind, notches: tuple[Notch, ...], *, loop: int, fre
     return seen.tried[key]
 
 
-def _candidates(seen: View, kind: Kind, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex) -> Iterator[_Chosen]:
+def _candidates(
+    seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
+) -> Iterator[_Chosen]:
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
     first = next((each.frequency for each in resonances(seen, loop)), None)
     filters = [notch.system(seen.step) for notch in notches]
