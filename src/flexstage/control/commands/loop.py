@@ -63,7 +63,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     controller: Annotated[
         str | None,
         text_option(
-            "--controller", "KIND", "What closes the loop: pi, pid, resonant, lqg, or none (open loop). Default: pi; of forces pid."
+            "--controller",
+            "KIND",
+            "What closes the loop: pi, pid, resonant, ppf, pvf, lqg; none: open loop. Default: pi; of forces pid.",
         ),
     ] = None,
     coordinates: Annotated[

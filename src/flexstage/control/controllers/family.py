@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from flexstage.base.register import Register
+import numpy as np
+
 from flexstage.control.controllers.law import Law
 
 
@@ -38,5 +39,18 @@ class Family:
         return self.name
 
 
-CONTROLLERS: Register[Family] = Register("flexstage.controllers", {})
-"""Kinds of controllers that are families of laws of single loops, besides PI, PID and integral resonant control."""
+def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
+    """The integral gain k [1/s] with |k/s - Q| |g| = 1 for feedback Q of the pose at a place, s = j `turning`; None where there is none.
+
+    >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
+    4.0
+    """
+    rest = 1.0 / abs(place.gain) ** 2 - feedback.real**2
+    if not (rest > 0.0 and np.sqrt(rest) > feedback.imag):
+        return None
+    return turning * float(np.sqrt(rest) - feedback.imag)
+
+
+def warped(frequency: float, step: float | None) -> float:
+    """The angular frequency [1/s] at which a continuous law is what its samples by Tustin's rule are at a frequency [Hz]."""
+    return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

@@ -14,7 +14,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import VIEW, Along
-from flexstage.control.controllers.family import CONTROLLERS
+from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.noise import Kind, NoiseBudget
 from flexstage.control.study.choices import ControllerKind, OfferedKind
 from flexstage.control.study.setup import ControllerSetup, DampingSetup, LoopSetup, StepMotion

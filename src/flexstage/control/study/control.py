@@ -15,7 +15,8 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.controllers.decentralised import Decentralised, channels
-from flexstage.control.controllers.family import CONTROLLERS, Family
+from flexstage.control.controllers.family import Family
+from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import LQG, Disturbances

@@ -26,7 +26,7 @@ from flexstage.base.quantity import (
     VELOCITY_NOISE,
     Bound,
 )
-from flexstage.control.controllers.family import CONTROLLERS
+from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.study.amplifiers import AMPLIFIERS, AmplifierForm, AmplifierSetup
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, OfferedKind, StackKind
 from flexstage.control.tuning.aim import Aim

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.control.controllers.family import Family, Place
+from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.controllers.resonant import resonant_law
+from flexstage.control.controllers.resonant import IntegralResonant, resonant_law
 from flexstage.control.tuning.goal import Kind
 
 _PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
 _PID_ANGLES = np.radians(np.arange(20.0, 161.0, 20.0))
 _DAMPINGS = (0.02, 0.04, 0.07, 0.12, 0.2, 0.35)
+_FEEDTHROUGHS, _CORNERS = (1.07, 1.3), (0.25, 0.5, 1.0)
 _FILTER = 10.0
 _BELOW = 0.4
 
@@ -22,15 +23,15 @@ def laws(kind: Kind | Family, place: Place, step: float | None) -> list[Law]:
     """Laws C with |C g| = 1 at the place, sampled as they will be.
 
     PI: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a. PID: these without a derivative, and two equal zeros at w/tan(a/2), filtered at
-    ten times the frequency or at most 0.4 of the sampling rate. Integral resonant control: dampings of the first resonance, and the
-    tracking gain that is left. A family's are its own. None where the kind has no such law.
+    ten times the frequency or at most 0.4 of the sampling rate. Integral resonant control: dampings of the first resonance, feed-throughs
+    and corners besides, and the tracking gain that is left. A family's are its own. None where the kind has no such law.
 
     >>> [found.integral for found in laws(Kind.PI, Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), None)][:1]
     [2.0]
     """
     if isinstance(kind, Family):
         return list(kind.laws(place, step))
-    turning = 2.0 * np.pi * place.frequency if step is None else 2.0 / step * np.tan(np.pi * place.frequency * step)
+    turning = warped(place.frequency, step)
     size = 1.0 / abs(place.gain)
     if kind is Kind.PI:
         return list(_pis(size, turning))
@@ -54,17 +55,20 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 
 
 def _resonant(place: Place, turning: float, step: float | None) -> list[Law]:
-    """The tracking gain k solves |k/(j w) - Q| = 1/|g|."""
+    """Laws of most damping first, then others of several feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
     found: list[Law] = []
     if place.resonance is None or not place.static > 0.0:
         return found
-    for damping in _DAMPINGS:
-        damped = resonant_law(place.resonance, damping, place.static)
-        if step is not None and damped.gain * damped.feedthrough >= np.pi / step:
+    corner = 2.0 * np.pi * place.resonance
+    shapes = [resonant_law(place.resonance, damping, place.static) for damping in _DAMPINGS]
+    shapes += [
+        IntegralResonant(ratio * corner / (share * place.static), share * place.static) for share in _FEEDTHROUGHS for ratio in _CORNERS
+    ]
+    for each in shapes:
+        pole = each.gain * each.feedthrough
+        if step is not None and pole >= np.pi / step:
             continue
-        feedback = damped.gain / (1j * turning + damped.gain * damped.feedthrough)
-        rest = 1.0 / abs(place.gain) ** 2 - feedback.real**2
-        if rest > 0.0 and np.sqrt(rest) > feedback.imag:
-            tracking = turning * float(np.sqrt(rest) - feedback.imag)
-            found.append(resonant_law(place.resonance, damping, place.static, tracking))
+        tracking = tracking_gain(place, turning, each.gain / (1j * turning + pole))
+        if tracking is not None:
+            found.append(IntegralResonant(each.gain, each.feedthrough, tracking))
     return found

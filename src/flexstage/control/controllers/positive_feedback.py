@@ -1,0 +1,129 @@
+"""Positive position and positive velocity feedback: a resonant filter beside an integrator damps the mode that it is tuned to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.quantity import FREQUENCY, RATE
+from flexstage.base.record import Heading
+from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
+from flexstage.control.controllers.law import FIVE_DIGITS, law_system, tracking_rate
+from flexstage.control.system import System
+
+_POSITIONS = (0.25, 0.5, 0.78)
+_FREQUENCIES = (1.0,)
+_DAMPINGS = (0.45, 0.85)
+_PLACED = (0.1, 0.2, 0.3)
+_OF_RATE = 0.4
+
+
+@dataclass(frozen=True)
+class PositiveFeedback:
+    """u = (v s + b w^2) / (s^2 + 2 z w s + w^2) y + (k_t / s) e: positive feedback of the pose y through a filter, an integrator around it.
+
+    `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz], `damping` z, `tracking` k_t [1/s]. Without v it is positive position
+    feedback (Fanson & Caughey, AIAA J. 28 (1990) 717), stable around an undamped mode of static gain g where b g < 1; with it, positive
+    velocity and position feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE Trans. Control Syst. Technol. 15 (2007) 853). Raises
+    `DesignError` for numbers that cannot be.
+
+    >>> control = PositiveFeedback(position=0.8, frequency=100.0, damping=0.8)
+    >>> control.system().transfer(np.array([1e-3]))[0, 0, 1].real.round(6).item()  # b at rest
+    0.8
+    """
+
+    position: Annotated[float, FIVE_DIGITS]
+    frequency: Annotated[float, FREQUENCY, FIVE_DIGITS]
+    damping: Annotated[float, Heading("filter damping", digits=5)]
+    velocity: Annotated[float, RATE, FIVE_DIGITS] = 0.0
+    tracking: Annotated[float, RATE, FIVE_DIGITS] = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that cannot be."""
+        require(
+            Finding("positive feedback", f"its {name} is {value:g}", "Give a positive number")
+            for name, value in (("frequency", self.frequency), ("damping", self.damping))
+            if not value > 0.0
+        )
+
+    def system(self, step: float | None = None) -> System:
+        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its filter."""
+        require(self._sampling(step))
+        w = 2.0 * np.pi * self.frequency
+        A = np.array([[0.0, 1.0, 0.0], [-(w**2), -2.0 * self.damping * w, 0.0], [0.0, 0.0, 0.0]])
+        back = 0.0 if not self.tracking else tracking_rate(1.0 / self.tracking, step)
+        B = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [self.tracking, 0.0, back]])
+        C = np.array([[self.position * w**2, self.velocity, 1.0]])
+        kept = [0, 1, 2] if self.tracking else [0, 1]
+        return law_system(A[np.ix_(kept, kept)], B[kept], C[:, kept], np.zeros((1, 3)), step)
+
+    def feedback(self, rate: complex) -> complex:
+        """What it feeds back of the pose at a complex rate s [1/s]."""
+        w = 2.0 * np.pi * self.frequency
+        return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
+
+    def _sampling(self, step: float | None) -> Iterator[Finding]:
+        if step is not None and self.frequency >= 0.5 / step:
+            what = f"its filter at {self.frequency:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
+            yield Finding("positive feedback", what, f"Sample above {2.0 * self.frequency:g} Hz")
+
+
+def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
+    """Positive velocity and position feedback that moves an undamped mode into (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
+
+    Mode w^2 g / (s^2 + w^2) and filter both keep their frequency, and decay as fast (Bhikkaji et al. 2007: four numbers place four
+    poles).
+
+    >>> law = place_poles(100.0, 0.2)
+    >>> w = 200.0 * np.pi
+    >>> at = w * (-0.2 + 1.0j)
+    >>> bool(abs(at**2 + w**2 - w**2 * law.feedback(at)) < 1e-9 * w**2)  # a pole of mode and filter
+    True
+    """
+    w = 2.0 * np.pi * frequency
+    sigma = damping * w
+    cubic, square, linear, constant = np.polymul([1.0, 2.0 * sigma, sigma**2 + w**2], [1.0, 2.0 * sigma, sigma**2 + w**2])[1:]
+    own = square - w**2
+    velocity = (cubic * w**2 - linear) / (static * w**2)
+    position = (own * w**2 - constant) / (static * w**2 * own)
+    turning = float(np.sqrt(own))
+    return PositiveFeedback(float(position), turning / (2.0 * np.pi), float(0.5 * cubic / turning), float(velocity))
+
+
+def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
+    """Positive position feedback around the first resonance, of several shares of its static gain, frequencies and dampings."""
+    if place.resonance is None or not place.static > 0.0:
+        return []
+    filters = [
+        PositiveFeedback(share / place.static, ratio * place.resonance, damping)
+        for share in _POSITIONS
+        for ratio in _FREQUENCIES
+        for damping in _DAMPINGS
+    ]
+    return list(_tracking(filters, place, step))
+
+
+def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
+    """Positive velocity and position feedback that places the first resonance at several dampings."""
+    if place.resonance is None or not place.static > 0.0:
+        return []
+    return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))
+
+
+def _tracking(filters: list[PositiveFeedback], place: Place, step: float | None) -> Iterator[PositiveFeedback]:
+    """Those that an integrator makes pass 1 at the place."""
+    turning = warped(place.frequency, step)
+    for each in filters:
+        if step is not None and each.frequency > _OF_RATE / step:
+            continue
+        gain = tracking_gain(place, turning, each.feedback(1j * turning))
+        if gain is not None:
+            yield PositiveFeedback(each.position, each.frequency, each.damping, each.velocity, gain)
+
+
+PPF = Family("positive position feedback", position_laws, notched=False, others="PI with notches, LQG, or force feedback in the legs")
+PVF = Family("positive velocity feedback", velocity_laws, notched=False, others="PI with notches, LQG, or force feedback in the legs")
