@@ -173,6 +173,8 @@ def native_code() -> Iterator[Row]:
         return
     try:
         why, place = folder_defect(folder()), str(folder())
+    except ImportError:  # a package that its own row names
+        return
     except DesignError as error:
         why, place = str(error), ""
     if why:
