@@ -23,6 +23,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear import summed
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.path import branch, path, trace
@@ -65,6 +66,51 @@ def test_the_elastica_of_a_cantilever():
     assert found.displacement()[:, 1] == pytest.approx(across, abs=1e-7)
     assert 1.0 + found.displacement()[:, 0] == pytest.approx(along, abs=1e-7)
     assert found.rotation()[:, 2] == pytest.approx([0.46135195, 0.78174983, 1.21536812, 1.43028554], abs=1e-7)
+
+
+def chain(count: int, *, density: float = 0.0, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Nonlinear:
+    """A cantilever of many leaves and bodies without size, every third leaf drawn from its far end."""
+    leaf = replace(THIN, length=THIN.length / count)
+    names = ["ground", *(f"body{number}" for number in range(1, count)), "platform"]
+    bodies = {name: Body(mass=0.0, reference=(leaf.length * number, 0.0, 0.0)) for number, name in enumerate(names) if number}
+    links = {}
+    for number in range(count):
+        ends, along = (names[number], names[number + 1]), 1.0
+        if number % 3 == 2:
+            ends, along = ends[::-1], -1.0
+        links[f"leaf{number}"] = Link(ends, "leaf", at=(leaf.length * (number + 0.5), 0.0, 0.0), along=(along, 0.0, 0.0), bends=Z)
+    soft = replace(SOFT, density=density)
+    return nonlinear(Mechanism("", materials={"soft": soft}, parts={"leaf": leaf}, bodies=bodies, links=links, gravity=gravity))
+
+
+def follow_chain(count: int) -> None:
+    """It is the elastica, found from one step, and stable; pressed beyond Euler's load it is not, and a held end holds it."""
+    model = chain(count)
+    found = equilibrium(model, {"platform.fy": np.array([1.0, 2.0]) * RIGIDITY}, effort=Effort(halvings=0, arcs=0))
+    assert found.converged.all()
+    assert found.displacement()[:, 1] == pytest.approx([0.30172077, 0.49345748], rel=1e-7)
+    assert found.displacement()[:, 0] + 1.0 == pytest.approx([0.94356676, 0.83935828], rel=1e-7)
+    assert unstable_motions(found).tolist() == [0, 0]
+    pressed = {"platform.fx": np.array([-2.46, -2.475]) * RIGIDITY}
+    assert unstable_motions(equilibrium(model, pressed)).tolist() == [0, 1]
+    held = equilibrium(model, hold={"platform.y": float(found.displacement()[0, 1])})
+    assert held.reactions[0] == pytest.approx(RIGIDITY, rel=1e-7)
+    assert unstable_motions(held) == 0
+
+
+def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
+    """Without the zeros of its matrices; its own weight bends it as that of one flexure does."""
+    monkeypatch.setattr(summed, "MANY", 100)
+    heavy = {"density": 4.0, "gravity": (0.0, -RIGIDITY / (THIN.width * THIN.thickness), 0.0)}
+    one, found = (equilibrium(chain(count, **heavy)) for count in (1, 26))
+    assert found.displacement() == pytest.approx(one.displacement(), rel=1e-6)
+    assert found.displacement()[1] < -0.3
+    follow_chain(26)
+
+
+@pytest.mark.full
+def test_a_chain_of_a_thousand_flexures_is_one_flexure():
+    follow_chain(1000)
 
 
 def test_modes_converge_as_a_series_does():

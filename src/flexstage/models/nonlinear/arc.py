@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.condense import solve
 from flexstage.models.nonlinear.graph import System, advance, assemble, exerted_by
 from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.newton import TOLD, Found, lack, motion, search
@@ -117,7 +116,7 @@ def _directions(course: Course, pose: Pose, factor: float, system: System) -> tu
 
 
 def _solved(system: System, right: Array) -> Array:
-    return solve(system.stiffness, right[None, :, None])[0, :, 0]
+    return system.solved(right[None])[0]
 
 
 def _change(whole: Array, own: Array, along: Array, before: Array, length: float) -> float:

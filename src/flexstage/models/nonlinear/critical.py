@@ -16,6 +16,7 @@ from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import System, assemble
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort
+from flexstage.models.nonlinear.summed import negative_pivots
 
 WEIGHT = "weight"
 """The load that is the stage's own weight, payloads included."""
@@ -57,10 +58,9 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
     holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
     """
     whole = _system(state)
-    first = whole.stiffness.shape[-1] - len(state.held)
+    first = whole.residual.shape[-1] - len(state.held)
     kept = [*range(first), *(first + place for place, name in enumerate(state.held) if locked is None or name in locked)]
-    matrix = whole.stiffness[:, kept][:, :, kept]
-    count = _negative(matrix) - (len(kept) - state.model.freedoms)
+    count = _descents(whole, kept, state.model.freedoms) - (len(kept) - state.model.freedoms)
     for bent in whole.bent:
         count = count + np.sum(_negative(_indefinite(system(bent.tangent))) - 6, axis=0)
     return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
@@ -201,6 +201,14 @@ def _work(model: Nonlinear, state: State, dead: Array, motion: Array) -> float:
 
 def _scale(model: Nonlinear) -> Array:
     return np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+
+
+def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
+    """Negative eigenvalues (b,) of the rows and columns kept; of sparse matrices by their pivots."""
+    if isinstance(whole.matrix, np.ndarray):
+        return _negative(whole.matrix[:, kept][:, :, kept])
+    known = [bool(np.isfinite(each.data).all()) for each in whole.matrix]
+    return np.array([negative_pivots(each[kept][:, kept], freedoms) if good else 0 for each, good in zip(whole.matrix, known, strict=True)])
 
 
 def _system(state: State) -> System:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.arc import rescue
 from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, equilibrate
+from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, equilibrate, search
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
@@ -138,20 +138,55 @@ def equilibrium(
     >>> (found.displacement()[:, 0] * 1e6).round(1).tolist()
     [5.2, 10.3]
     """
-    given, held = dict(loads or {}), dict(hold or {})
-    require([*_unknown_inputs(model, given), *_unknown_coordinates(model, held)])
-    arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (*given.values(), *held.values(), weight, stated)))
+    asked = _asked(model, loads or {}, hold or {}, weight, stated)
+    first = _first(model, start, asked.hold, len(asked.loads.inputs))
+    found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, effort), effort)
+    return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
+
+
+def corrected(
+    model: Nonlinear,
+    start: State,
+    loads: Mapping[str, Number] | None = None,
+    *,
+    hold: Mapping[str, Number] | None = None,
+    weight: Number = 1.0,
+    stated: Number = 1.0,
+) -> State:
+    """A state taken to a model that is a little different by two steps of Newton's method: right to first order in the difference.
+
+    One would do if the stiffness were the residual's slope to more than the 1e-6 of its rule. Loads and holds are those of `start`. What
+    `start` has no state of, it has none of either.
+    """
+    asked = _asked(model, loads or {}, hold or {}, weight, stated)
+    pose = _first(model, start, asked.hold, len(asked.loads.inputs))
+    found = search(model, pose, asked.loads, asked.hold, replace(USUAL, iterations=2))
+    status = np.where(found.status == Status.SINGULAR, found.status, np.broadcast_to(start.status.ravel(), found.status.shape))
+    return state(model, asked.loads, asked.hold, replace(found, status=status), (asked.shape, asked.held))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """Loads and held coordinates of b cases, the shape of these, and the names of those."""
+
+    loads: Loads
+    hold: Hold
+    shape: tuple[int, ...]
+    held: tuple[str, ...]
+
+
+def _asked(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, Number], weight: Number, stated: Number) -> _Asked:
+    """What is asked for, by name; refused where the stage does not have it."""
+    require([*_unknown_inputs(model, loads), *_unknown_coordinates(model, held)])
+    arrays = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (*loads.values(), *held.values(), weight, stated)))
     shape, flat = arrays[0].shape, [np.ravel(each) for each in arrays]
     cases = flat[0].size
     inputs = np.zeros((cases, len(model.inputs)))
     names = [channel.name for channel in model.inputs]
-    for name, values in zip(given, flat, strict=False):
+    for name, values in zip(loads, flat, strict=False):
         inputs[:, names.index(name)] = values
     whole = Loads(inputs, flat[-2][:, None] * model.gravity, flat[-1])
-    holding = _hold(model, held, flat[len(given) : len(given) + len(held)], cases)
-    first = _first(model, start, holding, cases)
-    found = rescue(model, whole, holding, equilibrate(model, first, whole, holding, effort), effort)
-    return state(model, whole, holding, found, (shape, tuple(held)))
+    return _Asked(whole, _hold(model, held, flat[len(loads) : len(loads) + len(held)], cases), shape, tuple(held))
 
 
 def state(model: Nonlinear, loads: Loads, hold: Hold, found: Found, labels: tuple[tuple[int, ...], tuple[str, ...]]) -> State:

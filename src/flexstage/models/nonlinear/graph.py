@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from flexstage.models.nonlinear.hinge import Ends, stiffen
 from flexstage.models.nonlinear.hold import Hold, gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose
+from flexstage.models.nonlinear.summed import Dense, Sum, empty_sum, solved
 from flexstage.spatial.frame import cross_matrix
 from flexstage.spatial.rotation import cross, exponential, logarithm
 
@@ -50,42 +52,53 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Residual (b, n) and stiffness (b, n, n) of bodies' freedoms and of reactions; the groups as they are bent."""
+    """Residual (b, n) and stiffness of bodies' freedoms and of reactions, an array or a sparse matrix a case; groups as they are bent."""
 
     residual: Array
-    stiffness: Array
+    matrix: Array | tuple[Any, ...]
     bent: tuple[Bent, ...]
+
+    @property
+    def stiffness(self) -> Array:
+        """With its zeros (b, n, n)."""
+        return self.matrix if isinstance(self.matrix, np.ndarray) else np.stack([each.toarray() for each in self.matrix])
+
+    def solved(self, right: Array) -> Array:
+        """What right sides (b, n) move (b, n); NaN where a case is singular."""
+        return solved(self.matrix, right)
 
 
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
     """Residual and stiffness of the stage, the forces of flexures already brought up to date."""
-    residual, stiffness, kept = _nothing(model, pose, hold)
+    residual, kept = _nothing(model, pose, hold)
+    stiffness = empty_sum(*residual.shape)
     bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
     for group, found in zip(model.flexures, bent, strict=True):
         force, own = _flexure_terms(group.law, found)
         _scatter(residual, stiffness, (group.first, group.second), force, own)
     _add_loads(model, pose, loads, residual, stiffness)
     _add_rest(model, pose, loads, hold, (residual, stiffness))
-    return System(residual[:, kept], stiffness[:, kept[:, None], kept], bent)
+    return System(residual[:, kept], stiffness.total(kept), bent)
 
 
 def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
     """What links about centres, superelements and held coordinates add; `None` where there are none."""
     if not model.hinges.names and not model.elements and not len(hold.body):
         return None
-    residual, stiffness, kept = _nothing(model, pose, hold)
+    residual, kept = _nothing(model, pose, hold)
+    stiffness = Dense(*residual.shape)
     _add_rest(model, pose, loads, hold, (residual, stiffness))
-    return Rest(residual[:, kept], stiffness[:, kept[:, None], kept])
+    return Rest(residual[:, kept], stiffness.total(kept))
 
 
-def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array, Array]:
-    """A residual and a stiffness of zeros, the ground's rows among them, and which rows are kept in the end."""
+def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array]:
+    """A residual of zeros, the ground's rows among them, and which rows are kept in the end."""
     cases, size, count = len(pose.position), model.freedoms + 6, len(model.hinges.locked) + len(hold.body)
     kept = np.r_[: model.freedoms, size : size + count]
-    return np.zeros((cases, size + count)), np.zeros((cases, size + count, size + count)), kept
+    return np.zeros((cases, size + count)), kept
 
 
-def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, into: tuple[Array, Array]) -> None:
+def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, into: tuple[Array, Sum]) -> None:
     _add_hinges(model, pose, loads, *into)
     _add_elements(model, pose, loads, into)
     _add_holds(hold, pose, *into, model.freedoms + 6 + len(model.hinges.locked))
@@ -99,7 +112,7 @@ def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
     onset, arm = (_rotate(each, arms[:, None]) for each, arms in ((turn, group.arm_first), (other, group.arm_second)))
     across = _gather(pose.position, group.second) + arm - _gather(pose.position, group.first) - onset
     length = law.length[:, None, None]
-    weight = _weight(law, frame, loads)
+    weight = flexure_weight(law, frame, loads)
     strain, force, moment = pose.strain[number], pose.wrench[number][..., :3], pose.wrench[number][..., 3:]
     lies = shape(law, strain, force, weight)
     slope = tangent(law, strain, moment, lies)
@@ -192,7 +205,7 @@ def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, sti
     return residual, stiffness
 
 
-def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Array) -> None:
+def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Sum) -> None:
     hinges, size = model.hinges, model.freedoms + 6
     if not hinges.names:
         return
@@ -207,11 +220,12 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, sti
         residual[:, size + place] = deformation[link, :, freedom] - imposed[link, :, freedom]
         for body, part in ((hinges.first[link], slice(0, 6)), (hinges.second[link], slice(6, 12))):
             columns = slice(6 * body, 6 * body + 6)
-            stiffness[:, size + place, columns] += rows[link, :, freedom, part]
-            stiffness[:, columns, size + place] += rows[link, :, freedom, part]
+            at = slice(size + place, size + place + 1)
+            stiffness.add(at, columns, rows[link, :, freedom, None, part])
+            stiffness.add(columns, at, rows[link, :, freedom, part, None])
 
 
-def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, into: tuple[Array, Array]) -> None:
+def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, into: tuple[Array, Sum]) -> None:
     """Superelements, their weight included (docs/nonlinear.md, 31)."""
     residual, stiffness = into
     for element in model.elements:
@@ -220,7 +234,7 @@ def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, into: tuple[Array,
             rows, at = slice(6 * body, 6 * body + 6), slice(6 * row, 6 * row + 6)
             residual[:, rows] += force[:, at]
             for column, other in enumerate(element.bodies):
-                stiffness[:, rows, 6 * other : 6 * other + 6] += own[:, at, 6 * column : 6 * column + 6]
+                stiffness.add(rows, slice(6 * other, 6 * other + 6), own[:, at, 6 * column : 6 * column + 6])
 
 
 def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
@@ -229,17 +243,16 @@ def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
     return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
 
 
-def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Array) -> None:
+def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Sum) -> None:
     """Dead forces at points of bodies, and dead couples (docs/nonlinear.md, 19)."""
     dead = model.dead(loads)
     arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
     moment = cross(arms, dead[..., :3]) + dead[..., 3:]
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
-    for place, body in enumerate(model.places.body):
-        start = 6 * body
-        residual[:, start : start + 3] -= dead[:, place, :3]
-        residual[:, start + 3 : start + 6] -= moment[:, place]
-        stiffness[:, start + 3 : start + 6, start + 3 : start + 6] += turning[:, place]
+    start = 6 * model.places.body
+    wrench = np.concatenate([dead[..., :3], moment], axis=-1).reshape(len(dead), -1)
+    np.subtract.at(residual.T, (start[:, None] + np.arange(6)).ravel(), wrench.T)
+    stiffness.spread(start + 3, start + 3, np.moveaxis(turning, 1, 0))
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
@@ -247,7 +260,7 @@ def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     found = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
-        residual, stiffness = np.zeros((cases, size)), np.zeros((cases, size, size))
+        residual, stiffness = np.zeros((cases, size)), empty_sum(cases, size)
         loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
         _add_hinges(model, pose, loads, residual, stiffness)
         _add_loads(model, pose, loads, residual, stiffness)
@@ -256,7 +269,7 @@ def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     return (found[0] - found[1])[:, kept]
 
 
-def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Array, start: int) -> None:
+def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Sum, start: int) -> None:
     for place in range(len(hold.body)):
         first = 6 * hold.body[place]
         columns, row = slice(first, first + 6), start + place
@@ -264,19 +277,19 @@ def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Array, start:
         value, along, curved = gradients(hold, place, pose)
         residual[:, row] = value - hold.value[:, place]
         residual[:, columns] += reaction[:, None] * along
-        stiffness[:, row, columns] += along
-        stiffness[:, columns, row] += along
-        stiffness[:, columns, columns] += reaction[:, None, None] * curved
+        stiffness.add(slice(row, row + 1), columns, along[:, None])
+        stiffness.add(columns, slice(row, row + 1), along[..., None])
+        stiffness.add(columns, columns, reaction[:, None, None] * curved)
 
 
-def _scatter(residual: Array, stiffness: Array, joins: tuple[Array, Array], force: Array, own: Array) -> None:
+def _scatter(residual: Array, stiffness: Sum, joins: tuple[Array, Array], force: Array, own: Array) -> None:
     """Add what links (l, b, 12) and (l, b, 12, 12) do to their two bodies."""
-    for link, bodies in enumerate(zip(*joins, strict=True)):
-        places = [slice(6 * body, 6 * body + 6) for body in bodies]
-        for row, rows in enumerate(places):
-            residual[:, rows] += force[link, :, 6 * row : 6 * row + 6]
-            for column, columns in enumerate(places):
-                stiffness[:, rows, columns] += own[link, :, 6 * row : 6 * row + 6, 6 * column : 6 * column + 6]
+    freedoms, parts = np.arange(6), (slice(0, 6), slice(6, 12))
+    for bodies, rows in zip(joins, parts, strict=True):
+        places = (6 * bodies[:, None] + freedoms).ravel()
+        np.add.at(residual.T, places, np.swapaxes(force[..., rows], 1, 2).reshape(len(places), -1))
+        for others, columns in zip(joins, parts, strict=True):
+            stiffness.spread(6 * bodies, 6 * others, own[..., rows, columns])
 
 
 def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> tuple[Pose, Array]:
@@ -296,6 +309,16 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, s
     return Pose(pose.position + moved[..., :3], turn, tuple(strain), tuple(wrench), held), largest
 
 
+def apart(model: Nonlinear, bent: tuple[Bent, ...], step: Array) -> Array:
+    """The largest motion (b,) of one end of a flexure against the other in a step (b, n), over its length and in radians."""
+    moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
+    found = [np.zeros(len(step))]
+    for group, each in zip(model.flexures, bent, strict=True):
+        both = np.concatenate([np.moveaxis(moved[:, bodies], 1, 0) for bodies in (group.first, group.second)], axis=-1)[..., None]
+        found.append(np.max(np.abs(end_motion(group.law, each) @ both), axis=(0, 2, 3)))
+    return np.max(np.stack(found), axis=0)
+
+
 def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
     """The step (l, b, q + 6) inside flexures as bodies move by (b, n + 1, 6)."""
     both = np.concatenate([np.moveaxis(moved[:, each], 1, 0) for each in (group.first, group.second)], axis=-1)[..., None]
@@ -305,7 +328,7 @@ def follow(group: Flexures, bent: Bent, moved: Array) -> Array:
     return bent.answer.still + step[..., 0]
 
 
-def _weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
+def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
     """The flexures' weight per length over E I / L^3 in their start frames; `None` without gravity."""
     if not np.any(loads.gravity):
         return None

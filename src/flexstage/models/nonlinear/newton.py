@@ -8,11 +8,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
-from flexstage.models.nonlinear.condense import solve
-from flexstage.models.nonlinear.graph import System, advance, assemble, rest
+from flexstage.models.nonlinear.graph import System, advance, apart, assemble, rest
 from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
+from flexstage.models.nonlinear.walk import walked
 
 _CHUNK = 128
 """Cases at once: what they need stays in the processor's caches."""
@@ -132,11 +132,13 @@ def _iterate_compiled(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, ef
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:
     """One step: the pose after it, the step's size (b,) and how large the flexures' residuals were before it (b,)."""
     system = assemble(model, pose, loads, hold)
-    step = solve(system.stiffness, -system.residual[..., None])[..., 0]
-    size, far = (motion(model, step, length) for length in (model.size, model.reach))
+    step = system.solved(-system.residual)
+    size = motion(model, step, model.size)
+    many = not isinstance(system.matrix, np.ndarray)
+    far = apart(model, system.bent, step) if many else motion(model, step, model.reach)
     share = np.minimum(1.0, effort.limit / np.maximum(far, effort.limit))
     after, inside = advance(model, pose, system.bent, step, share)
-    return after, np.maximum(size, inside), lack(model, system)
+    return walked(model, after, loads) if many else after, np.maximum(size, inside), lack(model, system)
 
 
 def motion(model: Nonlinear, step: Array, length: float) -> Array:

@@ -14,7 +14,7 @@ from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import NumberNode
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.equilibrium import State, corrected, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
 _SHARE = 1e-3
@@ -64,8 +64,10 @@ def slopes(
 ) -> Array:
     """Slopes (a, ...) of results by the numbers at a addresses, per SI unit, loads and holds staying as they are.
 
-    Four equilibria a number, each found from the one at the description, weighed to fourth order: right to about 1e-8 of the result over
-    the number. Slopes are NaN where an equilibrium is not found. Raises `DesignError` for what is not a single number.
+    By the implicit function theorem: dq/dp = - K^-1 dF/dp, K the stage's stiffness with all that flexures do inside, dF/dp what their
+    residual at the known state becomes by the number, in four points weighed to fourth order; results are taken there, once each. Right to
+    about 1e-8 of the result over the number. Slopes are NaN where there is no equilibrium. Raises `DesignError` for what is not a single
+    number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()
@@ -73,20 +75,18 @@ def slopes(
     >>> bool(found[0] < 0.0)
     True
     """
+    begin = equilibrium(nonlinear(mechanism), loads, hold=hold, weight=weight, stated=stated)
 
-    def at(model: Nonlinear, start: State | None) -> State:
-        return equilibrium(model, loads, hold=hold, weight=weight, stated=stated, start=start)
+    def beside(model: Nonlinear) -> Array:
+        return np.asarray(results(corrected(model, begin, loads, hold=hold, weight=weight, stated=stated)))
 
-    begin = at(nonlinear(mechanism), None)
-    return np.stack([_slope(mechanism, name, results, (begin, at)) for name in names])
+    return np.stack([_slope(mechanism, name, begin.model.size, beside) for name in names])
 
 
-def _slope(mechanism: Mechanism, name: str, results: Results, search: tuple[State, Callable[[Nonlinear, State | None], State]]) -> Array:
-    begin, at = search
+def _slope(mechanism: Mechanism, name: str, size: float, beside: Callable[[Nonlinear], Array]) -> Array:
     value = get(mechanism, name)
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
         raise refuse(name, "slopes are taken by single numbers that the description states", "State it, or name another number")
-    step = _SHARE * (abs(float(value)) or begin.model.size)
+    step = _SHARE * (abs(float(value)) or size)
     moved = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
-    found = [weight * np.asarray(results(at(model, begin))) for model, weight in zip(moved, _STENCIL.values(), strict=True)]
-    return np.sum(found, axis=0) / step
+    return np.sum([weight * beside(model) for model, weight in zip(moved, _STENCIL.values(), strict=True)], axis=0) / step

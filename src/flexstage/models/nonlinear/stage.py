@@ -148,7 +148,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     assembly = expand(mechanism)
     bodies = layout(assembly).bodies
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
-    laws = {name: flexure_law(link.part, link.material, resolution) for name, link in assembly.links.items()}
+    laws = _laws(assembly, resolution)
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
     growth = _growth(mechanism, bodies, temperature, ground)
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, number, (reference, growth))
@@ -172,6 +172,18 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         growth=growth.bodies,
         provenance=f"nonlinear model of {digest(mechanism, physics=True)[:16]}" + (f" at {temperature:+g} K" if temperature else ""),
     )
+
+
+def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | None]:
+    """The law of each link, worked out once for links of one part."""
+    known: dict[tuple[int, int], FlexureLaw | None] = {}
+    result = {}
+    for name, link in assembly.links.items():
+        key = id(link.part), id(link.material)
+        if key not in known:
+            known[key] = flexure_law(link.part, link.material, resolution)
+        result[name] = known[key]
+    return result
 
 
 def _growth(mechanism: Mechanism, bodies: tuple[str, ...], temperature: float, ground: str | None) -> _Growth:

@@ -1,0 +1,115 @@
+"""Sums of blocks over a stage's unknowns: dense for some ten bodies, without the zeros for many (docs/decisions/0078)."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.condense import solve
+
+MANY = 400
+"""Unknowns from which on zeros are left out."""
+
+
+class Sum(Protocol):
+    """A matrix of b cases to which blocks are added."""
+
+    def add(self, rows: slice, columns: slice, block: Array) -> None:
+        """Add a block (b, r, c)."""
+
+    def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
+        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+
+    def total(self, kept: Array) -> Array | tuple[Any, ...]:
+        """The rows and columns kept: (b, n, n), or sparse matrices."""
+        ...
+
+
+class Dense:
+    """All of the matrix."""
+
+    def __init__(self, cases: int, size: int) -> None:
+        self._whole = np.zeros((cases, size, size))
+
+    def add(self, rows: slice, columns: slice, block: Array) -> None:
+        """Add a block (b, r, c)."""
+        self._whole[:, rows, columns] += block
+
+    def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
+        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+        high, wide = blocks.shape[-2:]
+        for row, column, block in zip(rows, columns, blocks, strict=True):
+            self._whole[:, row : row + high, column : column + wide] += block
+
+    def total(self, kept: Array) -> Array:
+        """(b, n, n)."""
+        return self._whole[:, kept[:, None], kept]
+
+
+class Blocks:
+    """The blocks, each with its first row and column."""
+
+    def __init__(self, cases: int, size: int) -> None:
+        self._cases, self._size = cases, size
+        self._found: list[tuple[Array, Array, Array]] = []
+
+    def add(self, rows: slice, columns: slice, block: Array) -> None:
+        """Add a block (b, r, c)."""
+        shape = (1, self._cases, rows.stop - rows.start, columns.stop - columns.start)
+        self.spread(np.array([rows.start]), np.array([columns.start]), np.broadcast_to(block, shape))
+
+    def spread(self, rows: Array, columns: Array, blocks: Array) -> None:
+        """Add blocks (l, b, r, c), each by its first row and column (l,)."""
+        self._found.append((rows, columns, blocks))
+
+    def total(self, kept: Array) -> tuple[Any, ...]:
+        """Sparse matrices (n, n), one a case."""
+        place = np.full(self._size, -1)
+        place[kept] = np.arange(len(kept))
+        rows, columns, values = [np.zeros(0, dtype=int)], [np.zeros(0, dtype=int)], [np.zeros((self._cases, 0))]
+        for first, second, blocks in self._found:
+            high, wide = blocks.shape[-2:]
+            shape = (len(blocks), high, wide)
+            rows.append(np.broadcast_to(place[first[:, None, None] + np.arange(high)[:, None]], shape).ravel())
+            columns.append(np.broadcast_to(place[second[:, None, None] + np.arange(wide)], shape).ravel())
+            values.append(np.moveaxis(blocks, 1, 0).reshape(self._cases, -1))
+        row, column, value = np.concatenate(rows), np.concatenate(columns), np.concatenate(values, axis=1)
+        seen = (row >= 0) & (column >= 0)
+        size = len(kept)
+        return tuple(scipy.sparse.coo_array((each[seen], (row[seen], column[seen])), (size, size)).tocsc() for each in value)
+
+
+def empty_sum(cases: int, size: int) -> Sum:
+    """A sum of nothing yet, (b, size, size)."""
+    return Blocks(cases, size) if size > MANY else Dense(cases, size)
+
+
+def solved(matrix: Array | tuple[Any, ...], right: Array) -> Array:
+    """Solutions (b, n) for right sides (b, n); NaN where a case is singular."""
+    if isinstance(matrix, np.ndarray):
+        return solve(matrix, right[..., None])[..., 0]
+    return np.stack([_solved(one, each) for one, each in zip(matrix, right, strict=True)])
+
+
+def _solved(matrix: Any, right: Array) -> Array:
+    try:
+        return scipy.sparse.linalg.splu(matrix).solve(right)
+    except (RuntimeError, ValueError):  # singular, or not finite
+        return np.full_like(right, np.nan)
+
+
+def negative_pivots(matrix: Any, freedoms: int) -> int:
+    """Negative eigenvalues of the symmetric form of [K, C^T; C, 0] with `freedoms` in K, by Sylvester's law of inertia.
+
+    Those of K by the signs of its pivots, and those of - C K^-1 C^T.
+    """
+    even = (0.5 * (matrix + matrix.T)).tocsc()
+    factor = scipy.sparse.linalg.splu(
+        even[:freedoms, :freedoms], permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+    count = int(np.sum(factor.U.diagonal() < 0.0))
+    rows = even[freedoms:, :freedoms].toarray()
+    return count + (int(np.sum(np.linalg.eigvalsh(rows @ factor.solve(rows.T)) > 0.0)) if len(rows) else 0)

@@ -1,0 +1,84 @@
+"""Bodies of large stages where their flexures put them: along a tree from the ground, in which no link is left open.
+
+A step turns bodies by finite rotations and shifts them by what these do to first order. Along a chain of many links the difference opens
+every one of them, and the forces that close them again are as false as those of displacement elements.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections import deque
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.element import shape
+from flexstage.models.nonlinear.graph import flexure_weight
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import Loads, Pose
+
+
+@dataclass(frozen=True)
+class Step:
+    """A flexure of the tree by its group and number, the body that it leads to, and whether its `start` is nearer to the ground."""
+
+    group: int
+    link: int
+    body: int
+    start: bool
+
+
+@functools.lru_cache(maxsize=16)
+def tree(model: Nonlinear) -> tuple[Step, ...]:
+    """The flexures by which bodies are reached from the ground, the nearest first; bodies beyond other links are not reached.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> [step.body for step in tree(nonlinear(parallelogram()))]
+    [0]
+    """
+    reached, ground = {len(model.bodies)}, len(model.bodies)
+    joins: dict[int, list[tuple[int, Step]]] = {}
+    for number, group in enumerate(model.flexures):
+        for link, (one, other) in enumerate(zip(group.first.tolist(), group.second.tolist(), strict=True)):
+            joins.setdefault(one, []).append((other, Step(number, link, other, start=True)))
+            joins.setdefault(other, []).append((one, Step(number, link, one, start=False)))
+    found, waiting = [], deque([ground])
+    while waiting:
+        for other, step in joins.get(waiting.popleft(), ()):
+            if other not in reached:
+                reached.add(other)
+                waiting.append(other)
+                found.append(step)
+    return tuple(found)
+
+
+def walked(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
+    """The pose with bodies where the flexures of the tree end, by their amplitudes and forces."""
+    ends, turns = [], []
+    for number, group in enumerate(model.flexures):
+        frame = np.moveaxis(pose.turn[:, group.first], 1, 0) @ group.turn[:, None]
+        weight = flexure_weight(group.law, frame, loads)
+        lies = shape(group.law, pose.strain[number], pose.wrench[number][..., :3], weight)
+        ends.append(group.law.length[:, None, None] * lies.end)
+        turns.append(lies.end_turn)
+    position, turn = np.array(pose.position), np.array(pose.turn)
+    for step in tree(model):
+        group, link = model.flexures[step.group], step.link
+        one, other, own = int(group.first[link]), int(group.second[link]), group.turn[link]
+        along, across = ends[step.group][link], own @ turns[step.group][link] @ own.T
+        if step.start:
+            turn[:, other] = turn[:, one] @ across
+        else:
+            turn[:, one] = turn[:, other] @ np.swapaxes(across, -1, -2)
+        reach = _turned(turn[:, one], group.arm_first[link] + along @ own.T) - _turned(turn[:, other], group.arm_second[link])
+        if step.start:
+            position[:, other] = position[:, one] + reach
+        else:
+            position[:, one] = position[:, other] - reach
+    return replace(pose, position=position, turn=turn)
+
+
+def _turned(turn: Array, vector: Array) -> Array:
+    return (turn @ np.broadcast_to(vector, turn.shape[:-1])[..., None])[..., 0]
