@@ -1,5 +1,16 @@
 """The studio: processor time of opening a stage, of a design while a slider moves, and after it rests; messages and bytes.
 
+All times are processor time of the server and all its processes, as the system counts it (hundredths of a second), so they hold on a busy
+machine as far as its caches do. A rest is taken apart by where it stands:
+
+- until verdicts: the number written into the text, text read and checked, numbers told; stiffness, lost motion, modes and responses;
+  requirements. Nothing of the page's other panes is asked before.
+- in view: besides, the picture, strokes and strength, and cautions: all that a page shows as it is opened (Figures in front, no motion).
+- with another pane in front: the same without strokes and strength, which are computed when Figures are opened again.
+- all: with the motions of the picture too, as where one plays.
+
+What numbers buy is asked by the page beside, in a process of its own, and told by itself.
+
 `python benchmarks/studio.py [LINKS]`: with a number, a stage of about so many links is opened too, and its stages of computation are timed.
 """
 
@@ -19,12 +30,12 @@ import psutil
 from websockets.asyncio.client import connect
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.wire import decode_said, encode
+from flexstage.apps.studio.wire import Hearer, encode
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dumps
 
 ADDRESS = "parts.neck.thickness"
-DESIGNS = 100
+DESIGNS, RESTS = 100, 5
 
 
 class Page:
@@ -32,13 +43,14 @@ class Page:
 
     def __init__(self, connection: object) -> None:
         self.connection, self.told, self.bytes, self.number = connection, {}, 0, 0
+        self.hearer = Hearer()
 
     async def until(self, true: object) -> object:
         """The message that is waited for."""
         while True:
             text = await self.connection.recv()
             self.bytes += len(text)
-            message = decode_said(text)
+            message = self.hearer.decode(text)
             self.told[type(message)] = message
             if true(message):
                 return message
@@ -89,16 +101,19 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
     for number in range(DESIGNS):
         await page.ask(say.Drag, address=ADDRESS, value=row.value * (1.0 + 0.002 * number))
     print(f"a design while the slider moves: {1e3 * (spent(studio) - before) / DESIGNS:.2f} ms, {(page.bytes - sent) // DESIGNS} bytes")
-    for number in range(3):
-        before, sent, page.told = spent(studio), page.bytes, {}
-        await page.ask(say.Rest, address=ADDRESS, value=row.value * (1.01 + 0.01 * number))
-        await page.until(lambda message: isinstance(message, say.Cautions))
-        parts = [page.told[each].milliseconds for each in (say.Figures, say.Verdicts, say.Reach)]
-        figures, verdicts, reach = (f"{each:.0f}" for each in parts)
-        print(
-            f"after it rests: figures {figures}, verdicts {verdicts}, reach {reach} ms; all with text, geometry and cautions"
-            f" {1e3 * (spent(studio) - before):.0f} ms, {page.bytes - sent} bytes"
-        )
+    for said, panes in (("in view", ("stage", "reach")), ("another pane in front", ("stage",)), ("all", ("stage", "motions", "reach"))):
+        await page.ask(say.Look, panes=panes)
+        await asyncio.sleep(1.0)  # what is looked at anew is computed
+        rests = [await rest(studio, page, row.value * (1.01 + 0.01 * number + 0.001 * len(said))) for number in range(RESTS)]
+        until, whole, size = (sorted(each)[RESTS // 2] for each in zip(*rests, strict=True))
+        print(f"after it rests, {said}: until verdicts {1e3 * until:.0f} ms, then to the end {1e3 * whole:.0f} ms, {size} bytes (medians)")
+    before = spent(studio)
+    await page.ask(say.Derive)
+    print(f"what numbers buy, with the start of its process: {1e3 * (spent(studio) - before):.0f} ms")
+    await rest(studio, page, row.value)
+    between = spent(studio)
+    await page.ask(say.Derive)
+    print(f"what numbers buy, of the next design: {1e3 * (spent(studio) - between):.0f} ms")
     if links:
         text = stage.read_text(encoding="utf-8").replace("[place.B1-B3]", f"[place.B1-B{links // 3}]").replace("B4-B6", "C4-C6")
         begun = time.monotonic()
@@ -108,6 +123,16 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
             if isinstance(message, (say.Engine, say.Figures, say.Verdicts, say.Reach, say.Scene, say.Cautions)):
                 told = f"{message.text}, {message.seconds} s" if isinstance(message, say.Engine) else ""
                 print(f"{links} links, {time.monotonic() - begun:.1f} s: {type(message).__name__} {told}")
+
+
+async def rest(studio: psutil.Process, page: Page, value: float) -> tuple[float, float, int]:
+    """Processor time [s] until verdicts, and until all that is looked at is told; bytes."""
+    before, sent, page.told = spent(studio), page.bytes, {}
+    await page.ask(say.Rest, address=ADDRESS, value=value)
+    await page.until(lambda message: isinstance(message, say.Verdicts))
+    until = spent(studio) - before
+    await page.until(lambda message: isinstance(message, say.Cautions))
+    return until, spent(studio) - before, page.bytes - sent
 
 
 async def opened(url: str) -> Page:

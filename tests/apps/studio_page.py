@@ -8,7 +8,7 @@ from websockets.asyncio.client import connect
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.server import Studio
-from flexstage.apps.studio.wire import decode_said, encode
+from flexstage.apps.studio.wire import Hearer, encode
 
 PATIENCE = 120.0
 
@@ -25,9 +25,10 @@ class Page:
         self._listener = asyncio.create_task(self._listen())
 
     async def _listen(self):
+        hearer = Hearer()
         async for text in self.connection:
             self.bytes += len(text)
-            message = decode_said(text)
+            message = hearer.decode(text)
             kind = type(message)
             self.counts[kind] = self.counts.get(kind, 0) + 1
             if hasattr(message, "to"):

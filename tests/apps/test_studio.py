@@ -1,6 +1,7 @@
 """The studio without a browser: what pages ask and are told, on a stage small enough to be computed at once."""
 
 import asyncio
+import base64
 import contextlib
 import os
 import signal
@@ -12,6 +13,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from flexstage.analysis.complete import felt
+from flexstage.analysis.course import Course
 from flexstage.analysis.judge import judge
 from flexstage.analysis.load_effect import load_effect
 from flexstage.analysis.lost_motion import lost_motion
@@ -19,6 +21,7 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.response import response
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.statics import statics
+from flexstage.analysis.stroke import stroke
 from flexstage.analysis.workspace.workspace import workspace
 from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
@@ -29,6 +32,7 @@ from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.reading import _made, design, follow
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
+from flexstage.apps.studio.travel import travelled
 from flexstage.apps.studio.wire import array, encode
 from flexstage.apps.studio.writing import _in_its_line, write, written
 from flexstage.base.quantity import LENGTH
@@ -41,6 +45,7 @@ from flexstage.mechanism.contact import gaps
 from flexstage.mechanism.store import dumps, loads, patch
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.models.theory import Model
 from tests.analytic.test_load_effect import upright
 from tests.apps.studio_page import PATIENCE, opened, served
@@ -245,7 +250,7 @@ async def test_two_windows_see_the_same_and_the_second_one_writes_over_nothing(p
     try:
         await other.settle()
         assert (other.state.text, other.told[say.Figures]) == (page.state.text, page.told[say.Figures])
-        assert other.told[say.Scene].whole
+        assert other.told[say.Scene] == page.told[say.Scene]
         seen = other.state.revision
         await page.ask(say.Edit, text=TEXT.replace("A guide.", "One."), revision=page.state.revision)
         said = await other.ask(say.Edit, text=TEXT.replace("A guide.", "Two."), revision=seen)
@@ -303,9 +308,7 @@ async def test_geometry_is_sent_once(page, studio):
     before = page.bytes
     await page.ask(say.Edit, text=TEXT.replace("A guide.", "No other stage."), revision=page.state.revision)
     await page.settle()
-    assert not page.told[say.Scene].whole
-    assert "mesh" not in page.told[say.Scene].data
-    assert page.bytes - before < 200_000
+    assert page.bytes - before < 3_000
 
 
 @on_page
@@ -451,6 +454,26 @@ def test_strokes_stress_and_buckling_at_rest_are_those_of_the_workspace(stage):
     told = reach(text, "", text, 1)
     assert [each.value for each in told.figures] == wanted
     assert ([each.low for each in told.strokes], told.missing) == (whole.corrected.low.tolist(), {})
+
+
+def test_a_path_counts_from_where_the_stage_rests_and_tells_how_far_it_is():
+    """Two upright leaves sag under 2.5 kg: motion counts from there, as that of the command does, and is the same point by point."""
+    stage, told = upright(2.5), []
+    asked = say.Travel(7, "platform.x", "", "1 mm", 3, ())
+    found = travelled(dumps(stage), "", 1, asked, told.append)
+    assert [each.fraction for each in told] == pytest.approx([0.1, 0.7, 1.0])
+    assert ([each.request for each in told], told[-1].text) == ([7] * 3, "3 of 3 points")
+    model = nonlinear(stage)
+    wanted = Course("platform.x", np.linspace(0.0, 1e-3, 3), {}, (), 1.0)
+    rest = wanted.rest(model)
+    whole = stroke(wanted.path(model, rest), rest).along
+    curves = {each["name"]: np.frombuffer(base64.b64decode(each["values"]), "<f4") for each in found.motions[0]["course"]["curves"]}
+    assert [name for name in whole.columns if name in curves] == [name for name in whole.columns if name != "unstable"]
+    for name in ("f1", "f2"):
+        assert np.allclose(curves[name], whole.values[:, whole.columns.index(name)], rtol=1e-6)
+    assert curves["platform.x"].tolist() == [0.0, 0.5, 1.0]
+    assert abs(curves["platform.z"][0]) < 1e-6 * abs(curves["platform.z"][-1])
+    assert rest.displacement()[2] < 0.0
 
 
 @on_page

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,13 @@ import pytest
 from playwright.sync_api import Browser, Page, Route, WebSocketRoute
 
 from flexstage.apps.studio.protocol import (
+    VERSION,
     Amount,
     Done,
     Engine,
+    Figure,
+    Figures,
+    Frequencies,
     Jobs,
     JobState,
     Judgement,
@@ -138,7 +143,7 @@ def drag(page: Page, *places: int) -> None:
 
 
 def test_the_first_message_is_the_token_which_leaves_the_address(page: Page, server: Server) -> None:
-    assert server.heard[0] == {"kind": "hello", "token": "abc", "version": 1}
+    assert server.heard[0] == {"kind": "hello", "token": "abc", "version": VERSION}
     assert page.url == f"{HOST}/studio.html"
     assert "frequency.1" in page.inner_text("#verdicts")
     assert "+20 %" in page.inner_text("#verdicts")
@@ -147,10 +152,26 @@ def test_the_first_message_is_the_token_which_leaves_the_address(page: Page, ser
 def test_what_is_not_drawn_as_it_is_is_said(page: Page, server: Server) -> None:
     notes = ["drawn without holes: platform.block", "no drift: no material is stated"]
     drawn = {**still_data(parallelogram()).document(), "notes": notes}
-    server.say(Scene(1, True, drawn))
+    server.say(Scene(1, drawn))
     until(page, lambda: page.inner_text("#told") == notes[0])
-    server.say(Scene(2, False, {"notes": []}))
+    server.say(Scene(2, {**drawn, "notes": []}))
     until(page, lambda: not page.is_visible("#told"))
+
+
+def test_frequencies_of_the_drawn_stage_do_not_stand_in_rows_of_the_loaded_one(page: Page, server: Server) -> None:
+    """Four loaded modes at rest, three of the drawn stage while a slider moves: no row shows a number of another stage."""
+    rows = tuple(Figure(f"frequency.platform.{number}", "frequency", "Hz", "Hz", 1.0, 10.0 * number, None) for number in range(1, 5))
+    told = Figures(1, rows, None, None, (), (), None, (), "", {}, 0.0)
+    moved = Frequencies(0, THICKNESS, 5e-4, True, (11.5, 21.5, 31.5, None), ())
+    shown = "() => [...document.querySelectorAll('#pane-figures [data-figure]')].map((each) => each.textContent)"
+    server.say(told, moved)
+    until(page, lambda: page.evaluate(shown)[:3] == ["11.5", "21.5", "31.5"])
+    server.say(replace(told, loading="Its weight changes frequency 1 by -30 %."))
+    until(page, lambda: "30 %" in page.inner_text("#pane-figures"))
+    server.say(moved)
+    until(page, lambda: "11.5, 21.5, 31.5 Hz" in page.inner_text("#pane-figures"))
+    assert page.evaluate(shown) == ["10", "20", "30", "40"]
+    assert "Without its load" in page.inner_text("#pane-figures")
 
 
 def test_of_many_moves_the_server_gets_the_first_and_the_newest(page: Page, server: Server) -> None:

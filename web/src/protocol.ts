@@ -6,9 +6,9 @@
  * A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
  * answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
  * the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
- * pages when it changes. Numbers are in SI units, null where unknown.
+ * pages when it changes: the first of a kind whole, then `changes` alone (`wire.change`). Numbers are in SI units, null where unknown.
  */
-export const VERSION = 1;
+export const VERSION = 2;
 
 /** A finding: the object or address it is about, what was found, what to do; line and column from 1 where the text shows them. */
 export interface Problem {
@@ -394,6 +394,17 @@ export interface Insert {
   fields: Record<string, string>;
 }
 
+/**
+ * What a page shows: only that is computed after a change, the rest when it is looked at.
+ *
+ * `stage`: the picture; `motions`: what plays in it; `reach`: strokes and strength.
+ */
+export interface Look {
+  kind: "look";
+  id: number;
+  panes: ("stage" | "motions" | "reach")[];
+}
+
 /** Start a command beside; `study` is the study's or set-up's text where the command takes one, `record` a file's path. */
 export interface Run {
   kind: "run";
@@ -460,11 +471,10 @@ export interface Engine {
   seconds: number | null;
 }
 
-/** The geometry of a revision for the viewer: whole, or only what changed (`whole` false). */
+/** The geometry of a revision for the viewer; without motions where no page looks at them. */
 export interface Scene {
   kind: "scene";
   revision: number;
-  whole: boolean;
   data: unknown;
 }
 
@@ -602,6 +612,14 @@ export interface Slopes {
   missing: Record<string, string>;
 }
 
+/** How far a path is that a page asked for with `request`: the fraction that is done, and what of it in words. */
+export interface Underway {
+  kind: "underway";
+  request: number;
+  fraction: number;
+  text: string;
+}
+
 /** A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point. */
 export interface Travelled {
   kind: "travelled";
@@ -707,6 +725,7 @@ export type Request =
   | Reload
   | Palette
   | Insert
+  | Look
   | Run
   | Cancel;
 
@@ -725,6 +744,7 @@ export type Said =
   | Motion
   | Posed
   | Slopes
+  | Underway
   | Travelled
   | Freedoms
   | Clearances

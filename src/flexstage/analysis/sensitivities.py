@@ -198,12 +198,12 @@ def step_parameters(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
     >>> step_parameters(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
     [0.00154]
     """
-    result = mechanism
+    result = replace(mechanism, requirements={}, tags={})  # every step would look for its tag among all of them
     for number, name in enumerate(names):
         values = np.full(len(names), get(mechanism, name), dtype=complex)
         values[number] += 1j * _STEP
         result = set_value(result, name, values)
-    return replace(result, requirements={})
+    return result
 
 
 def _piece(batch: Mechanism, count: int, solved: Eigen, groups: list[list[int]], *, gains: bool) -> tuple[list[Array], Array]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -25,6 +25,8 @@ from flexstage.models.nonlinear.strain import Strains, strains
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _FREQUENCIES = 3
+_AT_ONCE = 2
+"""Points between which it is told how far it is."""
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
@@ -51,11 +53,11 @@ class Stroke(InNotebook):
         return (*_cautions(self), *self.doubts)
 
 
-def stroke(path: Path, rest: State | None = None) -> Stroke:
+def stroke(path: Path, rest: State | None = None, *, told: Callable[[int], None] | None = None) -> Stroke:
     """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
 
     Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
-    `rest`, if it is given.
+    `rest`, if it is given. `told` hears how many points are done; without it they are done together.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.path import path
@@ -64,6 +66,23 @@ def stroke(path: Path, rest: State | None = None) -> Stroke:
     >>> found.along.columns[:4]
     ('platform.x', 'force', 'stiffness', 'platform.y')
     """
+    count = len(path.values)
+    portions = [np.arange(count)] if told is None else np.array_split(np.arange(count), max(1, -(-count // _AT_ONCE)))
+    found: list[Stroke] = []
+    for portion in portions:
+        found.append(_portion(path if told is None else path.some(portion), rest))
+        if told is not None:
+            told(int(portion[-1]) + 1)
+    first, parts = found[0], [each.strained for each in found]
+    largest, curving, stress = (np.concatenate([getattr(each, name) for each in parts]) for name in ("largest", "curving", "stress"))
+    rows, unit = tuple(str(number + 1) for number in range(count)), first.along.unit
+    values = np.concatenate([each.along.values for each in found])
+    along = Matrix(values, rows, first.along.columns, unit if isinstance(unit, str) else unit[:1] * count)
+    strained = replace(parts[0], largest=largest, curving=curving, stress=stress)
+    return replace(first, along=along, strained=strained, doubts=tuple(left_out(path.state)))
+
+
+def _portion(path: Path, rest: State | None) -> Stroke:
     about = linearise(path.state, locked=path.locked)
     strained = strains(path.state)
     columns = dict(_columns(path, about, strained, rest))
@@ -71,7 +90,7 @@ def stroke(path: Path, rest: State | None = None) -> Stroke:
     rows = tuple(str(number + 1) for number in range(len(path.values)))
     units = tuple(tuple(unit for _, unit in columns.values()) for _ in rows)
     sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
-    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, tuple(left_out(path.state)), about.provenance)
+    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, (), about.provenance)
 
 
 def _columns(path: Path, about: LinearModel, strained: Strains, rest: State | None) -> Iterator[tuple[str, tuple[Array, str]]]:

@@ -3,11 +3,14 @@
 import { VERSION } from "../protocol";
 import type { Hello, Refusal, Request, Said } from "../protocol";
 import { Cell } from "./cell";
+import { patched } from "./changes";
+import type { Change } from "./changes";
 
 type Asked<T> = T extends { id: number } ? Omit<T, "id"> : never;
 export type Question = Asked<Exclude<Request, Hello>>;
 type Answer<K extends Said["kind"]> = Extract<Said, { kind: K }>;
 type Act = (said: never) => void;
+type Told = Said | { kind: Said["kind"]; changes: Change };
 
 /** Requests of which only the newest counts: the one that waits, and what ends when all are answered. */
 interface Lane {
@@ -39,7 +42,8 @@ export class Connection {
   private readonly acts = new Map<string, Act[]>();
   private readonly waiting = new Map<number, (said: Said) => void>();
   private readonly lanes = new Map<string, Lane>();
-  private last = 0;
+  private readonly last = new Map<string, Said>();
+  private number = 0;
 
   /** Calls back at every message of a kind. */
   on<K extends Said["kind"]>(kind: K, act: (said: Answer<K>) => void): void {
@@ -62,7 +66,7 @@ export class Connection {
   }
 
   private hear(text: string): void {
-    const said = JSON.parse(text) as Said;
+    const said = this.whole(JSON.parse(text) as Told);
     this.count.received += 1;
     this.count.characters += text.length;
     if (said.kind === "welcome") this.state.set("open");
@@ -72,9 +76,16 @@ export class Connection {
     this.waiting.delete(said.to);
   }
 
+  /** A message with what stays of the last one of its kind. */
+  private whole(told: Told): Said {
+    const said = "changes" in told ? (patched(this.last.get(told.kind), told.changes) as Said) : told;
+    if (!("to" in said)) this.last.set(said.kind, said);
+    return said;
+  }
+
   /** Asks; the answer is also told to whoever listens to its kind. */
   ask(question: Question): Promise<Said> {
-    const id = ++this.last;
+    const id = ++this.number;
     if (this.socket?.readyState !== WebSocket.OPEN) return Promise.resolve({ kind: "refusal", to: id, problems: [], stale: false } satisfies Refusal);
     this.count.sent += 1;
     this.socket.send(JSON.stringify({ ...question, id }));

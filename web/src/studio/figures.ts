@@ -85,8 +85,9 @@ export class FigureTable {
   }
 
   private age(): void {
-    const { figures, state } = this.studio;
-    this.root.classList.toggle("aged", figures.value !== null && figures.value.revision !== state.value?.revision);
+    const { figures, reach, state } = this.studio;
+    const told = [figures.value, reach.value].filter((each) => each !== null);
+    this.root.classList.toggle("aged", told.some((each) => each.revision !== state.value?.revision));
   }
 
   private async results(): Promise<void> {
@@ -184,9 +185,12 @@ export class FigureTable {
     return h("small", { title }, first ? `${first[0]} ${percent(first[1], 2).replace("+", "")}` : "");
   }
 
-  /** The platform's frequencies while a slider moves, of the stage as it is drawn; they are in the figures' order. */
+  /**
+   * The platform's frequencies while a slider moves, of the stage as it is drawn, in the figures' order. Where those are of the loaded
+   * stage, which may have others and more of them, they stand by themselves: no row tells of two stages.
+   */
   private live(said: Frequencies): void {
-    if (this.studio.figures.value?.loading) this.loading.textContent = "While a slider moves, frequencies are of the drawn stage; at rest of the loaded one, whose weight is felt.";
+    if (this.studio.figures.value?.loading) return this.drawn(said);
     const keys = this.all().filter((each) => /^frequency\.platform\./.test(each.name) || /platform.*mode|^f\d/.test(each.name));
     for (const [at, each] of keys.entries()) {
       const value = said.frequencies[at];
@@ -195,6 +199,11 @@ export class FigureTable {
       cell.textContent = digits(value);
       cell.classList.add("moving");
     }
+  }
+
+  private drawn(said: Frequencies): void {
+    const known = said.frequencies.filter((each) => each !== null).map((each) => digits(each));
+    fill(this.loading, h("b", {}, "Without its load"), ", as the slider moves, the platform's frequencies are ", h("output", { className: "moving" }, `${known.join(", ")} Hz`), ". The rows below are of the loaded stage, where the slider last rested.");
   }
 }
 

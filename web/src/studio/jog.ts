@@ -26,6 +26,8 @@ export class Jog {
   private axisRows = new Map<string, Row>();
   private strokes: number[] = [];
   private asked = -1;
+  /** Whether the exaggeration follows from what the picture shows. */
+  private isFair = false;
   private posed: Posed | null = null;
 
   constructor(
@@ -36,7 +38,7 @@ export class Jog {
     fill(this.root, this.actuators, this.axes, h("div", { className: "bar" }, still, h("label", {}, "exaggeration ", this.factor), this.exaggeration), this.gauges, this.beyond);
     studio.state.watch(() => this.offer());
     studio.motion.watch(() => this.fresh());
-    studio.scene.watch(() => this.isActive() && this.draw());
+    studio.scene.watch(() => (this.isActive() ? this.draw() : this.isFair || studio.motion.value === null || this.fresh()));
     studio.figures.watch(() => this.isShown() && this.load());
     studio.mode.watch((mode) => mode !== null && this.leave());
     studio.other.watch((other) => other !== null && this.leave());
@@ -87,6 +89,7 @@ export class Jog {
     const [name, row] = [...this.rows][0] ?? ["", undefined];
     const drawn = scene.value?.motions.find((each) => each.group === "stroke" && each.name === name);
     const reach = (drawn?.reach ?? 0) * Math.abs(this.scale(drawn, 0)) * half(row?.channel);
+    this.isFair = reach > 0;
     return reach > 0 ? Math.max(1, Math.min(1e6, (0.06 * (scene.value?.size ?? 0)) / reach)) : 1000;
   }
 

@@ -34,7 +34,7 @@ const card = new PartCard(studio, belongs);
 const modes = new ModeBar(studio, stage);
 const jog = new Jog(studio, stage);
 const jobs = new JobsPane(studio);
-const strip = motionStrip(modes, jog, new Travel(studio));
+const strip = motionStrip(studio, modes, jog, new Travel(studio));
 new VerdictTable(studio);
 new FigureTable(studio);
 new FreedomPane(studio, stage);

@@ -22,6 +22,8 @@ export class ModeBar {
   private second: Controller | null = null;
   private solids: SolidMode[] = [];
   private hadSolids = false;
+  /** Loads and changes of temperature that were there last: what they do is worked out when it is looked at. */
+  private others: Motion[] = [];
   private why = "";
   /** Whether a person chose the second mode. */
   private isOwn = false;
@@ -81,7 +83,8 @@ export class ModeBar {
 
   private offer(): void {
     const modes = (this.studio.figures.value?.modes ?? []).map((each) => new Option(`${each.number}   ${digits(each.frequency)} Hz   ${each.name}`, String(each.number)));
-    const others = Object.entries(OTHERS).map(([group, title]) => this.group(title, (this.studio.scene.value?.motions ?? []).filter((each) => each.group === group).map((each) => new Option(each.label, `${group} ${each.name}`))));
+    if (this.studio.scene.value?.motions.length) this.others = this.studio.scene.value.motions;
+    const others = Object.entries(OTHERS).map(([group, title]) => this.group(title, this.others.filter((each) => each.group === group).map((each) => new Option(each.label, `${group} ${each.name}`))));
     const solids = this.group("Finite elements", this.solids.map((each) => new Option(`FEA ${each.number}   ${digits(each.frequency)} Hz   ${each.name}`, `fea ${each.number}`)));
     this.fill(this.list, new Option("at rest (0)", ""), [...modes, ...others]);
     this.fill(this.beside, new Option("second mode", ""), [...modes.map((each) => new Option(each.text, each.value)), solids]);
@@ -170,7 +173,7 @@ export class ModeBar {
     const motion = this.motion(this.now);
     const size = this.studio.scene.value?.size ?? 0;
     const drawn = Number(this.amplitude.value) * size;
-    if (this.chosen() && this.studio.scene.value && !motion) return fill(this.factor, "the picture does not hold this mode");
+    if (this.chosen() && this.studio.scene.value?.motions.length && !motion) return fill(this.factor, "the picture does not hold this mode");
     const text = motion?.scaled ? `drawn × ${digits(motion.reach > 0 ? drawn / motion.reach : null, 3)}` : `largest motion drawn as ${digits(1000 * drawn, 3)} mm`;
     fill(this.factor, motion && probe ? text : "");
   }
@@ -230,13 +233,14 @@ type Strip = "modes" | "jog" | "travel";
 const TITLES: Readonly<Record<Strip, string>> = { modes: "Modes", jog: "Jog", travel: "Stroke" };
 
 /** The strip below the stage: modes, jog or a stroke at large displacements. */
-export function motionStrip(modes: ModeBar, jog: { root: HTMLElement; load(): void }, travel: { root: HTMLElement }): (name: Strip) => void {
+export function motionStrip(studio: Studio, modes: ModeBar, jog: { root: HTMLElement; load(): void }, travel: { root: HTMLElement }): (name: Strip) => void {
   const strips: Record<Strip, HTMLElement> = { modes: modes.root, jog: jog.root, travel: travel.root };
   const names = Object.keys(strips) as Strip[];
   const buttons = names.map((name) => h("button", { type: "button", role: "tab", click: () => show(name) }, TITLES[name]));
   const show = (name: Strip): void => {
     for (const [each, strip] of Object.entries(strips)) strip.hidden = each !== name;
     for (const [at, each] of Object.keys(strips).entries()) buttons[at]?.setAttribute("aria-selected", String(each === name));
+    studio.strip.set(name);
     if (name === "jog") jog.load();
   };
   fill(byId("motion"), h("div", { className: "bar tabs", role: "tablist" }, ...buttons), modes.root, jog.root, travel.root);

@@ -6,6 +6,7 @@ import type { Studio } from "./studio";
 
 const STEPS = 1000;
 const REST = 40; // ms without a move, then the whole design is computed
+const WORTH = 800; // ms without a new design, then what its numbers buy is asked: every number's derivative takes longer than the rest
 const HELD = 160; // ms as long as the pointer holds the slider, so that a slow hand does not write at every step
 
 interface Row {
@@ -35,7 +36,7 @@ export class Numbers {
     fill(byId("numbers"), h("div", { className: "bar" }, h("h2", {}, "Numbers"), this.filter, this.order), this.list, h("div", { className: "bar foot" }, this.count));
     studio.state.watch(() => this.update());
     studio.slopes.watch((said) => said && this.buy(said));
-    studio.verdicts.watch(() => studio.connection.newest("derive", { kind: "derive" }));
+    studio.verdicts.watch(rested(WORTH, () => studio.connection.newest("derive", { kind: "derive" })));
     studio.connection.on("frequencies", (said) => this.warn(said));
   }
 

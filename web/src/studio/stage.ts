@@ -39,9 +39,7 @@ export class StageView {
   }
 
   private take(said: Scene): void {
-    const held = this.studio.scene.value;
-    const data = said.data as StageData;
-    this.studio.scene.set(said.whole || held === null ? data : { ...held, ...data });
+    this.studio.scene.set(said.data as StageData);
   }
 
   private show(data: StageData): void {
@@ -74,6 +72,7 @@ export class StageView {
 
   private without(): void {
     document.body.classList.add("flat");
+    this.studio.look();
     fill(this.told, "This browser gives no WebGL: the stage is not drawn. Numbers, figures, responses and the file work without it; links are chosen under Part.");
   }
 
@@ -156,6 +155,7 @@ export class StageView {
   beside(on: boolean): Controller | null {
     const place = byId("second");
     place.hidden = !on;
+    this.studio.besides.set(on);
     const data = this.studio.scene.value;
     if (on && !this.second && data && this.viewer?.alive) this.second = flexstage?.view(place, data, { controls: false }) ?? null;
     setTimeout(() => [this.viewer, this.second].forEach((each) => each?.fit()), 100); // when both have their new size

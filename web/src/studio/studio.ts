@@ -24,6 +24,10 @@ export class Studio {
   readonly painted = new Cell<"energy" | "stress" | null>(null);
   /** The pane of the right column. */
   readonly tab = new Cell<string>("figures");
+  /** Whether a second picture stands beside the first. */
+  readonly besides = new Cell<boolean>(false);
+  /** What the strip below the picture shows. */
+  readonly strip = new Cell<string>("modes");
   /** A line of the text to go to, with a count so that the same line can be asked for twice. */
   readonly line = new Cell<{ line: number; focus: boolean }>({ line: 0, focus: false });
   /** The design that the present one is compared with: "" is the file. */
@@ -35,6 +39,8 @@ export class Studio {
   readonly kept = new Map<string, { scene: StageData | null; figures: Figures | null }>();
   readonly keptOne = new Cell<number>(0);
 
+  private looked = "";
+
   constructor(readonly connection: Connection) {
     connection.on("state", (said) => this.state.set(said));
     connection.on("figures", (said) => this.figures.set(said));
@@ -43,8 +49,20 @@ export class Studio {
     connection.on("slopes", (said) => this.slopes.set(said));
     connection.on("motion", (said) => this.motion.set(said));
     connection.on("refusal", (said) => this.tell(said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" "), true));
+    for (const each of [this.viewer, this.tab, this.mode, this.other, this.besides, this.strip, connection.state]) each.watch(() => this.look());
     this.figures.watch(() => this.keepFile());
     this.scene.watch(() => this.keepFile());
+  }
+
+  /** Tells the server what is shown, where that changed: nothing else is computed after a change. */
+  look(): void {
+    const { viewer, tab, mode, other, besides, strip } = this;
+    const moves = mode.value !== null || other.value !== null || besides.value || strip.value === "jog";
+    const drawn = viewer.value?.alive !== false && !document.body.classList.contains("flat");
+    const panes = (["stage", "motions", "reach"] as const).filter((each) => ({ stage: drawn, motions: drawn && moves, reach: tab.value === "figures" })[each]);
+    const isOpen = this.connection.state.value === "open";
+    if (isOpen && panes.join() !== this.looked) this.connection.newest("look", { kind: "look", panes: [...panes] });
+    this.looked = isOpen ? panes.join() : "";
   }
 
   ask(question: Question): Promise<Said> {

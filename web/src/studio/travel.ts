@@ -1,6 +1,6 @@
 // Strokes at large displacements: what is driven and how far; the stage then goes along its path, over curves with a cursor.
 
-import type { Travelled } from "../protocol";
+import type { Travelled, Underway } from "../protocol";
 import type { Motion } from "../viewer/types";
 import { fill, framewise, h, sentence } from "./dom";
 import type { Studio } from "./studio";
@@ -10,7 +10,7 @@ const COORDINATES = ["x", "y", "z", "rx", "ry", "rz"].map((each) => `platform.${
 export class Travel {
   readonly root = h("div", { className: "strip", id: "travel" });
   private readonly drive = h("select", { ariaLabel: "What is driven" });
-  private readonly start = h("input", { type: "text", size: 7, placeholder: "as drawn", ariaLabel: "from" });
+  private readonly start = h("input", { type: "text", size: 7, placeholder: "at rest", ariaLabel: "from" });
   private readonly end = h("input", { type: "text", size: 7, value: "1 mm", required: true, ariaLabel: "to" });
   private readonly points = h("input", { type: "number", min: 2, max: 201, value: "21", ariaLabel: "points" });
   private readonly load = h("input", { type: "text", size: 16, placeholder: "platform.fy=-20 N", ariaLabel: "loads" });
@@ -24,6 +24,7 @@ export class Travel {
   private readonly about = h("p", { className: "beyond", role: "status" });
   private readonly curves = h("div", {});
   private motions: Motion[] = [];
+  private revision = -1;
   private isPlaying = true;
   private readonly follow = framewise(() => this.followNow());
 
@@ -34,9 +35,11 @@ export class Travel {
       this.drive, h("label", {}, "from ", this.start), h("label", {}, "to ", this.end), h("label", {}, this.points, " points"), h("label", {}, "under ", this.load), this.go, this.stop, this.busy,
     );
     fill(this.root, form, this.player, this.about, this.curves);
-    fill(this.about, h("span", { className: "quiet" }, "At large displacements and under its weight: bodies and leaves where they truly are."));
+    fill(this.about, h("span", { className: "quiet" }, "At large displacements and under its weight: bodies and leaves where they truly are. Strokes count from where the stage rests under its loads."));
     studio.state.watch(() => this.offer());
-    studio.scene.watch(() => this.leave("The design has changed: compute again."));
+    studio.connection.on("underway", (said) => this.tell(said));
+    studio.figures.watch((each) => each?.revision !== this.revision && this.leave("The design has changed: compute again."));
+    studio.scene.watch(() => this.put());
     studio.mode.watch((mode) => mode !== null && this.leave(""));
   }
 
@@ -55,7 +58,14 @@ export class Travel {
     else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" ")) : "Cancelled.");
   }
 
+  private tell(said: Underway): void {
+    this.busy.value = said.fraction;
+    this.busy.title = said.text;
+    fill(this.about, h("span", { className: "quiet" }, said.text));
+  }
+
   private wait(on: boolean): void {
+    if (on) this.busy.removeAttribute("value");
     this.go.disabled = on;
     this.stop.hidden = this.busy.hidden = !on;
   }
@@ -64,13 +74,20 @@ export class Travel {
     const viewer = this.studio.viewer.value, scene = this.studio.scene.value;
     this.studio.mode.set(null);
     this.motions = said.motions as Motion[];
+    this.revision = said.revision;
     fill(this.about, ...said.cautions.map((each) => h("span", { className: "fair" }, `${each.where}: ${sentence(each)}`)));
     this.shapes.replaceChildren(...this.motions.map((each) => new Option([each.label, each.remark].filter(Boolean).join("  "), `${each.group} ${each.name}`)));
     if (!viewer?.alive || !scene) return;
     fill(this.curves, viewer.curves);
-    viewer.replaceMotions([...scene.motions, ...this.motions]);
+    this.put();
     this.player.hidden = false;
     this.choose();
+  }
+
+  /** The path beside the picture's own motions. */
+  private put(): void {
+    const { viewer, scene } = this.studio;
+    if (this.motions.length && scene.value) viewer.value?.replaceMotions([...scene.value.motions, ...this.motions]);
   }
 
   private choose(): void {

@@ -28,6 +28,7 @@ TASKS: Mapping[str, str] = {
     "verdicts": "results:verdicts",
     "reach": "results:reach",
     "scene": "results:scene",
+    "still": "results:still",
     "cautions": "results:cautions",
     "card": "questions:card",
     "motion": "questions:motion",
@@ -40,6 +41,8 @@ TASKS: Mapping[str, str] = {
     "compared": "results:all_figures",
 }
 """Tasks by name: module and function, imported when first asked for."""
+TELLING = frozenset({"travelled"})
+"""Those that tell how far they are: their last argument hears it."""
 
 
 @dataclass(frozen=True)
@@ -80,11 +83,12 @@ def problem(finding: Finding) -> Problem:
 
 
 @one_thread
-def work(_: Line, task: str, *arguments: Any) -> Outcome:
+def work(line: Line, task: str, *arguments: Any) -> Outcome:
     """Do a task; what goes wrong is told, whatever it is."""
     start = time.process_time()
     try:
-        value, problems = _function(task)(*arguments), ()
+        own = (line.tell,) if task in TELLING else ()
+        value, problems = _function(task)(*arguments, *own), ()
     except DesignError as error:
         value, problems = None, _located(error, arguments)
     except MemoryError:

@@ -38,10 +38,15 @@ class _Task:
     call: tuple[Any, ...] = field(compare=False)
     answer: asyncio.Future[Outcome | None] = field(compare=False)
     wanted: Callable[[], bool] = field(compare=False)
+    heard: Callable[[Any], None] = field(compare=False)
 
 
 def _always() -> bool:
     return True
+
+
+def nobody(_: Any) -> None:
+    """Hears what a task tells on its way, and does nothing."""
 
 
 class Helper:
@@ -68,12 +73,21 @@ class Helper:
         """For how long it has been doing a task of that urgency [s]."""
         return time.monotonic() - self._since if self._now is not None and self._now[0].urgency == urgency else 0.0
 
-    async def ask(self, *call: Any, urgency: Urgency = Urgency.NOW, wanted: Callable[[], bool] = _always) -> Outcome | None:
-        """Task and arguments done, after what is more urgent; nothing where it is not `wanted` any more when its turn comes."""
+    async def ask(
+        self,
+        *call: Any,
+        urgency: Urgency = Urgency.NOW,
+        wanted: Callable[[], bool] = _always,
+        heard: Callable[[Any], None] = nobody,
+    ) -> Outcome | None:
+        """Task and arguments done, after what is more urgent; nothing where it is not `wanted` any more when its turn comes.
+
+        `heard` is told what the task says on its way.
+        """
         if self._runner is None:
             self._runner = asyncio.create_task(self._run())
         answer: asyncio.Future[Outcome | None] = asyncio.get_running_loop().create_future()
-        self._waiting.put_nowait(_Task(urgency, next(self._numbers), call, answer, wanted))
+        self._waiting.put_nowait(_Task(urgency, next(self._numbers), call, answer, wanted, heard))
         return await answer
 
     async def do(self, *call: Any, urgency: Urgency) -> None:
@@ -144,6 +158,8 @@ class Helper:
                 self._died(words)
             if waits is not None and not waits.done():
                 waits.set_exception(EOFError(words))
+        elif word is Word.TOLD and self._now is not None and worker is self._worker:
+            self._now[0].heard(value)
         elif waits is not None and not waits.done():
             waits.set_result(value if word is Word.DONE else Outcome(None, tuple(map(problem, getattr(value, "findings", ()))), 0.0))
 

@@ -3,7 +3,7 @@
 A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
 answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
 the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
-pages when it changes. Numbers are in SI units, null where unknown.
+pages when it changes: the first of a kind whole, then `changes` alone (`wire.change`). Numbers are in SI units, null where unknown.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-VERSION = 1
+VERSION = 2
 """Raised when a message changes its meaning."""
 
 # --- what messages are made of ---
@@ -464,6 +464,17 @@ class Insert:
 
 
 @dataclass(frozen=True)
+class Look:
+    """What a page shows: only that is computed after a change, the rest when it is looked at.
+
+    `stage`: the picture; `motions`: what plays in it; `reach`: strokes and strength.
+    """
+
+    id: int
+    panes: tuple[Literal["stage", "motions", "reach"], ...]
+
+
+@dataclass(frozen=True)
 class Run:
     """Start a command beside; `study` is the study's or set-up's text where the command takes one, `record` a file's path."""
 
@@ -538,10 +549,9 @@ class Engine:
 
 @dataclass(frozen=True)
 class Scene:
-    """The geometry of a revision for the viewer: whole, or only what changed (`whole` false)."""
+    """The geometry of a revision for the viewer; without motions where no page looks at them."""
 
     revision: int
-    whole: bool
     data: Any
 
 
@@ -687,6 +697,15 @@ class Slopes:
 
 
 @dataclass(frozen=True)
+class Underway:
+    """How far a path is that a page asked for with `request`: the fraction that is done, and what of it in words."""
+
+    request: int
+    fraction: float
+    text: str
+
+
+@dataclass(frozen=True)
 class Travelled:
     """A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point."""
 
@@ -800,6 +819,7 @@ Request: TypeAlias = (
     | Reload
     | Palette
     | Insert
+    | Look
     | Run
     | Cancel
 )
@@ -818,6 +838,7 @@ Said: TypeAlias = (
     | Motion
     | Posed
     | Slopes
+    | Underway
     | Travelled
     | Freedoms
     | Clearances

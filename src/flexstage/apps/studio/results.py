@@ -138,8 +138,20 @@ def _doubts(text: str, file: str) -> tuple[Problem, ...]:
 
 
 def scene(text: str, file: str) -> Mapping[str, Any]:
-    """What a viewer shows of a design."""
+    """What a viewer shows of a design, with its motions."""
     return drawn(text, file).document()
+
+
+def still(text: str, file: str) -> Mapping[str, Any]:
+    """The same without motions."""
+    return _still(text, file).document()
+
+
+@lru_cache(maxsize=4)
+def _still(text: str, file: str) -> StageData:
+    from flexstage.show.viewer.data import still_data
+
+    return still_data(design(text, file), text=text)
 
 
 @lru_cache(maxsize=4)
@@ -150,7 +162,8 @@ def drawn(text: str, file: str) -> StageData:
     known = bench(text, file)
     model, kinematics, felt = (_known(known, each) for each in ("model", "kinematics", "felt"))
     weighed, found = (None if felt is None else _known(felt, each) for each in ("model", "modes"))
-    return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text)
+    stands = _still(text, file)
+    return stage_data(known.mechanism, model=model, weighed=weighed, kinematics=kinematics, found=found, text=text, still=stands)
 
 
 def matrix(found: Labelled) -> Matrix:

@@ -23,7 +23,7 @@ from flexstage import show
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
 from flexstage.apps.studio.session import Session
-from flexstage.apps.studio.wire import decode, encode
+from flexstage.apps.studio.wire import FOLLOWING, Teller, decode
 from flexstage.base.finding import DesignError, refuse
 
 HOST = "127.0.0.1"
@@ -32,7 +32,7 @@ LARGEST = 8_000_000
 _PATIENCE = 10.0
 """How long a page may take to say its token [s]."""
 _PAGES = 16
-_KEPT = (say.Welcome, say.State, say.Engine, say.Figures, say.Verdicts, say.Reach, say.Cautions, say.Jobs)
+_KEPT = (say.Welcome, say.Engine, *FOLLOWING)
 """Of what is pushed the newest alone is worth sending."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
@@ -149,6 +149,7 @@ class Studio:
         self._count += 1
         page, outbox = self._count, Outbox()
         self._pages[page] = outbox
+        self.session.enter(page)
         writer = asyncio.create_task(outbox.send(connection))
         outbox.put(say.Welcome(say.VERSION, flexstage.__version__, page, len(self._pages)))
         for message in tuple(self.session.shown.values()):
@@ -160,6 +161,7 @@ class Studio:
             pass
         finally:
             del self._pages[page]
+            self.session.leave(page)
             writer.cancel()
             with contextlib.suppress(asyncio.CancelledError, ConnectionClosed):
                 await writer
@@ -204,6 +206,7 @@ class Outbox:
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()
         self._filled = asyncio.Event()
+        self._teller = Teller()
         self.sent = 0
         """Bytes that went out."""
 
@@ -223,7 +226,7 @@ class Outbox:
                 await self._filled.wait()
                 self._filled.clear()
                 while self._waiting:
-                    text = encode(self._waiting.popleft())
+                    text = self._teller.encode(self._waiting.popleft())
                     self.sent += len(text)
                     await connection.send(text)
 

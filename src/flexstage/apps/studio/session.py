@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.engine import Outcome, Reading, problem
-from flexstage.apps.studio.helper import Helper, Urgency
+from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs
 from flexstage.apps.studio.palette import snippets
@@ -29,6 +29,8 @@ _STAGES: tuple[tuple[str, str], ...] = (
     ("cautions", "cautions"),
 )
 """What is computed of a design, in this order, and what it is called."""
+
+_PANES = ("stage", "motions", "reach")
 
 Tell = Callable[[say.Said], None]
 
@@ -64,10 +66,12 @@ class Session:
         self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
         self._computed = 0
         self._cautions: tuple[say.Problem, ...] = ()
-        self._scene: Mapping[str, Any] = {}
+        self._pages: dict[int, tuple[str, ...]] = {}
+        self._last: dict[str, tuple[Any, ...]] = {}
+        """What each stage was computed of last."""
         self._took: dict[str, tuple[float, int]] = {}
         self._work: set[asyncio.Task[Any]] = set()
-        self._changing = asyncio.Lock()
+        self._changing, self._computing = asyncio.Lock(), asyncio.Lock()
         self.jobs = Jobs(stored.path, self._push, self._keep_optimum)
 
     # --- beginning and end ---
@@ -249,7 +253,8 @@ class Session:
         """In a process of its own, as it takes long, and is ended with it when it is given up; a path that is computed gives way."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
-        tell(await self._question("travelled", request.id, self._computed, request, helper=self._far))
+        call = ("travelled", self._design, self._file, self._computed, request)
+        tell(await self._asked(self._far, *call, heard=tell))
 
     async def _halt(self, request: say.Halt, _: int, tell: Tell) -> None:
         if self._far is not None:
@@ -267,6 +272,12 @@ class Session:
 
     async def _palette(self, request: say.Palette, _: int, tell: Tell) -> None:
         tell(say.Snippets(request.id, snippets()))
+
+    async def _look(self, request: say.Look, page: int, tell: Tell) -> None:
+        self._pages[page] = request.panes
+        tell(say.Done(request.id, self.history.revision))
+        if self.sound and "figures" in self._last:
+            await self._compute(self._computed, self.sound)
 
     async def _run(self, request: say.Run, _: int, tell: Tell) -> None:
         tell(say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text)))
@@ -301,6 +312,7 @@ class Session:
         say.Reload: _reload,
         say.Palette: _palette,
         say.Insert: _insert,
+        say.Look: _look,
         say.Run: _run,
         say.Cancel: _cancel,
     }
@@ -329,23 +341,25 @@ class Session:
             self._start(self._compute(revision, text))
 
     async def _compute(self, revision: int, text: str) -> None:
-        """All stages of a revision, as long as it is the present one."""
+        """All stages of a revision that somebody looks at, as long as it is the present one."""
         if self._model.busy(Urgency.SOON) > _STALE:
             self._model.start_anew()
+        async with self._computing:
+            await self._compute_stages(revision, text)
+
+    async def _compute_stages(self, revision: int, text: str) -> None:
         for stage, called in _STAGES:
-            arguments = (text, self._file)
-            arguments += {"figures": (self.stored.text, revision, self._choice), "scene": (), "cautions": (revision,)}.get(
-                stage, (self.stored.text, revision)
-            )
-            outcome = await self._announced(called, stage, arguments, lambda: self.sound == text and self._computed == revision)
+            work = self._work_of(stage, revision, text)
+            if work is None or self._last.get(stage) == (work, revision):
+                continue
+            outcome = await self._announced(called, stage, work, lambda: self.sound == text and self._computed == revision)
             if outcome is None:
                 return
             if outcome.problems:
                 self._push(say.Engine("ready", f"{called}: {outcome.problems[0].what}", None))
-            elif stage == "scene":
-                self._push_scene(revision, outcome.value)
             else:
-                self._push(outcome.value)
+                self._last[stage] = work, revision
+                self._push(say.Scene(revision, outcome.value) if stage == "scene" else outcome.value)
             if stage == "cautions" and outcome.value and outcome.value.cautions != self._cautions:
                 self._cautions = outcome.value.cautions
                 self._push_state()
@@ -353,13 +367,36 @@ class Session:
                 self._push(say.Engine("ready", "", None))
                 self._reader = Helper(self._died)  # not before: it takes processor time to start
 
-    async def _announced(self, called: str, stage: str, arguments: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
+    def _work_of(self, stage: str, revision: int, text: str) -> tuple[Any, ...] | None:
+        """Task and arguments of a stage; nothing where no page shows what it gives."""
+        if stage == "figures":
+            return stage, text, self._file, self.stored.text, revision, self._choice
+        if stage == "cautions":
+            return stage, text, self._file, revision
+        if stage == "scene":
+            moving = stage not in self._last or self._looks("motions")
+            return ("scene" if moving else "still", text, self._file) if self._looks("stage") else None
+        return (stage, text, self._file, self.stored.text, revision) if stage == "verdicts" or self._looks("reach") else None
+
+    def _looks(self, pane: str) -> bool:
+        """Whether a page shows it; before the first one comes, everything is computed."""
+        return not self._pages or any(pane in panes for panes in self._pages.values())
+
+    def enter(self, page: int) -> None:
+        """A page comes; it shows everything until it says what."""
+        self._pages[page] = _PANES
+
+    def leave(self, page: int) -> None:
+        """A page goes."""
+        self._pages.pop(page, None)
+
+    async def _announced(self, called: str, stage: str, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
         """A stage computed; told as it begins where it takes long."""
         links = len((self.reading.links if self.reading else None) or ())
         left = expected(stage, links, self._took)
         if left > _QUIET:
             self._push(say.Engine("computes", called, left))
-        outcome = await self._model.ask(stage, *arguments, urgency=Urgency.SOON, wanted=wanted)
+        outcome = await self._model.ask(*work, urgency=Urgency.SOON, wanted=wanted)
         if outcome is not None:
             self._took[stage] = (outcome.seconds, links)
         if left > _QUIET:
@@ -397,14 +434,6 @@ class Session:
             )
         )
 
-    def _push_scene(self, revision: int, found: Mapping[str, Any]) -> None:
-        """The whole geometry to a page that comes, to all others what changed in it."""
-        changed = {key: value for key, value in found.items() if self._scene.get(key) != value}
-        whole = not self._scene
-        self._scene = found
-        self.shown[say.Scene] = say.Scene(revision, True, found)  # noqa: FBT003 (whole)
-        self._tell(say.Scene(revision, whole, changed))
-
     def _push(self, message: say.Said) -> None:
         self.shown[type(message)] = message
         self._tell(message)
@@ -433,9 +462,9 @@ class Session:
         """Who reads texts and computes designs of a fitted plan."""
         return self._reader or self._model
 
-    async def _asked(self, helper: Helper, *call: Any) -> Any:
+    async def _asked(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
         """The value of a task; raises `RefusedError` where it is refused."""
-        outcome = await helper.ask(*call)
+        outcome = await helper.ask(*call, heard=heard)
         if outcome is None or outcome.problems:
             raise RefusedError(outcome.problems if outcome else ())
         return outcome.value

@@ -2,30 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from flexstage.analysis.course import Course
 from flexstage.analysis.stroke import stroke
-from flexstage.apps.studio.protocol import Travel, Travelled
+from flexstage.apps.studio.protocol import Travel, Travelled, Underway
 from flexstage.apps.studio.reading import design, problems_of
 from flexstage.base.finding import refuse
 from flexstage.base.unit import parse
-from flexstage.models.nonlinear.path import path
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.show.command.displaced import loads_of, quantity_of
 from flexstage.show.viewer.course import stroke_data
 
 _MOST = 201
+_FOUND = 0.1
+"""Share of the work that is done when the equilibria are found; the rest is what is asked of each."""
 
 
-def travelled(text: str, file: str, to: int, revision: int, asked: Travel) -> Travelled:
-    """A path of the design that a text says, as the viewer plays it."""
+def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable[[Underway], None]) -> Travelled:
+    """A path of the design that a text says, counted from where the stage rests, as the viewer plays it; `tell` hears how far it is."""
     if not 2 <= asked.points <= _MOST:
         raise refuse("points", f"{asked.points} points were asked for", f"Ask for 2 to {_MOST}")
     mechanism = design(text, file)
     model = nonlinear(mechanism)
     quantity = quantity_of(model, asked.drive)
     low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
-    found = path(model, asked.drive, np.linspace(low, high, asked.points), loads=loads_of(model, asked.loads))
-    told = stroke(found)
+    wanted = Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)
+    rest = wanted.rest(model)
+    found = wanted.path(model, rest)
+
+    def done(points: int) -> None:
+        share = _FOUND + (1.0 - _FOUND) * points / asked.points
+        tell(Underway(asked.id, share, f"{points} of {asked.points} points"))
+
+    done(0)
+    told = stroke(found, rest, told=done)
     shown = stroke_data(mechanism, found, told).document()
-    return Travelled(to, revision, shown["motions"], problems_of(told.cautions, text, file))
+    return Travelled(asked.id, revision, shown["motions"], problems_of(told.cautions, text, file))

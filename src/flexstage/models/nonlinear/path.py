@@ -40,6 +40,10 @@ class Path:
     motions: Array
     locked: tuple[str, ...] = ()
 
+    def some(self, points: Array) -> Path:
+        """Some of its points, by their numbers."""
+        return Path(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
+
     @property
     def events(self) -> tuple[Event, ...]:
         """Limits and changes of stability, in order, each at the mean of the values beside it."""

@@ -150,11 +150,6 @@ def loads_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
     return _values(texts, "--load", quantity)
 
 
-def coordinates_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
-    """Coordinates in SI units from texts NAME=VALUE."""
-    return _values(texts, "--at", lambda name: quantity_of(model, name))
-
-
 def _values(texts: Sequence[str], option: str, quantity: Callable[[str], Quantity]) -> dict[str, float]:
     """Values in SI units from texts NAME=VALUE; refused where a name is given twice."""
     pairs = [[part.strip() for part in text.partition("=")] for text in texts]

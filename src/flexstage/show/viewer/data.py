@@ -136,15 +136,16 @@ def stage_data(
     found: Modes | None = None,
     text: str = "",
     count: int = _MODES,
+    still: StageData | None = None,
 ) -> StageData:
-    """What a viewer shows of a stage, of the first design of a batch.
+    """What a viewer shows of a stage, of the first design of a batch; `still` where that is known already.
 
     `model`, `kinematics` and its modes are worked out (lumped, ideal, those of the platform) where they are not given; what the stage does
     not have is left out, with its reason among the notes. `weighed` is the model of the modes where that is another one: small motions
     about the loaded stage. `text` is that of the design's file, whose lines things are found at. `count` is
     how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
     """
-    still = still_data(mechanism, text=text)
+    still = still or still_data(mechanism, text=text)
     notes = list(still.notes)
     motions = tuple(_motions(mechanism, still.bones, count, notes, model=model, weighed=weighed, kinematics=kinematics, found=found))
     return replace(still, motions=motions, notes=tuple(notes))
