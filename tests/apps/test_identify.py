@@ -196,7 +196,7 @@ FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("fault", [pytest.param(each, marks=[pytest.mark.full] if each == "dependent" else []) for each in FAULTS])
 def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_path: Path, short: Record, fault: str) -> None:
     change, told, allowed = FAULTS[fault]
     write(tmp_path / "bad.h5", change(short))

@@ -149,6 +149,7 @@ def test_signals_end_a_command_with_all_it_started(tmp_path: Path, number: signa
     assert not list(tmp_path.glob("results.h5.pieces/.*"))
 
 
+@pytest.mark.full  # the usual tests end one by a signal
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_workers_do_not_outlive_a_killed_command(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(STUDY)

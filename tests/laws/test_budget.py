@@ -22,6 +22,7 @@ def _defect(stage: fs.Mechanism) -> tuple[float, float]:
     return float(np.max(np.abs(total - loss))), max(1.0, float(np.linalg.norm(loss)))
 
 
+@examples(30, 2000)
 @given(actuated_platforms())
 def test_shares_add_up_on_random_stages(stage: fs.Mechanism) -> None:
     defect, norm = _defect(stage)
