@@ -143,8 +143,9 @@ def test_the_kernel_is_numpy(slopes: bool) -> None:
     np.testing.assert_allclose(fast.share, plain.share, rtol=1e-8)
     if slopes:
         largest = np.max(np.abs(plain.gradient), axis=(0, 2))[:, None]
-        assert np.max(np.abs(fast.gradient - plain.gradient)[1:] / largest) < 1e-10  # the first has pairs: means of what turns within them
-        assert np.max(np.abs(fast.gradient - plain.gradient)[0] / largest) < 1e-8
+        assert np.max(np.abs(fast.gradient - plain.gradient) / largest) < 1e-6  # the bound of the vectors' angles
+        exact = fs.sensitivities(one(family_plan, values[7]), family_plan.family.addresses, modes=6)
+        assert np.max(np.abs(fast.gradient[7] - exact.frequency) / largest) < 1e-9  # single modes are found closer than they must be
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -132,12 +132,13 @@ def load_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
 
 
 def kernel_recipe(what: str, source: Path) -> Recipe:
-    """How a kernel of the package is built: one file of C, for this processor.
+    """How a kernel of the package is built: one file of C and the vectors that all kernels share (lanes.h), for this processor.
 
-    >>> kernel_recipe("none", Path(__file__)).what
-    'none'
+    >>> sorted(kernel_recipe("none", Path(__file__)).sources)
+    ['lanes.h', 'native.py']
     """
-    return Recipe(what, {source.name: source.read_text(encoding="utf-8")}, _KERNEL)
+    files = (source, Path(__file__).with_name("lanes.h"))
+    return Recipe(what, {each.name: each.read_text(encoding="utf-8") for each in files}, _KERNEL)
 
 
 def kernel_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL | None:

@@ -23,7 +23,22 @@ MODES = 12
 
 _KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
 _DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
-_SIZES = (*_DESIGNS, "bodies", "links", "edges", "updates", "numbers", "m", "count", "degree", "rounds", "variables", "slots", "entries")
+_SIZES = (
+    *_DESIGNS,
+    "bodies",
+    "links",
+    "edges",
+    "updates",
+    "numbers",
+    "m",
+    "count",
+    "degree",
+    "rounds",
+    "variables",
+    "slots",
+    "entries",
+    "single",
+)
 _TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "zero")
 _ARRAYS = ("block", "numbers_", "changes")
 _SETTINGS = ("edge", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
@@ -68,24 +83,49 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
     >>> library is None or by_kernel(library, Stage(stage.scheme, numbers), stage.start, tables).good.tolist() == [True]
     True
     """
+    job = kernel_job(library.flexstage_width(), stage, start, tables)
+    if library.flexstage_modes(ctypes.byref(job.task)):
+        job.results["good"][:] = 0
+    count = stage.numbers.shape[1]
+    values, share, slopes = (np.moveaxis(job.results[name][..., :count], -1, 0) for name in ("values", "share", "slopes"))
+    return Solution(values, share, job.results["good"][:count] != 0, slopes)
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What the kernel is called with: the `task`, the arrays that it points to, and those among them that it writes."""
+
+    task: ctypes.Structure
+    arrays: Mapping[str, Array]
+    results: Mapping[str, Array]
+
+
+def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
+    """The designs of a stage for a kernel of so many lanes.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.batch.engine import plan
+    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> stage = plan(double_triangle(), ())
+    >>> numbers = numbers_of(stage.family, np.zeros((3, 0)))
+    >>> kernel_job(8, Stage(stage.scheme, numbers), stage.start, Tables(stage.scheme, ())).results["values"].shape  # whole vectors
+    (6, 8)
+    """
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _rows(stage.numbers)
     change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
     held = {**tables.arrays, "zero": _zero(stage), "block": np.ascontiguousarray(start.block), "numbers_": number, "changes": change}
-    stride = count + -count % library.flexstage_width()
-    results = {
+    stride = count + -count % width
+    results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
         "share": np.empty((modes, stride)),
         "good": np.zeros(stride, dtype=np.int64),
-        "slopes": np.empty((stage.variables, modes, modes, stride)),
+        "slopes": np.zeros((stage.variables, modes, modes, stride)),
     }
     task = _task(stage, start, tables, (count, number.strides[0] // 8, change.strides[0] // 8, stride))
     for name, item in (held | results).items():
         setattr(task, name, item.ctypes.data)
-    if library.flexstage_modes(ctypes.byref(task)):
-        results["good"][:] = 0
-    values, share, slopes = (np.moveaxis(results[name][..., :count], -1, 0) for name in ("values", "share", "slopes"))
-    return Solution(values, share, results["good"][:count] != 0, slopes)
+    return Job(task, held, results)
 
 
 def _rows(array: Array) -> Array:
@@ -109,6 +149,7 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "variables": stage.variables,
         "slots": len(tables.arrays["slot"]),
         "entries": len(tables.arrays["entry"]),
+        "single": 0 if np.isinf(start.angle) else min(start.needed, start.block.shape[-1]),
     }
     settings = (start.edge, start.value, start.angle, start.choice.limit, start.choice.cluster, TOGETHER, SHARES, MARGIN, LEAST_PIVOT)
     task: Any = _Task()

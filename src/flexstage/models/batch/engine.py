@@ -154,17 +154,18 @@ def _starts(scheme_: Scheme, modes: Whole, choice: Choice) -> tuple[Start | None
     few = counts[:7]
     cost = few * (1.0 + few / 30.0) / np.arccosh(2.0 * values[few] / values[needed - 1] - 1.0)
     most = counts[-3:][np.argmax(values[counts[-3:]] / values[counts[-3:] - 1])]
-    first, wider = (_start(scheme_, modes, choice, int(count)) for count in (few[np.argmin(cost)], most))
+    first, wider = (_start(scheme_, modes, choice, int(count), needed) for count in (few[np.argmin(cost)], most))
     return first, wider if most > first.block.shape[-1] else None
 
 
-def _start(scheme_: Scheme, modes: Whole, choice: Choice, count: int) -> Start:
+def _start(scheme_: Scheme, modes: Whole, choice: Choice, count: int, needed: int) -> Start:
     values = modes.values
     order = np.argsort(scheme_.coordinates)
     block = np.ascontiguousarray(modes.shapes[order, :count]).reshape(-1, 6, count)
     edge = float(values[count] / values[count - 1])
     spread = 4.0 * values[count] / values[0] - 2.0  # twice the argument of the polynomial at the lowest mode: its powers are the growth
-    return Start(block, choice, edge, degree=max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread)))), value=_VALUE)
+    degree = max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread))))
+    return Start(block, choice, edge, degree, value=_VALUE, needed=needed)
 
 
 @one_thread

@@ -4,29 +4,18 @@
  *
  * Matrices are 6x6 blocks by rows; vectors are [body][6][m]; every entry is a vector of WIDTH designs.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "lanes.h"
 
-#if defined(__AVX512F__)
-#define WIDTH 8
-#elif defined(__AVX__)
-#define WIDTH 4
-#else
-#define WIDTH 2
-#endif
 #define MOST 16     /* vectors of a block */
 #define MODES 12    /* modes that may be asked for */
+#define BESIDE 1e-6 /* how far below its value a single mode's shift is: its matrix is never singular */
 #define AHEAD 4     /* vectors of designs whose numbers are gathered at once: rows are far apart, and a page holds few */
 
-typedef double lanes __attribute__((vector_size(WIDTH * 8)));
-typedef int64_t marks __attribute__((vector_size(WIDTH * 8)));
 typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, degree, rounds, variables, slots, entries;
+    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, degree, rounds, variables, slots, entries, single;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
@@ -49,18 +38,14 @@ typedef struct {
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
     int64_t *good;          /* designs */
-    double *slopes;         /* variables x count x count x stride */
+    double *slopes;         /* variables x count x count x stride, zero */
 } Task;
 
 #define INLINE inline __attribute__((always_inline))
 
 /* ---- lanes ---- */
 
-static inline lanes all(double x) { lanes r; for (int i = 0; i < WIDTH; i++) r[i] = x; return r; }
-static inline lanes pick(marks m, lanes a, lanes b) { return (lanes)((m & (marks)a) | (~m & (marks)b)); }
 static inline lanes root(lanes a) { for (int i = 0; i < WIDTH; i++) a[i] = sqrt(a[i]); return a; }
-static inline lanes size_of(lanes a) { return (lanes)((marks)a & INT64_MAX); }
-static inline int any(marks m) { int64_t s = 0; for (int i = 0; i < WIDTH; i++) s |= m[i]; return s != 0; }
 static inline lanes load(const double *p) { return *(const loose *)p; }
 /* A row's designs from one on; the last one stands for those that are not there. */
 static inline lanes load_at(const double *p, int64_t design, int64_t designs)
@@ -74,7 +59,8 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
 
 /* ---- 6x6 blocks ---- */
 
-/* y (6, m) += sign a x, or sign a^T x; columns in threes, so that each entry of a is used three times. */
+/* y (6, m) += sign a x, or sign a^T x, or, fresh, y = a x; columns in threes, so that each entry of a is used three times. All of x is read
+ * of a column before any of y is written. */
 #define COLUMNS(N)                                                                   \
     {                                                                                \
         lanes v[6 * N];                                                              \
@@ -82,7 +68,7 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
             for (int k = 0; k < N; k++) v[c * N + k] = x[c * m + j + k];             \
         _Pragma("GCC unroll 1") for (int r = 0; r < 6; r++) {                        \
             lanes s[N];                                                              \
-            for (int k = 0; k < N; k++) s[k] = y[r * m + j + k];                     \
+            for (int k = 0; k < N; k++) s[k] = fresh ? all(0.0) : y[r * m + j + k];  \
             for (int c = 0; c < 6; c++) {                                            \
                 const lanes e = turned ? a[c * 6 + r] : a[r * 6 + c];                \
                 for (int k = 0; k < N; k++) s[k] = negative ? s[k] - e * v[c * N + k] : s[k] + e * v[c * N + k]; \
@@ -92,7 +78,7 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
     }
 
 static INLINE void multiply(
-    lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m, const int turned, const int negative)
+    lanes *y, const lanes *restrict a, const lanes *x, int m, const int turned, const int negative, const int fresh)
 {
     int j = 0;
     for (; j + 3 <= m; j += 3) COLUMNS(3)
@@ -100,10 +86,11 @@ static INLINE void multiply(
     else if (m - j == 1) COLUMNS(1)
 }
 
-static void add(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 0); }
-static void add_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 0); }
-static void take(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 1); }
-static void take_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 1); }
+static void add(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 0, 0); }
+static void add_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 0, 0); }
+static void take(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 1, 0); }
+static void take_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 1, 0); }
+static void set(lanes *y, const lanes *restrict a, const lanes *x, int m) { multiply(y, a, x, m, 0, 0, 1); }
 
 /* Inverse without exchange of rows, and the pivots. */
 static void invert(lanes *a, lanes *pivots)
@@ -217,16 +204,14 @@ static void eliminate(const Task *t, lanes *own, lanes *edge, lanes *negative, l
             memcpy(plain, edge + 36 * e, sizeof plain);
             /* Products with edges that are still plain: those at and after this one. */
             lanes solved[36];
-            for (int i = 0; i < 36; i++) solved[i] = all(0.0);
-            add(solved, own + 36 * v, plain, 6);
+            set(solved, own + 36 * v, plain, 6);
             for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
                 const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
                 if (left != e) continue;
                 if (target < 0) take_turned(own + 36 * t->later[e], plain, solved, 6);
                 else {
                     lanes other[36];
-                    for (int i = 0; i < 36; i++) other[i] = all(0.0);
-                    add(other, own + 36 * v, edge + 36 * right, 6);
+                    set(other, own + 36 * v, edge + 36 * right, 6);
                     take_turned(edge + 36 * target, plain, other, 6);
                 }
             }
@@ -235,10 +220,9 @@ static void eliminate(const Task *t, lanes *own, lanes *edge, lanes *negative, l
     }
 }
 
-/* What body v and its edges to later bodies add to y = M x. */
-static inline void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v)
+/* What body v and its edges to later bodies add to y = M x, m vectors. */
+static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v, const int m)
 {
-    const int m = (int)t->m;
     add(y + 6 * m * v, w->mass + 36 * v, x + 6 * m * v, m);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
         if (t->heavy[e]) {
@@ -251,17 +235,14 @@ static void product(const Task *t, const Room *w, lanes *restrict y, const lanes
 {
     const int m = (int)t->m;
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v);
+    for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v, m);
 }
 
 static inline void forward(const Task *t, const Room *w, lanes *restrict y, int64_t v)
 {
     const int m = (int)t->m;
-    lanes spare[6 * MOST];
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take_turned(y + 6 * m * t->later[e], w->edge + 36 * e, y + 6 * m * v, m);
-    memcpy(spare, y + 6 * m * v, sizeof(lanes) * 6 * m);
-    memset(y + 6 * m * v, 0, sizeof(lanes) * 6 * m);
-    add(y + 6 * m * v, w->inverse + 36 * v, spare, m);
+    set(y + 6 * m * v, w->inverse + 36 * v, y + 6 * m * v, m);
 }
 
 static inline void backward(const Task *t, const Room *w, lanes *restrict y, int64_t v)
@@ -284,7 +265,7 @@ static void recur(const Task *t, const Room *w, lanes *restrict old, lanes *rest
     const lanes four = twice + twice;
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
     for (int64_t v = 0; v < t->bodies; v++) {
-        weigh(t, w, y, x, v);
+        weigh(t, w, y, x, v, m);
         forward(t, w, y, v);
     }
     for (int64_t v = t->bodies - 1; v >= 0; v--) {
@@ -492,6 +473,91 @@ static void filter(const Task *t, Room *w, const Ritz *known)
     product(t, w, w->force, w->now);
 }
 
+/* ---- single modes ---- */
+
+/* K - shift M = L D L^T: own blocks become L below the diagonal and D^-1 on it, edges L^-1 times themselves. */
+static void shifted(const Task *t, Room *w, lanes shift)
+{
+    lanes *own = w->other, *edge = w->other_edge;
+    for (int64_t i = 0; i < 36 * t->bodies; i++) own[i] = w->stiff[i] - shift * w->mass[i];
+    for (int64_t i = 0; i < 36 * t->edges; i++) edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
+    for (int64_t v = 0; v < t->bodies; v++) {
+        lanes *a = own + 36 * v;
+        for (int s = 0; s < 6; s++) {
+            const lanes inverse = 1.0 / a[7 * s];
+            for (int i = s + 1; i < 6; i++) {
+                const lanes l = a[6 * i + s] * inverse;
+                for (int j = s + 1; j <= i; j++) a[6 * i + j] -= l * a[6 * j + s];
+            }
+            for (int i = s + 1; i < 6; i++) a[6 * i + s] *= inverse;
+            a[7 * s] = inverse;
+        }
+        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
+            lanes *x = edge + 36 * e;
+            for (int i = 1; i < 6; i++)
+                for (int s = 0; s < i; s++)
+                    for (int k = 0; k < 6; k++) x[6 * i + k] -= a[6 * i + s] * x[6 * s + k];
+        }
+        for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
+            const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
+            const lanes *x = edge + 36 * left;
+            lanes scaled[36];
+            for (int i = 0; i < 36; i++) scaled[i] = a[7 * (i / 6)] * edge[36 * right + i];
+            if (target >= 0) take_turned(edge + 36 * target, x, scaled, 6);
+            else {
+                lanes *to = own + 36 * t->later[left];
+                for (int i = 0; i < 6; i++)
+                    for (int j = 0; j <= i; j++) {
+                        lanes sum = x[i] * scaled[j];
+                        for (int r = 1; r < 6; r++) sum += x[6 * r + i] * scaled[6 * r + j];
+                        to[6 * i + j] -= sum;
+                    }
+            }
+        }
+    }
+}
+
+/* x = (K - shift M)^-1 x, one vector, by what `shifted` left. */
+static void solve_shifted(const Task *t, const Room *w, lanes *restrict x)
+{
+    for (int64_t v = 0; v < t->bodies; v++) {
+        const lanes *a = w->other + 36 * v;
+        lanes *b = x + 6 * v, scaled[6];
+        for (int i = 1; i < 6; i++)
+            for (int s = 0; s < i; s++) b[i] -= a[6 * i + s] * b[s];
+        for (int i = 0; i < 6; i++) scaled[i] = a[7 * i] * b[i];
+        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take_turned(x + 6 * t->later[e], w->other_edge + 36 * e, scaled, 1);
+    }
+    for (int64_t v = t->bodies - 1; v >= 0; v--) {
+        const lanes *a = w->other + 36 * v;
+        lanes *b = x + 6 * v;
+        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take(b, w->other_edge + 36 * e, x + 6 * t->later[e], 1);
+        for (int i = 0; i < 6; i++) b[i] *= a[7 * i];
+        for (int i = 5; i > 0; i--)
+            for (int s = 0; s < i; s++) b[s] -= a[6 * i + s] * b[i];
+    }
+}
+
+/* The first `single` shapes in w->now by two steps of inverse iteration, each with a shift just below its own value; M times all into
+ * w->force. What is of other modes falls like the square of the value's distance from the shift over theirs. */
+static void polish(const Task *t, Room *w, const Ritz *known)
+{
+    const int m = (int)t->m;
+    const int64_t n = 6 * t->bodies;
+    lanes *x = w->next, *y = w->next + n;
+    for (int c = 0; c < t->single; c++) {
+        shifted(t, w, (1.0 - BESIDE) * known->values[c]);
+        for (int64_t i = 0; i < n; i++) x[i] = w->heavy[i * m + c];
+        solve_shifted(t, w, x);
+        memset(y, 0, sizeof(lanes) * n);
+        for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v, 1);
+        solve_shifted(t, w, y);
+        const lanes size = BESIDE * known->values[c] * BESIDE * known->values[c];
+        for (int64_t i = 0; i < n; i++) w->now[i * m + c] = size * y[i];
+    }
+    product(t, w, w->force, w->now);
+}
+
 /* ---- which modes are the platform's, one design at a time ---- */
 
 typedef struct { int done, below, mask[MOST]; double shift; } Verdict;
@@ -605,9 +671,8 @@ static INLINE void link_motion(
     }
     lanes strain[6 * MODES], momentum[12 * MODES];
     for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
-    memset(force + 6 * k, 0, sizeof(lanes) * 6 * k);
     memset(momentum, 0, sizeof(lanes) * 12 * k);
-    add(force + 6 * k, stiff, strain, k);
+    set(force + 6 * k, stiff, strain, k);
     for (int p = 0; p < 2; p++)
         for (int q = 0; q < 2; q++) {
             lanes part[36];
@@ -703,7 +768,6 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
             for (int p = 0; p < pairs; p++) sum[p] += change * own[p];
         }
         double *to = t->slopes + variable * k * k * t->stride + design;
-        for (int i = 0; i < k * k; i++) store(to + i * t->stride, all(0.0));
         for (int p = 0; p < pairs; p++) {
             const int i = pair[p].i, j = pair[p].j;
             const lanes kept = (lanes)(same[i * k + j] & (marks)sum[p]);
@@ -757,7 +821,8 @@ static void designs(const Task *t, Room *w, int64_t design)
     for (int lane = 0; lane < WIDTH; lane++) verdict[lane].done = 0;
     product(t, w, w->force, w->now);
     for (int64_t round = 0; round <= t->rounds && left; round++) {
-        if (round) filter(t, w, &known);
+        if (round == 1 && t->single) polish(t, w, &known);
+        else if (round) filter(t, w, &known);
         ritz(t, w, &known);
         marks fresh = {0};
         left = 0;

@@ -44,7 +44,7 @@ class Start:
     """The block to begin with (bodies, 6, m), and how it goes on: `degree` of each polynomial, `rounds` at most, bounds to reach.
 
     `value` bounds the relative error of eigenvalues, `angle` that of vectors. The modes outside the block are expected to begin at `edge`
-    times its highest eigenvalue.
+    times its highest eigenvalue. Of the first `needed` modes are the platform's.
     """
 
     block: Array
@@ -54,6 +54,7 @@ class Start:
     rounds: int = 5
     value: float = 1e-7
     angle: float = np.inf
+    needed: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,24 +6,12 @@
  * factor that found them. And integrals along a flexure are taken on rotated modes, each of which is one column of the rotation times a
  * function of the place: double integrals are summed once a point, not once a pair of points (docs/nonlinear.md, 7).
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
+#include "lanes.h"
 
-#if defined(__AVX512F__)
-#define WIDTH 8
-#elif defined(__AVX__)
-#define WIDTH 4
-#else
-#define WIDTH 2
-#endif
 #define POINTS 24 /* points along a flexure, at most */
 #define MODES 48  /* modes of curvature, at most */
 #define FIELDS 24 /* modes of the plate's fields, at most */
 
-typedef double lanes __attribute__((vector_size(WIDTH * 8)));
-typedef int64_t marks __attribute__((vector_size(WIDTH * 8)));
 typedef double scalar __attribute__((may_alias));
 
 typedef struct {
@@ -56,11 +44,7 @@ typedef struct {
 
 /* ---- lanes ---- */
 
-static inline lanes all(double x) { lanes r; for (int i = 0; i < WIDTH; i++) r[i] = x; return r; }
-static inline lanes pick(marks m, lanes a, lanes b) { return (lanes)((m & (marks)a) | (~m & (marks)b)); }
-static inline lanes size_of(lanes a) { return (lanes)((marks)a & INT64_MAX); }
 static inline lanes larger(lanes a, lanes b) { return pick(a > b, a, b); }
-static inline int any(marks m) { int64_t s = 0; for (int i = 0; i < WIDTH; i++) s |= m[i]; return s != 0; }
 static inline int none(marks m) { return !any(m); }
 
 static inline void cross(lanes *r, const lanes *a, const lanes *b)

@@ -1,0 +1,100 @@
+"""The kernel of many designs for other processors than this one: narrower vectors, and NEON on an emulated processor where there is one."""
+
+from __future__ import annotations
+
+import ctypes
+import platform
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flexstage.base.native import compiler
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.models.batch import compiled
+from flexstage.models.batch.compiled import kernel_job
+from flexstage.models.batch.engine import iterate, plan
+from flexstage.models.batch.kernel import kernel
+from flexstage.models.batch.numbers import numbers_of, slopes_of
+from flexstage.models.batch.solution import Solution, Stage
+
+HERE = Path(__file__).parent
+BASE = Path(compiled.__file__).parents[2] / "base"
+KERNEL = Path(compiled.__file__).with_name("kernel.c")
+NAMES = ("parts.neck.thickness", "B2/front.thickness", "place.B1-B3.pattern.radius", "materials.steel.density")
+FLAGS = ("-O3", "-ffp-contract=fast", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", f"-I{BASE}")
+ARM, EMULATOR, ROOT = "aarch64-linux-gnu-gcc", "qemu-aarch64", "/usr/aarch64-linux-gnu"
+
+
+def drawn() -> tuple[Solution, compiled.Job]:
+    """Eleven designs (no whole number of vectors) as the kernel of this processor solves them, and as a task for two lanes."""
+    family = plan(double_triangle(), NAMES)
+    values = family.family.nominal * (1.0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, len(NAMES))))
+    stage = Stage(family.scheme, numbers_of(family.family, values), len(NAMES), slopes_of(family.family, values))
+    assert family.start is not None
+    start = replace(family.start, angle=1e-6)
+    return iterate(family, stage), kernel_job(2, stage, start, family.tables[True])
+
+
+def agree(found: compiled.Job, known: Solution) -> None:
+    """To rounding of the results, which are proved to 1e-6."""
+    assert (found.results["good"][:11] == 1).all()
+    np.testing.assert_allclose(found.results["values"][:, :11].T, known.values, rtol=1e-12)
+    slopes = np.moveaxis(found.results["slopes"][..., :11], -1, 0)
+    scale = np.max(np.abs(known.slopes), axis=(0, 2, 3))[:, None, None]
+    assert np.max(np.abs(slopes - known.slopes) / scale) < 1e-9
+
+
+@pytest.mark.full
+@pytest.mark.skipif(kernel() is None or platform.machine() != "x86_64", reason="no kernel, or another processor")
+def test_two_lanes_give_what_eight_give(tmp_path: Path) -> None:
+    found = compiler()
+    assert found is not None
+    made = tmp_path / "narrow.so"
+    subprocess.run([*found.command, *FLAGS, "-msse2", "-fPIC", "-shared", "-o", str(made), str(KERNEL), "-lm"], check=True)
+    library = ctypes.CDLL(str(made))
+    library.flexstage_width.restype = library.flexstage_modes.restype = ctypes.c_int64
+    known, job = drawn()
+    assert library.flexstage_width() == 2
+    assert library.flexstage_modes(ctypes.byref(job.task)) == 0
+    agree(job, known)
+
+
+@pytest.mark.full
+@pytest.mark.skipif(kernel() is None or not all(map(shutil.which, (ARM, EMULATOR))), reason=f"no {ARM} or no {EMULATOR} here: not run")
+def test_neon_gives_what_this_processor_gives(tmp_path: Path) -> None:
+    driver, task, results = tmp_path / "driver", tmp_path / "task", tmp_path / "results"
+    subprocess.run([ARM, *FLAGS, "-static", "-o", str(driver), str(HERE / "lanes_driver.c"), str(KERNEL), "-lm"], check=True)
+    known, job = drawn()
+    task.write_bytes(written(job))
+    ran = subprocess.run([EMULATOR, str(driver), str(task), str(results)], check=True, capture_output=True, text=True)
+    assert ran.stdout.strip() == "2"
+    start, content = 0, results.read_bytes()
+    for array in job.results.values():
+        array[:] = np.frombuffer(content, array.dtype, array.size, start).reshape(array.shape)
+        start += array.nbytes
+    agree(job, known)
+    code = subprocess.run([ARM.replace("gcc", "objdump"), "-d", str(driver)], check=True, capture_output=True, text=True).stdout
+    assert code.count("fmla\tv") + code.count("fmls\tv") > 400  # two designs an instruction, not one
+
+
+def written(job: compiled.Job) -> bytes:
+    """A task and its arrays as the driver reads them."""
+    content = bytes(job.task)
+    parts = [len(content).to_bytes(8, "little"), content]
+    for name, array in {**job.arrays, **job.results}.items():
+        bytes_of = array if array.flags.c_contiguous else padded(array)
+        place = getattr(type(job.task), name).offset
+        parts += [each.to_bytes(8, "little") for each in (place, bytes_of.nbytes, int(name in job.results))]
+        parts.append(bytes_of.tobytes())
+    return b"".join(parts)
+
+
+def padded(rows: np.ndarray) -> np.ndarray:
+    """Rows that stand apart, with what is between them."""
+    whole = np.zeros((rows.shape[0], rows.strides[0] // rows.itemsize))
+    whole[:, : rows.shape[1]] = rows
+    return whole
