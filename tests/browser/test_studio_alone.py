@@ -33,7 +33,10 @@ from flexstage.apps.studio.protocol import (
 )
 from flexstage.apps.studio.wire import encode
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.store import dumps
 from flexstage.show.viewer.data import still_data
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.file import loads_study
 from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
 
@@ -120,7 +123,7 @@ def server(page: Page) -> Server:
     made = Server(page)
     page.goto("about:blank")
     page.goto(f"{HOST}/studio.html#token=abc")
-    until(page, lambda: bool(made.of("derive")))
+    until(page, lambda: bool(made.of("look")) and page.locator(f"[data-address='{THICKNESS}']").count() == 1)
     return made
 
 
@@ -263,6 +266,19 @@ def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, serv
     page.get_by_role("button", name="insert").click()
     until(page, lambda: bool(server.of("insert")))
     assert server.of("insert")[0]["fields"] == {"name": "thread", "length": "20 mm"}
+
+
+@pytest.mark.parametrize("name", ["Sweep", "Optimise"])
+def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_path: Path, name: str) -> None:
+    (tmp_path / "leaf.toml").write_text(dumps(parallelogram()))
+    page.locator("#commands").get_by_role("button", name=name).click()
+    study = page.get_by_label("study", exact=True).input_value()
+    assert THICKNESS in study
+    found = loads_study(study, folder=tmp_path)
+    if name == "Sweep":
+        assert found.plan is not None
+    else:
+        load_wanted(found)
 
 
 def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:

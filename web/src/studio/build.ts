@@ -35,8 +35,22 @@ export class BuildPane {
   private async insert(each: Snippet, fields: Record<string, string>): Promise<void> {
     const before = this.studio.state.value?.text ?? "";
     const said = await this.studio.ask({ kind: "insert", snippet: each.name, fields });
-    if (said.kind === "refusal") return;
+    if (said.kind !== "done") return;
+    await this.read(said.revision);
     this.studio.goto(differs(before, this.studio.state.value?.text ?? ""), false);
+  }
+
+  /** Until a revision of the text has come: what it says is read first. */
+  private read(revision: number): Promise<void> {
+    return new Promise((resolve) => {
+      const end = this.studio.state.watch((state) => done(state?.revision ?? 0));
+      const done = (known: number): void => {
+        if (known < revision) return;
+        end();
+        resolve();
+      };
+      done(this.studio.state.value?.revision ?? 0);
+    });
   }
 }
 

@@ -75,7 +75,7 @@ export class FigureTable {
     studio.reach.watch(() => this.results());
     studio.state.watch(() => (this.showPins(), this.age()));
     studio.keptOne.watch(() => this.showPins());
-    studio.against.watch(() => this.showPins());
+    studio.against.watch(() => (this.showPins(), this.show()));
     studio.connection.on("frequencies", (said) => this.live(said));
     this.showPins();
   }
@@ -146,9 +146,9 @@ export class FigureTable {
   }
 
   private table(rows: Figure[]): HTMLElement {
-    const pins = (this.studio.state.value?.pins ?? []).filter((each) => this.compared?.designs.includes(each));
+    const pins = (this.studio.state.value?.pins ?? []).filter((each) => each !== this.studio.against.value && this.compared?.designs.includes(each));
     const head = ["", this.studio.against.value || "old", "new", "change", ...pins];
-    return table(head, rows.map((each) => this.row(each, pins)), "figures");
+    return h("div", { className: "wide" }, table(head, rows.map((each) => this.row(each, pins)), "figures"));
   }
 
   private row(each: Figure, pins: string[]): (string | Node)[] {

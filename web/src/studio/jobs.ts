@@ -25,7 +25,7 @@ function draft(studio: Studio, last: string): string {
   return ['format = "flexstage study 1"', `design = "${file}"`, "", "[variables]", ...variables, "", "[responses]", `worst = "${wanted}"`, "", last, ""].join("\n");
 }
 
-const SWEEP = '[sweep]\nsampling = "grid"';
+const SWEEP = '[sweep]\nsampling = "sobol"\ndesigns = 64';
 const OPTIMISE = '[optimise]\nmaximise = "worst"';
 
 const FORMS: Record<Command, Form> = {
