@@ -19,6 +19,9 @@ from flexstage.control.study.setup import LoopSetup
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.expansion import expansion
 from flexstage.models.nonlinear.linearise import linearise
+from flexstage.show.report import _turning  # pyright: ignore[reportPrivateUsage]
+from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.motions import PLATFORM_MODE, Group
 from flexstage.spatial.frame import transport
 from tests.analytic.test_stability import leaves
 
@@ -229,3 +232,17 @@ def test_a_loop_is_that_of_the_loaded_stage():
     assert found.model is found.loaded.model
     sagged = rest_errors(found, fs.lost_motion(found.kinematics, found.model)).load
     assert sagged == pytest.approx(fs.equilibrium(fs.nonlinear(stage)).twist(), rel=1e-9)
+
+
+def test_a_report_plays_modes_of_the_loaded_stage_and_all_else_as_drawn():
+    """A deflection by the loaded model would count the weight twice; who sees a mode is told what it is of."""
+    stage = upright(2.5)
+    found = fs.analyse(stage)
+    played, drawn = _turning(found), stage_data(stage)
+    assert {each.remark for each in played.motions if each.group is Group.MODE} == {
+        f"{PLATFORM_MODE}, small motions about the loaded stage"
+    }
+    assert played.motions[0].frequency == pytest.approx(2.26569, rel=1e-4)
+    still = [[each for each in data.motions if each.group is not Group.MODE] for data in (played, drawn)]
+    assert [each.name for each in still[0]] == [each.name for each in still[1]]
+    assert all(np.array_equal(one.twists, other.twists) for one, other in zip(*still, strict=True))

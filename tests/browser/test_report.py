@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page
 
+import flexstage as fs
 from tests.browser.conftest import Open
 from tests.show.stages import reported
 
@@ -55,6 +57,26 @@ def test_tables_are_saved_as_they_stand(opened: Open, file: Path, tmp_path: Path
         assert [each.replace("[", "").replace("]", "") for each in saved[0]] == shown[0]
 
 
+def test_curves_are_read_by_a_cursor_that_peaks_keep(opened: Open, file: Path) -> None:
+    page = opened(file, reduced_motion="reduce")
+    page.locator("[data-flexstage] canvas").wait_for()
+    figure = page.locator("figure[data-reading]").first
+    told, picture = figure.locator(".reading"), figure.locator("svg").bounding_box()
+    assert picture is not None
+    figure.locator("svg").hover(position={"x": 0.4 * picture["width"], "y": 0.3 * picture["height"]})
+    assert " Hz" in told.locator("b").inner_text()
+    found = fs.analyse(fs.case("parallelogram")).response
+    assert found is not None
+    highest = float(np.max(np.abs(found.values[:, [each.name for each in found.outputs].index("platform.x"), 0])))
+    figure.locator(".point").first.click(force=True)
+    page.mouse.move(0.0, 0.0)
+    assert told.locator("b").inner_text().startswith(f"peak of x / B: {highest:.3g} µm/µm at ")
+    button = told.get_by_role("button")
+    mode = button.inner_text().removeprefix("▶ ").partition(",")[0]
+    button.click()
+    assert page.evaluate("document.querySelector('[data-flexstage]').dataset.motion") == mode
+
+
 def test_tables_are_copied_for_spreadsheets(opened: Open, file: Path) -> None:
     page = opened(file, reduced_motion="reduce", permissions=["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy").first.click()
@@ -90,3 +112,11 @@ def test_print_has_pictures_in_place_of_what_turns(opened: Open, file: Path) -> 
     assert page.locator("[data-flexstage] figure svg").is_visible()
     assert page.locator("nav, .tools, button").filter(visible=True).count() == 0
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+
+
+def test_no_table_reaches_beyond_the_paper(opened: Open, file: Path) -> None:
+    """A4 between its margins has 182 mm, 688 points of a page."""
+    page = opened(file, width=688, height=1000, reduced_motion="reduce")
+    page.emulate_media(media="print")
+    right = page.evaluate("Math.max(...[...document.querySelectorAll('table')].map(each => each.getBoundingClientRect().right))")
+    assert right <= 689.0

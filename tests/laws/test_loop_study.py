@@ -16,6 +16,7 @@ from flexstage.control.closed import loop
 from flexstage.control.error_tables import noise_table
 from flexstage.control.playing import response_motions
 from flexstage.control.reduction import reduce_modes, resonances
+from flexstage.control.sections import margin_spots
 from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
 from flexstage.control.study.resolve import default_rate, resolve
@@ -55,6 +56,16 @@ def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
     assert power.slew == pytest.approx(1e3 * volts)  # slower than 0.1 A into the stack lets it
     assert (sensor.noise_density, sensor.resolution, sensor.bandwidth) == (1e-10, 2e-9, 3e3)
     assert (sensor.filter_order, sensor.filter_corner) == (2, 4e3)
+
+
+def test_margins_are_marked_where_the_open_loop_has_them() -> None:
+    found = loop_study(parallelogram(), LoopSetup(rate=10e3, controller=CALM))
+    spots = tuple(margin_spots(found))
+    assert found.curves is not None
+    assert {each.text.split(" margin")[0] for each in spots} == {"x: gain", "x: phase"}
+    for spot in spots:
+        opened = 1.0 / found.curves.response.at(np.array([spot.x]))[0, 0, 0] - 1.0
+        assert spot.y == pytest.approx(abs(opened), rel=1e-6)
 
 
 def test_what_plays_is_where_the_platform_truly_went() -> None:

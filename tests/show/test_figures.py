@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import re
 import xml.etree.ElementTree as ET
 
@@ -12,11 +14,13 @@ from flexstage.analysis.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import compact_svg, to_png, to_svg
+from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.tables.lost_motion import budget_table
+from flexstage.show.tables.response import leading_curves
 from tests.show.stages import analysed
 
 
@@ -106,3 +110,26 @@ def test_png_is_reproducible() -> None:
     modes = analysed("parallelogram").modes
     assert modes is not None
     assert to_png(spectrum_figure(modes)) == to_png(spectrum_figure(modes))
+
+
+def test_a_reading_has_the_numbers_and_the_places_of_what_is_drawn() -> None:
+    """Of every curve the values that the figure was given; where the page puts them is where matplotlib does, to a hundredth of a point."""
+    found = analysed("parallelogram")
+    assert found.response is not None
+    figure = response_figure(found.response, found.modes)
+    told = json.loads(reading(figure, [Spot(10.0, "here", 1.0)]))
+    assert told["spots"] == [{"x": 10.0, "text": "here", "y": 1.0, "panel": 0}]
+    assert told["along"] == "frequency [Hz]"
+    columns = ["magnitude [µm/µm]", "magnitude [µrad/µm]"]
+    assert [panel["name"] for panel in told["panels"]] == [*columns, "phase [°]", "phase [°]"]
+    upper, _, lower, _ = told["panels"]
+    assert [each["name"] for each in upper["curves"]] == [each["name"] for each in lower["curves"]]
+    size = np.frombuffer(base64.b64decode(upper["curves"][0]["y"]), "<f4")
+    assert np.allclose(size, np.abs(leading_curves(found.response)[0].values), rtol=1e-6)
+    for panel, axes in zip(told["panels"], figure.axes, strict=True):
+        (left, top, width, height), (low, high), (bottom, above) = panel["box"], panel["x"], panel["y"]
+        ends = axes.transData.transform([(low, bottom), (high, above)]) * 72.0 / figure.dpi
+        whole = 72.0 * figure.get_size_inches()[1]
+        assert np.allclose(
+            [left, top + height, left + width, top], [ends[0][0], whole - ends[0][1], ends[1][0], whole - ends[1][1]], atol=0.02
+        )

@@ -21,6 +21,7 @@ from flexstage.control.study.study import LoopStudy
 from flexstage.control.tables import count_modes, law_table, loop_table, margin_table, step_table, tracking_table
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Section, fold, section
 from flexstage.show.table import matrix_table
 
@@ -149,18 +150,27 @@ def frequency_section(found: LoopStudy) -> Section | None:
     seen, plant = found.curves, found.plant
     own = np.diagonal(seen.sensitivity, axis1=1, axis2=2)
     modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
-    loops = to_svg(open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes), "open-loops", "Open loops over frequency")
+    spots = tuple(margin_spots(found))
+    opened = open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes, spots=spots)
+    loops = to_svg(opened, "open-loops", "Open loops over frequency")
     goal = found.controller.tuning.goal.sensitivity if found.controller.tuning is not None else _GOAL
     pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), goal)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
-    caption = "Each loop opened alone at the pose, the others closed; dotted: modes of the stage. Every second curve is dashed."
+    caption = (
+        "Each loop opened alone at the pose, the others closed; dotted: modes of the stage; circles: margins, of gain where the phase is "
+        "−180°, of phase where the gain is 1. Every second curve is dashed."
+    )
     return section(
         "Over frequency",
         [
             margin_table(found),
-            Picture(loops, caption),
-            Picture(sensitivities, "What is left of a disturbance, and what is followed; dashed: the highest peak of S that was allowed."),
+            Picture(loops, caption, reading=reading(opened, spots)),
+            Picture(
+                sensitivities,
+                "What is left of a disturbance, and what is followed; dashed: the highest peak of S that was allowed.",
+                reading=reading(pair),
+            ),
             Picture(
                 poles, "Closed-loop poles, delay and hold included, beside those of the stage alone; dotted: damping ratios 0.1, 0.3, 0.6."
             ),
@@ -169,14 +179,28 @@ def frequency_section(found: LoopStudy) -> Section | None:
     )
 
 
+def margin_spots(found: LoopStudy) -> Iterator[Spot]:
+    """Where the margins of the single loops stand in the picture of the open loops."""
+    for each in () if found.margins is None else found.margins.channels:
+        for edge in (each.gain_low, each.gain_high):
+            if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # at rest nothing is drawn
+                decibel = number(20.0 * float(np.log10(edge.value)), 3)
+                yield Spot(edge.frequency, f"{each.channel}: gain margin {decibel} dB at {number(edge.frequency)} Hz", 1.0 / edge.value)
+        if np.isfinite(each.phase.value):
+            turn = number(float(np.rad2deg(each.phase.value)), 3)
+            yield Spot(each.phase.frequency, f"{each.channel}: phase margin {turn}° at {number(each.phase.frequency)} Hz", 1.0)
+
+
 def time_section(found: LoopStudy) -> Section | None:
     """Steps and trajectories."""
     blocks = [step_table(found.runs), tracking_table(found.runs)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:
-        drawn = to_svg(step_figure(stepped), "steps", "Steps of every motion")
-        pictures.append(Picture(drawn, "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."))
+        figure = step_figure(stepped)
+        drawn = to_svg(figure, "steps", "Steps of every motion")
+        caption = "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."
+        pictures.append(Picture(drawn, caption, reading=reading(figure)))
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
     return section("Over time", [*blocks, *pictures])

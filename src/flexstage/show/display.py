@@ -218,11 +218,11 @@ _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def _power(found: re.Match[str]) -> str:
-    return f"{found[1]}·10{found[2].translate(_SUPERSCRIPT)}"
+    return f"{found[1]}·10{str(int(found[2])).translate(_SUPERSCRIPT)}"
 
 
 _SETTING: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = (
-    (re.compile(r"\+-(?=\d)"), "±"),
+    (re.compile(r"\+-(?= ?\d)"), "±"),
     (re.compile(r"(?<![A-Za-z0-9])u(?=(?:m|rad|J|F|s|V)\b)"), "µ"),
     (re.compile(r"(?<![\w.])(\d+\.?\d*)e(-?\d+)\b"), _power),
     (re.compile(r"(\w+)\^0\.5\b"), r"√\1"),
@@ -236,8 +236,8 @@ _SETTING: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ..
 def to_typography(text: str) -> str:
     """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
 
-    >>> [to_typography(text) for text in ("-1.2e-5 N/um", "J/m^2", "nm/Hz^0.5", "+-5 um", "digest 9bc8e8")]
-    ['−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '±5 µm', 'digest 9bc8e8']
+    >>> [to_typography(text) for text in ("-1.2e-05 N/um", "J/m^2", "nm/Hz^0.5", "1 +- 5 um", "digest 9bc8e8")]
+    ['−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '1 ± 5 µm', 'digest 9bc8e8']
     """
     for pattern, set_ in _SETTING:
         text = pattern.sub(set_, text)

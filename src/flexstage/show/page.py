@@ -27,11 +27,15 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """An SVG element with a caption (plain text); `plays` is the motion of the page's viewer that it shows ("mode 1")."""
+    """An SVG element with a caption (plain text); `plays` is the motion of the page's viewer that it shows ("mode 1").
+
+    `reading` is what a cursor over it reads, of `show.figures.reading`.
+    """
 
     svg: str
     caption: str = ""
     plays: str = ""
+    reading: str = ""
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,8 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
 
 def _turning(analysis: Analysis) -> StageData:
     """The stage for its viewer, with what its model knows: of the ideal one motions of the platform alone."""
-    data = stage_data(analysis.mechanism, model=analysis.felt, kinematics=analysis.kinematics, found=analysis.modes)
+    weighed = analysis.felt if analysis.felt is not analysis.linear else None
+    data = stage_data(analysis.mechanism, model=analysis.linear, weighed=weighed, kinematics=analysis.kinematics, found=analysis.modes)
     return data if analysis.linear is not None else replace(data, motions=tuple(each for each in data.motions if each.group is Group.AXIS))
 
 

@@ -12,7 +12,7 @@ function keyOf(text: string): MotionKey {
 }
 
 /** Plays a motion in the page's first viewer, and brings that into sight. */
-function play(motion: string): void {
+export function play(motion: string): void {
   const place = document.querySelector<Place>("[data-flexstage]");
   if (!place) return;
   place.dataset["motion"] = motion; // for a viewer that has not begun yet

@@ -18,6 +18,7 @@ from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.random_response import random_response
 from flexstage.analysis.stance import Stance
+from flexstage.analysis.standing import standing
 from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import FREQUENCY
@@ -235,7 +236,7 @@ def modes(  # noqa: PLR0913 (its options)
     if view is not None:
         save(
             view,
-            _moving(mechanism, linear, found, ending) if there.stance is None else _moving_there(mechanism, there.stance, found),
+            _moving(mechanism, linear, found, ending, model) if there.stance is None else _moving_there(mechanism, there.stance, found),
             "--view",
         )
     answer(
@@ -259,9 +260,10 @@ def _view_ending(path: Path) -> str:
     return ending
 
 
-def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None) -> str | bytes:
-    """The stage with its modes, as a page or as a GLB file."""
-    shown = stage_data(mechanism, model=linear, found=found)
+def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None, model: Model) -> str | bytes:
+    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the drawn stage."""
+    drawn = standing(mechanism) if model is Model.LUMPED else linear
+    shown = stage_data(mechanism, model=drawn, weighed=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
+from flexstage.show.figures.reading import Spot
+from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, Margins, canvas, panels, style_context
 
 _POINTS = 260
 _TURN = 360.0
@@ -25,8 +27,8 @@ class Curves:
     names: tuple[str, ...]
 
 
-def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L") -> Any:
-    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes marked.
+def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L", spots: Sequence[Spot] = ()) -> Any:
+    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes and `spots` marked.
 
     >>> lines = np.geomspace(1.0, 1000.0, 50)
     >>> len(open_loop_figure(Curves(lines, (30.0 / (1j * lines))[:, None], ("x",)), np.array([106.0])).axes)
@@ -45,6 +47,8 @@ def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L") -> 
         lower.axhline(-180.0, color=INK, linewidth=0.7)
         _set_limits(upper, found)
         _mark_modes(upper, marks, found.frequencies)
+        places = np.array([(each.x, each.y) for each in spots if each.y is not None]).reshape(-1, 2)
+        upper.plot(*places.T, "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
         upper.set_ylabel(noun)
         upper.tick_params(labelbottom=False)
         lower.set_ylabel("phase [°]")

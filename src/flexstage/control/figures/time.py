@@ -56,8 +56,8 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
     for other, channel in enumerate(test.coordinates):
         if other != index and channel.unit == unit:
             axes.plot(*curve(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
-    axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--")
-    axes.plot(*curve(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2)
+    axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="wanted")
+    axes.plot(*curve(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
     axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
     axes.tick_params(labelsize=6.5)
 

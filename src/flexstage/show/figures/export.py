@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from flexstage.base.text import printable
-from flexstage.show.figures.style import DRIVE, GAUGE, GRID, INK, MUTED, PAPER, style_context
+from flexstage.show.figures.style import ABOUT, ALONG, DRIVE, GAUGE, GRID, INK, MUTED, PAPER, style_context
 
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 _PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
@@ -18,7 +18,7 @@ _STYLE = re.compile(r' style="([^"]+)"')
 SCENERY = "scenery"
 """Artists with this `gid` say their own `markup`, which comes under everything else of a figure."""
 
-_THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge"}
+_THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge", ALONG: "along", ABOUT: "about"}
 
 
 def to_svg(figure: Any, name: str, description: str) -> str:

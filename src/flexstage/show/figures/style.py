@@ -13,6 +13,8 @@ GRID = "#dde3ea"
 PAPER = "#fefefe"
 DRIVE = "#8a5200"
 GAUGE = "#9c1f42"
+ALONG, ABOUT = "#1d5fd1", "#b3261e"
+"""Motions: along an axis, about one."""
 SERIES = ("#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377", "#997700", "#bbbbbb")
 """Paul Tol's vibrant scheme (personal.sron.nl/~pault), one dark yellow added."""
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.show.figures.style import FULL, canvas, style_context
+from flexstage.show.figures.style import ABOUT, ALONG, FULL, canvas, style_context
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.stage import Scene, displace, largest_motion
 from flexstage.show.scene.view import Side, View, draw, order_facets, outline, triad, view, write
@@ -20,7 +20,6 @@ _REACH = 0.11
 """The largest motion in the picture of a mode, of the stage's diagonal."""
 _ARM, _ARROW, _SMALL, _ALONE = 0.25, 0.24, 0.4, 0.9
 _IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
-_ALONG, _ABOUT = "#1d5fd1", "#b3261e"
 _SHAFT = {"arrowstyle": "-|>", "lw": 1.8, "mutation_scale": 9, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
@@ -75,13 +74,13 @@ def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FU
 def _arrows(axes: Any, scene: Scene, twist: Array, sizes: Array, seen: View) -> None:
     """The platform's translation and rotation, each where it is not small beside the other, named where it is along one axis."""
     start, largest = scene.references[PLATFORM], sizes.max()
-    for part, names, colour in ((slice(0, 3), "xyz", _ALONG), (slice(3, 6), ("rx", "ry", "rz"), _ABOUT)):
+    for part, names, colour in ((slice(0, 3), "xyz", ALONG), (slice(3, 6), ("rx", "ry", "rz"), ABOUT)):
         size = float(np.sqrt(np.sum(sizes[part] ** 2)))
         if size < _SMALL * largest:
             continue
         direction = twist[part] / np.sqrt(np.sum(twist[part] ** 2))
         name = names[int(np.argmax(np.abs(direction)))] if np.max(np.abs(direction)) > _ALONE else ""
-        if colour == _ABOUT and abs(direction @ seen.axes[2]) > _ALONE:
+        if colour == ABOUT and abs(direction @ seen.axes[2]) > _ALONE:
             _turn(axes, seen.project(start), 0.5e3 * _ARROW * scene.size, float(direction @ seen.axes[2]), name)
             continue
         tip = seen.project(start + _ARROW * scene.size * direction * size / max(size, largest))
@@ -93,9 +92,9 @@ def _turn(axes: Any, middle: Array, radius: float, sense: float, name: str) -> N
     """A turn about the direction of sight: an arc with a head."""
     angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
     arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    axes.plot(*arc.T, color=_ABOUT, linewidth=1.8)
-    axes.annotate("", xy=tuple(arc[-1] + 0.35 * (arc[-1] - arc[-4])), xytext=tuple(arc[-2]), arrowprops={**_SHAFT, "color": _ABOUT})
-    _write(axes, middle + np.array([0.0, 1.45 * radius]), name, _ABOUT)
+    axes.plot(*arc.T, color=ABOUT, linewidth=1.8)
+    axes.annotate("", xy=tuple(arc[-1] + 0.35 * (arc[-1] - arc[-4])), xytext=tuple(arc[-2]), arrowprops={**_SHAFT, "color": ABOUT})
+    _write(axes, middle + np.array([0.0, 1.45 * radius]), name, ABOUT)
 
 
 def _write(axes: Any, place: Array, name: str, colour: str) -> None:

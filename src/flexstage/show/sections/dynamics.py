@@ -12,6 +12,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.show.display import number, percent
 from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import THIRD
@@ -89,14 +90,25 @@ def response_section(analysis: Analysis) -> Section | None:
     response, ground = analysis.response, analysis.transmissibility
     blocks: list[Picture | Folded] = []
     if response is not None and np.size(response.values):
-        drawn = to_svg(response_figure(response, analysis.modes), "strokes", "Response of the platform to the strokes")
-        blocks.append(
-            Picture(drawn, "Platform motion per stroke, each output with the actuator that moves it most; dotted: the platform's modes.")
-        )
+        figure = response_figure(response, analysis.modes)
+        drawn = to_svg(figure, "strokes", "Response of the platform to the strokes")
+        caption = "Platform motion per stroke, each output with the actuator that moves it most; dotted: the platform's modes."
+        blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
     if ground is not None and np.size(ground.values):
-        drawn = to_svg(response_figure(ground, analysis.modes), "ground", "Transmissibility from the ground to the platform")
-        blocks.append(Picture(drawn, "Transmissibility: absolute motion of the platform per absolute motion of the ground."))
+        figure = response_figure(ground, analysis.modes)
+        drawn = to_svg(figure, "ground", "Transmissibility from the ground to the platform")
+        caption = "Transmissibility: absolute motion of the platform per absolute motion of the ground."
+        blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
     known = [item for item in (response, ground) if item is not None]
     if known:
         blocks.append(Folded("Gains and peaks", tuple(response_table(item) for item in known)))
     return section("Frequency responses", blocks)
+
+
+def _mode_spots(modes: Modes | None) -> Iterator[Spot]:
+    """The platform's modes, which the page's viewer plays."""
+    if modes is not None:
+        frequencies = first_design(modes.frequencies, 1)
+        for index in modes.platform:
+            text = f"mode {index + 1}, {modes.names[index]}, {number(float(frequencies[index]))} Hz"
+            yield Spot(float(frequencies[index]), text, plays=f"mode {index + 1}")

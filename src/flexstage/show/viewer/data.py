@@ -46,6 +46,7 @@ _Found = TypeVar("_Found")
 _STEPS = 12
 _MODES = 12
 _NAMED = 8
+_LOADED = ", small motions about the loaded stage"
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +203,8 @@ def _motions(
     if model is not None:
         moving = weighed or model
         found = found or _attempt("modes", lambda: platform_modes(mechanism, moving), notes)
-        yield from () if found is None else mode_motions(moving, kinematics, found, bones, count)
+        about = "" if weighed is None or weighed is model else _LOADED
+        yield from () if found is None else mode_motions(moving, kinematics, found, bones, count, about=about)
         yield from _attempt("strokes", lambda: tuple(stroke_motions(mechanism, model, kinematics, bones)), notes) or ()
     if kinematics is not None:
         yield from axis_motions(kinematics, bones)

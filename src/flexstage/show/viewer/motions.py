@@ -163,8 +163,10 @@ def body_twists(
     return result
 
 
-def mode_motions(model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int) -> Iterator[Motion]:
-    """The lowest modes, mass-normalised, and those of the platform that lie higher."""
+def mode_motions(
+    model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
+) -> Iterator[Motion]:
+    """The lowest modes, mass-normalised, and those of the platform that lie higher; remarks end with what they are `about`."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
@@ -173,7 +175,7 @@ def mode_motions(model: LinearModel, kinematics: Kinematics | None, found: Modes
         twists = body_twists(model, kinematics, shapes[:, index], tuple(bones.references))
         frequency = float(frequencies[index])
         label = f"{index + 1}  {number(frequency)} Hz  {found.names[index]}"
-        remark = PLATFORM_MODE if index in found.platform else "a mode beside those of the platform"
+        remark = (PLATFORM_MODE if index in found.platform else "a mode beside those of the platform") + about
         energy = _energy(model, shapes[:, index])
         yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
 

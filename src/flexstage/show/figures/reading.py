@@ -1,0 +1,94 @@
+"""What a cursor over a figure in a page reads: its panels and curves as data beside the picture, which stands as it is in print."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from flexstage.show.display import to_typography
+from flexstage.show.viewer.data import packed
+
+_POINTS = 72.0
+_DIGITS = 5
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place of a figure that is named: `text` at `x` and, in the panel number `panel`, `y`; `plays` is a motion of the page's viewer.
+
+    Without a y it is said where a reading comes near it.
+    """
+
+    x: float
+    text: str
+    y: float | None = None
+    panel: int = 0
+    plays: str = ""
+
+
+def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
+    """The panels of a drawn figure as JSON: where they stand in points, their axes, and the curves that have a label.
+
+    A curve without a label has that of the curve that looks like it in the same column, and is left out where there is none; a panel
+    without a name has that of the one beside it.
+
+    >>> from flexstage.show.figures.style import canvas
+    >>> figure = canvas(1.0, 1.0)
+    >>> _ = figure.add_subplot().plot([1.0, 2.0, 3.0], [3.0, 4.0, 1.0], label="x")
+    >>> [each["name"] for each in json.loads(reading(figure))["panels"][0]["curves"]]
+    ['x']
+    """
+    shown = [axes for axes in figure.axes if axes.get_visible()]
+    names = {_look(axes, line): line.get_label() for axes in shown for line in axes.lines if _is_named(line)}
+    along = next((axes.get_xlabel() for axes in reversed(shown) if axes.get_xlabel()), "")
+    size = figure.get_size_inches() * _POINTS
+    rows = {_row(axes): _title(axes) for axes in reversed(shown) if _title(axes)}
+    panels = [
+        _panel(axes, size) | {"name": _title(axes) or rows.get(_row(axes), ""), "curves": list(_curves(axes, names))} for axes in shown
+    ]
+    points = [{key: value for key, value in asdict(each).items() if value not in ("", None)} for each in spots]
+    return json.dumps({"along": along, "panels": panels, "spots": points}, separators=(",", ":"), ensure_ascii=False)
+
+
+def _is_named(line: Any) -> bool:
+    return not line.get_label().startswith("_")
+
+
+def _look(axes: Any, line: Any) -> tuple[float, str, str]:
+    """What a reader tells the curves of a column apart by."""
+    return round(float(axes.get_position().x0), 6), str(line.get_color()), str(line.get_linestyle())
+
+
+def _row(axes: Any) -> float:
+    return round(float(axes.get_position().y0), 6)
+
+
+def _title(axes: Any) -> str:
+    return axes.get_ylabel() or axes.get_title(loc="left") or axes.get_title()
+
+
+def _panel(axes: Any, size: Any) -> dict[str, Any]:
+    (left, low), (right, high) = axes.get_position().get_points()
+    box = [left * size[0], (1.0 - high) * size[1], (right - left) * size[0], (high - low) * size[1]]
+    return {
+        "box": [round(float(each), 2) for each in box],
+        "x": [_plain(each) for each in axes.get_xlim()],
+        "y": [_plain(each) for each in axes.get_ylim()],
+        "log": [axes.get_xscale() == "log", axes.get_yscale() == "log"],
+    }
+
+
+def _curves(axes: Any, names: dict[tuple[float, str, str], str]) -> Iterator[dict[str, str]]:
+    for line in axes.lines:
+        name = line.get_label() if _is_named(line) else names.get(_look(axes, line), "")
+        x, y = (np.asarray(each, dtype=float) for each in line.get_data())
+        if name and len(x) > 2:
+            yield {"name": to_typography(name), "colour": str(line.get_color()), "x": packed(x, "<f4"), "y": packed(y, "<f4")}
+
+
+def _plain(value: float) -> float:
+    return float(f"{float(value):.{_DIGITS}g}")
