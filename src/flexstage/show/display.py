@@ -78,6 +78,7 @@ _PREFERRED = {
     "m/V": "um/V",
 }
 _FIELD_UNITS = {
+    "mN/Hz^0.5": 1e3,
     "mm": 1e3,
     "um": 1e6,
     "urad": 1e6,

@@ -162,7 +162,8 @@ class Reading {
       each.cursor.setAttribute("x2", at);
     }
     const head = document.createElement("b");
-    head.textContent = [text.includes(" at ") ? "" : `${written(x)} ${this.unit}`, text].filter(Boolean).join(" · ");
+    const own = there.length > 1 || this.panels.length < 2 ? "" : panel.frame.name.replace(/ \[.*\]/, "");
+    head.textContent = text || [own, `${written(x)} ${this.unit}`].filter(Boolean).join(", ");
     this.told.replaceChildren(head, ...this.rows(there, x), ...this.button(panel, x));
   }
 
