@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.polynomial import Legendre, legendre
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
@@ -381,6 +382,30 @@ def test_a_buckled_column_is_an_elastica(side: float):
     assert found.motions.tolist()[1:] == [0] * 8
     assert np.sign(angle[0]) == np.sign(angle[-1]) == -side
     assert abs(angle[-1]) > 1.3
+
+
+def heavy_elastica(angle: float) -> float:
+    """w L^3 / (E I) of an upright column that its own weight w a length bends so far at its top: th'' = - w s sin(th), s from there."""
+
+    def foot(weight: float) -> float:
+        course = solve_ivp(lambda s, y: [y[1], -weight * s * np.sin(y[0])], (0.0, 1.0), [angle, 0.0], rtol=1e-11, atol=1e-12)
+        return float(course.y[0, -1])
+
+    return float(brentq(foot, 7.5, 9.0, xtol=1e-11))
+
+
+def test_a_column_buckles_under_its_own_weight():
+    """Greenhill's 7.8373 (1881), and on along the branch by shooting."""
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    top = Body(mass=0.0, reference=(1.0, 0.0, 0.0))
+    unit = (-RIGIDITY / (THIN.width * THIN.thickness), 0.0, 0.0)
+    heavy = {"soft": replace(SOFT, density=1.0)}
+    column = nonlinear(Mechanism("", heavy, {"leaf": THIN}, {"platform": top}, {"leaf": link}, gravity=unit))
+    found = branch(column, {"weight": 1.0}, weight=0.0, step=0.2, points=3)
+    angles = found.state.rotation()[:, 2]
+    assert found.values[0] == pytest.approx(7.83735, rel=1e-6)
+    assert found.values[1:] == pytest.approx([heavy_elastica(each) for each in angles[1:]], rel=1e-6)
+    assert np.abs(np.diff(angles)) == pytest.approx(0.16, rel=0.05)
 
 
 def pressed_guide() -> Nonlinear:

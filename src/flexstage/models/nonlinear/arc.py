@@ -91,9 +91,6 @@ def _next(course: Course, last: Point, length: float, into: Array | None) -> Poi
                 own, along = _directions(course, pose, factor, system)
                 change = _change(scale * whole, scale * own, scale * along, scale * last.step, length)
                 step = own + change * along
-                if not course.plain:
-                    system = assemble(course.model, pose, *course.at(factor + change))
-                    step = _solved(system, -system.residual[0])
             size = float(motion(course.model, step[None], course.model.size)[0])
             if not np.isfinite(size + change) or size > _FAR * length:
                 return None

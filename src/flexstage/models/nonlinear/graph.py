@@ -12,7 +12,7 @@ from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.models.nonlinear.condense import Answer, condense, settle
 from flexstage.models.nonlinear.corotated import stiffen_ports
 from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
-from flexstage.models.nonlinear.hinge import Ends, stiffen
+from flexstage.models.nonlinear.hinge import Ends, Hinges, stiffen
 from flexstage.models.nonlinear.hold import Hold, gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose
@@ -51,6 +51,14 @@ class Rest:
 
 
 @dataclass(frozen=True, eq=False)
+class Tally:
+    """A residual (b, n) and a stiffness that are being added up, the ground's rows among them."""
+
+    residual: Array
+    stiffness: Sum
+
+
+@dataclass(frozen=True, eq=False)
 class System:
     """Residual (b, n) and stiffness of bodies' freedoms and of reactions, an array or a sparse matrix a case; groups as they are bent."""
 
@@ -71,14 +79,14 @@ class System:
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> System:
     """Residual and stiffness of the stage, the forces of flexures already brought up to date."""
     residual, kept = _nothing(model, pose, hold)
-    stiffness = empty_sum(*residual.shape)
+    tally = Tally(residual, empty_sum(*residual.shape))
     bent = tuple(bend(group, pose, number, loads) for number, group in enumerate(model.flexures))
     for group, found in zip(model.flexures, bent, strict=True):
         force, own = _flexure_terms(group.law, found)
-        _scatter(residual, stiffness, (group.first, group.second), force, own)
-    _add_loads(model, pose, loads, residual, stiffness)
-    _add_rest(model, pose, loads, hold, (residual, stiffness))
-    return System(residual[:, kept], stiffness.total(kept), bent)
+        _scatter(tally, group, force, own)
+    _add_loads(model, pose, loads, tally)
+    _add_rest(model, pose, loads, hold, tally)
+    return System(residual[:, kept], tally.stiffness.total(kept), bent)
 
 
 def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
@@ -87,7 +95,7 @@ def rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold) -> Rest | None:
         return None
     residual, kept = _nothing(model, pose, hold)
     stiffness = Dense(*residual.shape)
-    _add_rest(model, pose, loads, hold, (residual, stiffness))
+    _add_rest(model, pose, loads, hold, Tally(residual, stiffness))
     return Rest(residual[:, kept], stiffness.total(kept))
 
 
@@ -98,10 +106,10 @@ def _nothing(model: Nonlinear, pose: Pose, hold: Hold) -> tuple[Array, Array]:
     return np.zeros((cases, size + count)), kept
 
 
-def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, into: tuple[Array, Sum]) -> None:
-    _add_hinges(model, pose, loads, *into)
-    _add_elements(model, pose, loads, into)
-    _add_holds(hold, pose, *into, model.freedoms + 6 + len(model.hinges.locked))
+def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, tally: Tally) -> None:
+    _add_hinges(model, pose, loads, tally)
+    _add_elements(model, pose, loads, tally)
+    _add_holds(hold, pose, tally, model.freedoms + 6 + len(model.hinges.locked))
 
 
 def bend(group: Flexures, pose: Pose, number: int, loads: Loads) -> Bent:
@@ -205,7 +213,7 @@ def _add_weight(law: FlexureLaw, bent: Bent, motion: Array, residual: Array, sti
     return residual, stiffness
 
 
-def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Sum) -> None:
+def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
     hinges, size = model.hinges, model.freedoms + 6
     if not hinges.names:
         return
@@ -214,27 +222,26 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, sti
     held[links, :, freedoms] = pose.held[:, : len(links)].T
     ends = hinge_ends(model, pose)
     force, own, deformation, rows = stiffen(hinges, ends, loads.inputs, loads.constant, held)
-    _scatter(residual, stiffness, (hinges.first, hinges.second), force, own)
+    _scatter(tally, hinges, force, own)
     imposed = np.swapaxes(hinges.stroke @ loads.inputs.T, -1, -2)
     for place, (link, freedom) in enumerate(hinges.locked):
-        residual[:, size + place] = deformation[link, :, freedom] - imposed[link, :, freedom]
+        tally.residual[:, size + place] = deformation[link, :, freedom] - imposed[link, :, freedom]
         for body, part in ((hinges.first[link], slice(0, 6)), (hinges.second[link], slice(6, 12))):
             columns = slice(6 * body, 6 * body + 6)
             at = slice(size + place, size + place + 1)
-            stiffness.add(at, columns, rows[link, :, freedom, None, part])
-            stiffness.add(columns, at, rows[link, :, freedom, part, None])
+            tally.stiffness.add(at, columns, rows[link, :, freedom, None, part])
+            tally.stiffness.add(columns, at, rows[link, :, freedom, part, None])
 
 
-def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, into: tuple[Array, Sum]) -> None:
+def _add_elements(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
     """Superelements, their weight included (docs/nonlinear.md, 31)."""
-    residual, stiffness = into
     for element in model.elements:
         force, own = stiffen_ports(element, pose.position[:, element.bodies], pose.turn[:, element.bodies], loads.gravity)
         for row, body in enumerate(element.bodies):
             rows, at = slice(6 * body, 6 * body + 6), slice(6 * row, 6 * row + 6)
-            residual[:, rows] += force[:, at]
+            tally.residual[:, rows] += force[:, at]
             for column, other in enumerate(element.bodies):
-                stiffness.add(rows, slice(6 * other, 6 * other + 6), own[:, at, 6 * column : 6 * column + 6])
+                tally.stiffness.add(rows, slice(6 * other, 6 * other + 6), own[:, at, 6 * column : 6 * column + 6])
 
 
 def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
@@ -243,7 +250,7 @@ def hinge_ends(model: Nonlinear, pose: Pose) -> Ends:
     return Ends(*(_gather(each, which) for which in (first, second) for each in (pose.position, pose.turn)))
 
 
-def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stiffness: Sum) -> None:
+def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> None:
     """Dead forces at points of bodies, and dead couples (docs/nonlinear.md, 19)."""
     dead = model.dead(loads)
     arms = _rotate(pose.turn[:, model.places.body], model.places.arm)
@@ -251,8 +258,8 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, residual: Array, stif
     turning = -cross_matrix(dead[..., :3]) @ cross_matrix(arms)
     start = 6 * model.places.body
     wrench = np.concatenate([dead[..., :3], moment], axis=-1).reshape(len(dead), -1)
-    np.subtract.at(residual.T, (start[:, None] + np.arange(6)).ravel(), wrench.T)
-    stiffness.spread(start + 3, start + 3, np.moveaxis(turning, 1, 0))
+    np.subtract.at(tally.residual.T, (start[:, None] + np.arange(6)).ravel(), wrench.T)
+    tally.stiffness.spread(start + 3, start + 3, np.moveaxis(turning, 1, 0))
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
@@ -260,36 +267,36 @@ def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     found = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
-        residual, stiffness = np.zeros((cases, size)), empty_sum(cases, size)
+        tally = Tally(np.zeros((cases, size)), empty_sum(cases, size))
         loads = Loads(inputs, np.zeros((cases, 3)), np.zeros(cases))
-        _add_hinges(model, pose, loads, residual, stiffness)
-        _add_loads(model, pose, loads, residual, stiffness)
-        found.append(residual)
+        _add_hinges(model, pose, loads, tally)
+        _add_loads(model, pose, loads, tally)
+        found.append(tally.residual)
     kept = np.r_[: model.freedoms, model.freedoms + 6 : size]
     return (found[0] - found[1])[:, kept]
 
 
-def _add_holds(hold: Hold, pose: Pose, residual: Array, stiffness: Sum, start: int) -> None:
+def _add_holds(hold: Hold, pose: Pose, tally: Tally, start: int) -> None:
     for place in range(len(hold.body)):
         first = 6 * hold.body[place]
         columns, row = slice(first, first + 6), start + place
         reaction = pose.held[:, pose.held.shape[1] - len(hold.body) + place]
         value, along, curved = gradients(hold, place, pose)
-        residual[:, row] = value - hold.value[:, place]
-        residual[:, columns] += reaction[:, None] * along
-        stiffness.add(slice(row, row + 1), columns, along[:, None])
-        stiffness.add(columns, slice(row, row + 1), along[..., None])
-        stiffness.add(columns, columns, reaction[:, None, None] * curved)
+        tally.residual[:, row] = value - hold.value[:, place]
+        tally.residual[:, columns] += reaction[:, None] * along
+        tally.stiffness.add(slice(row, row + 1), columns, along[:, None])
+        tally.stiffness.add(columns, slice(row, row + 1), along[..., None])
+        tally.stiffness.add(columns, columns, reaction[:, None, None] * curved)
 
 
-def _scatter(residual: Array, stiffness: Sum, joins: tuple[Array, Array], force: Array, own: Array) -> None:
+def _scatter(tally: Tally, links: Flexures | Hinges, force: Array, own: Array) -> None:
     """Add what links (l, b, 12) and (l, b, 12, 12) do to their two bodies."""
-    freedoms, parts = np.arange(6), (slice(0, 6), slice(6, 12))
-    for bodies, rows in zip(joins, parts, strict=True):
+    freedoms, ends = np.arange(6), ((links.first, slice(0, 6)), (links.second, slice(6, 12)))
+    for bodies, rows in ends:
         places = (6 * bodies[:, None] + freedoms).ravel()
-        np.add.at(residual.T, places, np.swapaxes(force[..., rows], 1, 2).reshape(len(places), -1))
-        for others, columns in zip(joins, parts, strict=True):
-            stiffness.spread(6 * bodies, 6 * others, own[..., rows, columns])
+        np.add.at(tally.residual.T, places, np.swapaxes(force[..., rows], 1, 2).reshape(len(places), -1))
+        for others, columns in ends:
+            tally.stiffness.spread(6 * bodies, 6 * others, own[..., rows, columns])
 
 
 def advance(model: Nonlinear, pose: Pose, bent: tuple[Bent, ...], step: Array, share: Array) -> tuple[Pose, Array]:

@@ -115,7 +115,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     }
     own = {name: item.mass.shape[-1] - 12 for name, item in links.items()} | {each.name: len(each.squares) for each in model.elements}
     order = _Coordinates(model, own)
-    return _assembled(state, order, _joins(model), (links, [state.held.index(name) for name in locked]))
+    return _assembled(state, order, _joins(model), links, [state.held.index(name) for name in locked])
 
 
 def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:
@@ -128,9 +128,8 @@ def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:
 
 
 def _assembled(
-    state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], given: tuple[Mapping[str, _Linear], list[int]]
+    state: State, order: _Coordinates, joins: Mapping[str, tuple[int, int]], links: Mapping[str, _Linear], locked: list[int]
 ) -> LinearModel:
-    links, locked = given
     model, assembly = state.model, state.model.assembly
     stiffness: dict[str, Contribution] = {}
     bending = np.zeros((len(state.pose.position), order.size, order.size))

@@ -46,7 +46,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort:
     cases = np.arange(len(loads.inputs))
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
     found = join(chunks)
-    return _by_steps(model, start, loads, hold, (effort, found))
+    return _by_steps(model, start, loads, hold, effort=effort, found=found)
 
 
 def _split(cases: Array) -> list[Array]:
@@ -72,9 +72,8 @@ def join(parts: list[Found]) -> Found:
     return Found(pose, *(np.concatenate([getattr(part, name) for part in parts]) for name in TOLD))
 
 
-def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, tried: tuple[Effort, Found]) -> Found:
+def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, effort: Effort, found: Found) -> Found:
     """What failed, loaded in steps: twice as long after each that is found, half as long after each that is not."""
-    effort, found = tried
     failed = np.flatnonzero(found.status != Status.CONVERGED)
     share, width, pose = np.zeros(len(failed)), np.full(len(failed), 0.5), start.of(failed)
     loads, hold = loads.of(failed), hold.of(failed)

@@ -133,6 +133,15 @@ class _Growth:
         return self.parts.get(name, 1.0)
 
 
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Bodies as drawn: the `number` of each by name, the ground's last, their `reference` (n + 1, 3), and how they have grown."""
+
+    number: Mapping[str, int]
+    reference: Array
+    growth: _Growth
+
+
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
 
@@ -151,7 +160,8 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     laws = _laws(assembly, resolution)
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
     growth = _growth(mechanism, bodies, temperature, ground)
-    flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, number, (reference, growth))
+    drawn = _Drawn(number, reference, growth)
+    flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
     places, stated, masses = _places(mechanism, assembly, number, reference, centred)
     carried = {name: moving_inertia(mechanism, placed) for name, placed in assembly.bodies.items()}
@@ -160,7 +170,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         bodies=bodies,
         reference=reference,
         flexures=flexures,
-        hinges=_hinges(assembly, centred, number, (reference, growth)),
+        hinges=_hinges(assembly, centred, drawn),
         elements=tuple(_element(item, number, reference) for item in assembly.superelements.values()),
         inputs=input_channels(assembly),
         places=Places(places.body, places.arm * growth.bodies[places.body, None]),
@@ -206,24 +216,20 @@ def _one(value: Array, name: str) -> Array:
     return np.asarray(value, dtype=float)
 
 
-def _flexures(
-    assembly: Assembly, laws: Mapping[str, FlexureLaw], number: Mapping[str, int], drawn: tuple[Array, _Growth]
-) -> tuple[Flexures, ...]:
+def _flexures(assembly: Assembly, laws: Mapping[str, FlexureLaw], drawn: _Drawn) -> tuple[Flexures, ...]:
     groups: dict[tuple[int, ...], list[str]] = {}
     for name, item in laws.items():
         groups.setdefault(item.signature, []).append(name)
-    return tuple(_group(assembly, names, [laws[name] for name in names], number, drawn) for names in groups.values())
+    return tuple(_group(assembly, names, [laws[name] for name in names], drawn) for names in groups.values())
 
 
-def _group(
-    assembly: Assembly, names: list[str], laws: list[FlexureLaw], number: Mapping[str, int], drawn: tuple[Array, _Growth]
-) -> Flexures:
-    reference, growth = drawn
+def _group(assembly: Assembly, names: list[str], laws: list[FlexureLaw], drawn: _Drawn) -> Flexures:
+    reference, growth = drawn.reference, drawn.growth
     links = [assembly.links[name] for name in names]
     half = 0.5 * np.stack([item.length for item in laws])[:, None] * np.stack([link.frame.rotation[:, 0] for link in links])
     laws = [_grow(item, growth.of(name)) if name in growth.parts else item for name, item in zip(names, laws, strict=True)]
     together = FlexureLaw(**{each.name: np.stack([np.asarray(getattr(item, each.name)) for item in laws]) for each in fields(FlexureLaw)})
-    first, second = _numbers(links, number)
+    first, second = _numbers(links, drawn.number)
     turn = np.stack([link.frame.rotation for link in links])
     centre = np.stack([_one(link.frame.position, link.name) for link in links])
     arms = ((centre + side * half - reference[body]) * growth.bodies[body, None] for side, body in ((-1.0, first), (1.0, second)))
@@ -235,10 +241,11 @@ def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Ar
     return np.array(first, dtype=int), np.array(second, dtype=int)
 
 
-def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping[str, int], drawn: tuple[Array, _Growth]) -> Hinges:
-    first, second = _numbers(links.values(), number)
+def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) -> Hinges:
+    first, second = _numbers(links.values(), drawn.number)
     count, inputs = len(links), len(input_channels(assembly))
-    (reference, growth), centre = drawn, np.array([_one(link.frame.position, link.name) for link in links.values()]).reshape(count, 3)
+    reference, growth = drawn.reference, drawn.growth
+    centre = np.array([_one(link.frame.position, link.name) for link in links.values()]).reshape(count, 3)
     laws = [law(link.part, link.material) for link in links.values()]
     free = {name: assembly.actuator(actuator).free_deformation for actuator, name in assembly.strokes.items()}
     strokes, thrusts = imposed_strokes(assembly, free), exerted_wrenches(assembly)
@@ -249,8 +256,8 @@ def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], number: Mapping
         first=first,
         second=second,
         turn=np.array([link.frame.rotation for link in links.values()]).reshape(count, 3, 3),
-        arm_first=(centre - reference[first]) * growth.bodies[first, None] + _halves_more(links, growth, (first, 0.5)),
-        arm_second=(centre - reference[second]) * growth.bodies[second, None] + _halves_more(links, growth, (second, -0.5)),
+        arm_first=(centre - reference[first]) * growth.bodies[first, None] + _halves_more(links, growth, first, 0.5),
+        arm_second=(centre - reference[second]) * growth.bodies[second, None] + _halves_more(links, growth, second, -0.5),
         stiffness=np.array([item.stiffness for item in laws]).reshape(count, 6, 6),
         stroke=np.array([strokes.get(name, none) for name in links]).reshape(count, 6, inputs),
         thrust=np.array([thrusts.get(name, none) for name in links]).reshape(count, 6, inputs),
@@ -295,11 +302,11 @@ def _element(placed: PlacedSuperelement, number: Mapping[str, int], reference: A
     )
 
 
-def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, end: tuple[Array, float]) -> Array:
+def _halves_more(links: Mapping[str, PlacedLink], growth: _Growth, bodies: Array, side: float) -> Array:
     """How much more (l, 3) than its body a part's half next to it has grown, seen from that end."""
     more = [
         side * float(span(link.part)) * (growth.of(name) - growth.bodies[body]) * link.frame.rotation[:, 0] * (name in growth.parts)
-        for body, side, (name, link) in zip(end[0], np.full(len(links), end[1]), links.items(), strict=True)
+        for body, (name, link) in zip(bodies, links.items(), strict=True)
     ]
     return np.array(more).reshape(-1, 3)
 
