@@ -88,6 +88,7 @@ SCENES = (
         "loop stage.toml --bandwidth 100Hz --export c.c --export c.fmu --export c.mat --report l.html --json l.json",
         "c.c c.h c.fmu c.mat l.html l.json",
     ),
+    Scene("loop compare", "loop stage.toml --floor VC-D --compare --report l.html --json l.json", "l.html l.json"),
     Scene("loop example", "loop stage.toml --example l.toml", "l.toml"),
     Scene("sweep", "sweep study.toml -o s.h5 --workers 2 --report s.html", "s.h5 s.html", "--resume", fresh=True),
     Scene("optimise", "optimise study.toml -o o.toml --json o.json", "o.toml o.json"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,15 +11,18 @@ import pytest
 from flexstage.analysis.workspace.drive import drive
 from flexstage.base.document import plain
 from flexstage.base.finding import DesignError
+from flexstage.base.labelled import Matrix
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import loop
-from flexstage.control.error_tables import noise_table
+from flexstage.control.coordinates import coordinates
+from flexstage.control.error_tables import _error_and_crosstalk, noise_table
 from flexstage.control.playing import response_motions
 from flexstage.control.reduction import reduce_modes, resonances
 from flexstage.control.sections import margin_spots
 from flexstage.control.simulation.result import other_motions
-from flexstage.control.study.choices import Compensation, ControllerKind, StackKind
+from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
+from flexstage.control.study.course import courses, sampled_course
 from flexstage.control.study.resolve import default_rate, resolve
 from flexstage.control.study.runs import rest_rms
 from flexstage.control.study.setup import (
@@ -29,15 +33,18 @@ from flexstage.control.study.setup import (
     HystereticStacks,
     LoopSetup,
     Motion,
+    RasterMotion,
     SineMotion,
+    SpiralMotion,
     StepMotion,
     VibrationSetup,
 )
 from flexstage.control.study.stacks import stacks_of, sweep_stacks
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tables import step_table
+from flexstage.models.ideal import ideal
 from flexstage.parts.gauge import Gauge
-from flexstage.show.display import format_value
+from flexstage.show.display import NO_VALUE, format_value
 from flexstage.show.viewer.data import stage_data
 
 CALM = ControllerSetup(integral=300.0)
@@ -85,6 +92,40 @@ def test_what_plays_is_where_the_platform_truly_went() -> None:
     np.testing.assert_allclose(moved, [motion.response.weights[far, 0], 0.0, 0.0], rtol=0.0, atol=1e-15)
     basis = motion.response.basis[0, place]
     np.testing.assert_allclose(basis[:3] + np.cross(basis[3:], bone), [1.0, 0.0, 0.0], rtol=0.0, atol=1e-9)
+
+
+def test_a_trajectory_is_played_with_its_error_as_many_times_too_large_as_its_name_says() -> None:
+    stage = parallelogram()
+    found = loop_study(stage, LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=0.0), trajectory=SineMotion(1.0, 1.0)))
+    (motion,) = response_motions(found, stage_data(stage))
+    assert motion.response is not None
+    factor = float(motion.label.rpartition("its error ")[2].removesuffix(" times"))
+    wanted, error = (next(each for each in motion.response.curves if each.name == name) for name in ("x wanted", "error of x"))
+    scales = {"m": 1.0, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
+    played = wanted.values * scales[wanted.unit] - factor * error.values * scales[error.unit]
+    np.testing.assert_allclose(motion.response.weights[:, 0], played, rtol=0.0, atol=1e-15)
+
+
+def test_rasters_and_spirals_go_along_any_two_motions() -> None:
+    loops = coordinates(ideal(double_triangle()))
+    for first, second in ((Axis.RX, Axis.RY), (Axis.Z, Axis.RZ)):
+        for asked in (RasterMotion(fast=first, slow=second), SpiralMotion(first=first, second=second)):
+            (course,) = courses(asked, loops)
+            assert course.plane == (first.value, second.value)
+            _, poses = sampled_course(course, loops, 1e-3, course.duration)
+            moved = np.ptp(poses, axis=0) > 0.0
+            assert [name for name, each in zip(loops.names, moved, strict=True) if each] == sorted(course.plane, key=loops.names.index)
+
+
+def test_crosstalk_is_told_in_every_unit() -> None:
+    """The largest of lengths and of angles, each, whatever their numbers in metres and radians are."""
+    units = (("1", "m/rad"), ("1", "m/rad"), ("rad/m", "1"))
+    error = Matrix(np.array([[0.01, 0.0], [0.002, 0.0], [5.0, 0.0]]), ("x", "y", "rz"), ("x", "rz"), units)
+    own, others = _error_and_crosstalk([SimpleNamespace(error=error)], 0)
+    assert own.text == "1 %"
+    assert others.text.startswith("0.2 % y, 5 ")
+    assert others.text.endswith(" rz")
+    assert list(_error_and_crosstalk([SimpleNamespace(error=error)], 1))[1].text == NO_VALUE
 
 
 def test_rates_are_round_and_fast_enough() -> None:

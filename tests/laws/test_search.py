@@ -185,5 +185,5 @@ def test_a_controller_of_another_stage_is_refused_by_the_loops_it_names():
 def test_goals_that_contradict_one_another_are_all_said_before_anything_is_searched():
     plant = integral_loop().plant
     with pytest.raises(DesignError) as told:
-        find(plant, platform_loops(plant.coordinates), Asked(Kind.LQG, Wish(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}))
+        find(plant, platform_loops(plant.coordinates), Asked(Kind.RESONANT, Wish(rejection=500.0, settling=1e-3, delay_margin=1e-3), {}))
     assert [each.where for each in told.value.findings] == ["controller.goal"] * 3

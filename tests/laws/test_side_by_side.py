@@ -2,13 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from flexstage.apps.cli import run
+from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.study.compare import Comparison, Rival, compare_controllers
+from flexstage.control.closed import Cut, loop
+from flexstage.control.controllers.loops import platform_loops
+from flexstage.control.noise import noise_budget
+from flexstage.control.report import comparison_report
+from flexstage.control.stability_margins import bandwidths, peaks
+from flexstage.control.study.choices import ControllerKind, Criterion
+from flexstage.control.study.compare import Comparison, Rival, Turned, compare_controllers
+from flexstage.control.study.compare import rival as rival_of
+from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchAt, VibrationSetup
+from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tables import comparison_table
+from flexstage.control.tuning.outcome import Outcome, bench, outcome
+from flexstage.control.tuning.search import field
+from flexstage.control.tuning.view import view
+from flexstage.control.tuning.wish import Wish
+
+VC_D = VibrationSetup(criterion=Criterion.VC_D)
+FLOOR = Floor(VC_D, VC_D, VC_D)
 
 
 def rival(*, rejection: float, noise: float, settling: float, delay: float) -> Rival:
@@ -42,11 +61,71 @@ def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch
     monkeypatch.chdir(tmp_path)
     (tmp_path / "own.toml").write_text('format = "flexstage loop 1"\n[controller]\nintegral = "300 1/s"\n')
     assert run(["new", "guide.toml", "--case", "parallelogram"]) == 0
-    assert run(["loop", "guide.toml", "--setup", "own.toml", "--compare", "--report", "r.html"]) == 2
+    assert run(["loop", "guide.toml", "--setup", "own.toml", "--compare", "--hardware", "r.c"]) == 2
     told = capsys.readouterr().err
-    assert "--report: it belongs to one controller" in told
+    assert "--hardware: it belongs to one controller" in told
     assert "controller.integral: it belongs to one controller" in told
-    assert not (tmp_path / "r.html").exists()
+    assert not (tmp_path / "r.c").exists()
+
+
+def outcome_of(study: LoopStudy, gain: float) -> Outcome:
+    seen = view(study.plant, platform_loops(study.plant.coordinates), 0.0)
+    return outcome(bench(seen, field(seen, Wish(spread=0.0), study.settled.floor)), study.controller.system, gain)
+
+
+def test_what_is_read_off_responses_is_what_the_whole_loop_says():
+    """Of a controller as tuned and turned down: rejection, peak of S, noise, delay margin and steps, by other computations."""
+    study = loop_study(
+        parallelogram(), LoopSetup(floor=FLOOR, controller=ControllerSetup(integral=900.0, notches=(NotchAt(1674.0, 0.02, 0.5),)))
+    )
+    found = rival_of(study)
+    turned = found.turned
+    assert turned.gains[0] == 1.0
+    assert turned.rejection[0] == pytest.approx(found.rejection[0], rel=0.01)
+    assert turned.delay_margin[0] == pytest.approx(found.delay_margin, rel=0.02)
+    assert turned.settling[0] == pytest.approx(found.settling[0], rel=0.08)
+    control = study.controller.system
+    wired = loop(study.plant, replace(control, C=0.5 * control.C, D=0.5 * control.D))
+    half = outcome_of(study, 0.5)
+    assert half.rejection[0][0] == pytest.approx(bandwidths(wired).rejection[0], rel=0.01)
+    assert half.peaks[0] == pytest.approx(peaks(wired, Cut.POSE).sensitivity.value, rel=0.01)
+    budget = noise_budget(wired, study.settled.floor, (0.1, 5e3), ("relative.x",))
+    floor = np.sqrt(budget.by_kind.values[0, list(budget.by_kind.columns).index("floor")])
+    assert half.floor[0] == pytest.approx(floor, rel=0.05)
+
+
+def test_the_report_has_the_front_and_every_motion():
+    line = np.geomspace(1.0, 0.1, 3)
+    found = Comparison(
+        {"pi": replace(rival(rejection=300.0, noise=4e-9, settling=0.02, delay=1e-4), turned=Turned(line, line, line, line, line))}, {}
+    )
+    page = comparison_report(parallelogram(), LoopSetup(), found)
+    assert "Motion by motion" in page
+    assert "delay margin [ms]" in page
+
+
+@pytest.mark.full
+def test_processes_share_the_kinds_and_change_nothing():
+    stage, asked = parallelogram(), LoopSetup(controller=ControllerSetup(bandwidth=120.0))
+    alone, shared = (compare_controllers(stage, asked, workers=count).controllers for count in (0, 2))
+    assert list(alone) == list(shared)
+    for name, each in alone.items():
+        assert np.array_equal(each.rejection, shared[name].rejection)
+        assert np.array_equal(each.turned.settling, shared[name].turned.settling)
+
+
+@pytest.mark.full
+def test_lqg_by_search_is_better_than_the_one_of_one_bandwidth_in_every_column():
+    """Rejection, noise of the floor, settling of x, z, rx, rz on the shipped stage; the peak of S stays within what is allowed."""
+    floor = VibrationSetup(criterion=Criterion.VC_D)
+    asked = LoopSetup(floor=Floor(floor, floor, floor), controller=ControllerSetup(kind=ControllerKind.LQG))
+    before = rival_of(loop_study(double_triangle(), asked))
+    after = rival_of(loop_study(double_triangle(), replace(asked, controller=replace(asked.controller, goal=GoalSetup()))))
+    assert np.all(after.rejection > before.rejection)
+    assert np.all(after.noise < 1.15 * before.noise)
+    assert np.all(after.noise[:5] < before.noise[:5])  # what the floor shakes
+    assert np.all(after.settling < before.settling)
+    assert after.peak < 2.0
 
 
 @pytest.mark.full

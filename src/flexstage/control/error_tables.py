@@ -37,7 +37,7 @@ def rest_table(found: RestErrors) -> Table:
 def _rest_notes(found: RestErrors) -> Iterator[str]:
     yield (
         "Commanded less reached, per unit commanded, by strokes R_a x and by those that correct lost motion; crosstalk: the largest motion "
-        "elsewhere, and which."
+        "elsewhere in every unit, and which."
     )
     if found.other_gains is not None:
         yield (
@@ -52,10 +52,16 @@ def _error_and_crosstalk(found: Sequence[StaticError], column: int) -> Iterator[
     for each in found:
         values = np.asarray(each.error.values)
         yield _share(float(values[column, column]))
-        row = int(np.argmax(np.abs(values[:, column]) * (np.arange(len(values)) != column)))
-        size = float(values[row, column]) if row != column else 0.0
-        text = f"{_with_unit(size, each.error.unit[row][column])} {each.error.rows[row]}"
-        yield Cell(NO_VALUE, Mark.FAINT) if abs(size) < _SILENT else Cell(text)
+        units = [row[column] for row in each.error.unit]
+        largest = [_largest_elsewhere(values[:, column], units, unit, column) for unit in dict.fromkeys(units)]
+        told = [f"{_with_unit(float(values[row, column]), units[row])} {each.error.rows[row]}" for row in largest if row is not None]
+        yield Cell(", ".join(told)) if told else Cell(NO_VALUE, Mark.FAINT)
+
+
+def _largest_elsewhere(values: Array, units: Sequence[str], unit: str, own: int) -> int | None:
+    """Where the largest of a unit stands, but for its own; `None` where there is none. Metres and radians are not compared."""
+    places = [row for row, each in enumerate(units) if each == unit and row != own and abs(values[row]) >= _SILENT]
+    return max(places, key=lambda row: abs(float(values[row])), default=None)
 
 
 def _with_unit(value: float, unit: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.control.figures.time import magnification
 from flexstage.control.study.runs import Run
 from flexstage.control.study.study import LoopStudy
 from flexstage.show.display import display_unit_of, to_typography
@@ -42,9 +43,15 @@ def _played(number: int, run: Run, axes: dict[str, Array]) -> Iterator[Motion]:
         unit, name = seen.coordinates[index].unit, names[index]
         curves += [_curve(f"{name} wanted", unit, wanted[:, index]), _curve(name, unit, true[:, index])]
         curves += [_curve(f"error of {name}", unit, error[:, index])]
-    label = f"{'step ' if run.figures is not None else ''}{run.course.name}"
-    told = Response(basis, true, tuple(curves))
+    factor = 1.0 if run.figures is not None else magnification(float(np.max(np.ptp(wanted[:, moved], axis=0))), error[:, moved])
+    label = f"step {run.course.name}" if run.figures is not None else _followed(run.course.name, factor)
+    told = Response(basis, wanted - factor * error, tuple(curves))
     yield Motion(Group.RESPONSE, f"{number} {run.course.name}", label, np.einsum("n,nbk->bk", true[far], basis), response=told)
+
+
+def _followed(name: str, factor: float) -> str:
+    """The name of a trajectory that is played, and how many times too large its error is, so that it is seen."""
+    return name if factor == 1.0 else f"{name}, its error {factor:g} times"
 
 
 _UNIT = 1e-6

@@ -6,10 +6,16 @@ from dataclasses import replace
 
 import flexstage
 from flexstage.base.digest import digest
+from flexstage.control.figures.front import FrontLine, front_figure
 from flexstage.control.playing import response_motions
 from flexstage.control.sections import error_section, frequency_section, headline, loop_section, time_section
+from flexstage.control.study.compare import Comparison
+from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.study import LoopStudy
-from flexstage.show.page import Head, page
+from flexstage.control.tables import comparison_table, rivals_table
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Head, Headline, Picture, page, section
 from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import first_motion, stage_section
@@ -38,4 +44,28 @@ def loop_report(found: LoopStudy) -> str:
         error_section(found),
     )
     head = Head(mechanism.name or "stage", f"Control loop, {found.setup.model.value} model", origin, headline(found))
+    return page(head, [each for each in sections if each is not None], {"stage": data})
+
+
+def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
+    """Controllers side by side as a page of HTML: which wins for what, the front between what they trade, motion by motion."""
+    origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", flexstage.__version__))
+    data = stage_data(mechanism)
+    best = ", ".join(f"{aim} by {name}" for aim, name in found.wins.items())
+    lines = [
+        FrontLine(name, name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
+        for name, each in found.controllers.items()
+        if (one := each.turned) is not None and len(one.gains)
+    ]
+    caption = (
+        "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "
+        "linear loop; of noise the geometric mean, rotations times the stage's length. Full dots: no other is better at once in all four."
+    )
+    drawn = Picture(to_svg(front_figure(lines), "front", "What controllers trade: rejection, noise, settling, delay margin"), caption)
+    sections = (
+        stage_section(scene(mechanism), motion=first_motion(data)),
+        section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
+        section("Motion by motion", [rivals_table(found)]),
+    )
+    head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
     return page(head, [each for each in sections if each is not None], {"stage": data})

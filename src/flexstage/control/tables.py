@@ -307,10 +307,7 @@ def tracking_table(tests: Sequence[Run]) -> Table | None:
 def comparison_table(found: Comparison) -> Table:
     """Controllers side by side, the best of each column marked."""
     wins = found.wins
-    rows = [
-        [Cell(name.upper() if len(name) < 4 else name, Mark.STRONG), *_rival_cells(each, wins, name)]
-        for name, each in found.controllers.items()
-    ]
+    rows = [[Cell(_kind_name(name), Mark.STRONG), *_rival_cells(each, wins, name)] for name, each in found.controllers.items()]
     best = "; ".join(f"{aim}: {name}" for aim, name in wins.items())
     front = ", ".join(found.front)
     notes = [
@@ -331,6 +328,28 @@ def comparison_table(found: Comparison) -> Table:
         "of gauges",
     ]
     return make_table("Controllers side by side", heads, rows, notes=notes)
+
+
+def rivals_table(found: Comparison) -> Table:
+    """What every controller comes to, motion by motion."""
+    rows = [
+        [
+            Cell(_kind_name(name), Mark.STRONG),
+            coordinate,
+            number(float(each.rejection[place]), 4),
+            format_value(float(each.noise[place]), each.units[place], 3),
+            number(1e3 * float(each.settling[place]), 4) if np.isfinite(each.settling[place]) else "not",
+            percent(float(each.overshoot[place]), 3),
+        ]
+        for name, each in found.controllers.items()
+        for place, coordinate in enumerate(each.coordinates)
+    ]
+    heads = ["controller", "motion", Column("rejects to", "Hz"), "noise", Column("settles", "ms"), "overshoot"]
+    return make_table("Motion by motion", heads, rows)
+
+
+def _kind_name(name: str) -> str:
+    return name.upper() if len(name) < 4 else name
 
 
 def _rival_cells(one: Rival, wins: Mapping[str, str], name: str) -> list[Content]:

@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.jobs import cores
 from flexstage.base.quantity import (
     ACCELERATION_NOISE,
     CURRENT,
@@ -29,7 +30,7 @@ from flexstage.control.export.code.hardware import NO_INVERSE, Precision
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.files import controller_files, export_findings, hardware_files, hardware_findings, plant_file
 from flexstage.control.export.fmu.unit import fmu
-from flexstage.control.report import loop_report
+from flexstage.control.report import comparison_report, loop_report
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, Criterion
@@ -163,6 +164,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
     forces drive the stage, a PID controller. With --at, --load, --hold or --temperature it is the loop of the stage where it then is.
+
+    Kinds side by side: flexstage loop stage.toml --floor VC-D --goal balance --compare --report loops.html
     """
     exports = export or []
     if example is not None:
@@ -209,13 +212,24 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     mechanism = open_design(design, changes, outputs)
     stands = footing(mechanism, place(at, load, hold, temperature), asked.model)
     if compare:
-        _require_comparable(asked, {"--report": report is not None, "--export": bool(exports), "--hardware": hardware is not None})
+        _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
         with progress_bar() as shown:
             test = None if not record else _tested(record, shown.share)
-            rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
-        shown_tables = [*stands.tables(), tables.comparison_table(rivals)]
-        beside = stands.cautions
-        answer("loops", mechanism, lambda: rivals, lambda: shown_tables, model=asked.model, json=json, csv=csv, xlsx=xlsx, cautions=beside)
+            rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share, workers=cores())
+        if report is not None:
+            save(report, comparison_report(mechanism, asked, rivals), "--report")
+        answer(
+            "loops",
+            mechanism,
+            lambda: rivals,
+            lambda: [*stands.tables(), tables.comparison_table(rivals), tables.rivals_table(rivals)],
+            model=asked.model,
+            json=json,
+            csv=csv,
+            xlsx=xlsx,
+            cautions=stands.cautions,
+            beside=(report,),
+        )
         return
     with progress_bar() as shown:
         test = None if not record else _tested(record, shown.share)

@@ -22,13 +22,13 @@ _DIRECT = 1e-12
 class Weights:
     """What the regulator minimises: the integral of w^2 |z|^2 + p |y|^2 + |u|^2, with z' = the loop's error.
 
-    y is the pose in lengths (rotations times the stage's length), u the strokes, w = 2 pi `bandwidth` [Hz], one for all
-    coordinates or one for each; p = `pose` [1]. Around a plant of gain 1 without dynamics the loop's gain passes 1 exactly at `bandwidth`
+    y is the pose in lengths (rotations times the stage's length), u the strokes, w = 2 pi `bandwidth` [Hz] and p = `pose` [1], one for all
+    coordinates or one for each. Around a plant of gain 1 without dynamics the loop's gain passes 1 exactly at `bandwidth`
     (u' = w e).
     """
 
     bandwidth: float | tuple[float, ...]
-    pose: float = 0.0
+    pose: float | tuple[float, ...] = 0.0
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,10 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
     A = np.block([[model.A, np.zeros((states, count))], [-step * scale @ model.C, np.eye(count) * sampled]])
     B = np.vstack([model.B, -step * scale @ model.D])
     seen, rates = scale @ model.C, 2.0 * np.pi * np.broadcast_to(weights.bandwidth, (count,))
-    cross = weights.pose * np.vstack([seen.T @ scale @ model.D, np.zeros((count, len(model.inputs)))])
-    cost = np.asarray(scipy.linalg.block_diag(weights.pose * seen.T @ seen, np.diag(rates**2)))
-    effort = np.eye(len(model.inputs)) + weights.pose * (scale @ model.D).T @ (scale @ model.D)
+    direct, poses = scale @ model.D, np.broadcast_to(weights.pose, (count,))[:, None]
+    cross = np.vstack([seen.T @ (poses * direct), np.zeros((count, len(model.inputs)))])
+    cost = np.asarray(scipy.linalg.block_diag(seen.T @ (poses * seen), np.diag(rates**2)))
+    effort = np.eye(len(model.inputs)) + direct.T @ (poses * direct)
     solution = _riccati(A, B, cost, effort, cross, sampled=sampled)
     if sampled:
         gain = np.linalg.solve(effort + B.T @ solution @ B, B.T @ solution @ A + cross.T)
@@ -224,8 +225,13 @@ def _findings(model: System, coordinates: Coordinates, weights: Weights, expecte
     elif model.step is not None and np.max(wanted) >= 0.5 / model.step:
         what = f"its bandwidth of {np.max(wanted):g} Hz is not below half the sampling rate, {0.5 / model.step:g} Hz"
         yield Finding("LQG", what, "Sample faster, or ask for less")
-    if not 0.0 <= weights.pose < np.inf:
-        yield Finding("LQG", f"the weight of the pose is {weights.pose:g}", "Give 0 or more")
+    poses = np.atleast_1d(weights.pose)
+    if len(poses) not in (1, len(coordinates.names)):
+        yield Finding(
+            "LQG", f"{len(poses)} weights of the pose for {len(coordinates.names)} coordinates", "Give one for all, or one for each"
+        )
+    if not 0.0 <= np.min(poses) <= np.max(poses) < np.inf:
+        yield Finding("LQG", f"the weight of the pose is {np.min(poses):g}", "Give 0 or more")
     if not 0.0 < expected.strokes < np.inf:
         yield Finding("LQG", f"the strokes' noise is {expected.strokes:g} m/Hz^(1/2)", "State a positive density: what disturbs the stage")
     for name in coordinates.gauges:

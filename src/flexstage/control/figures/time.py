@@ -110,17 +110,18 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     asked, error = test.reference[:, places], test.true_error[:, places]
     size = float(np.max(np.ptp(asked, axis=0), initial=0.0))
     factor = magnification(size, error)
-    form = display_unit_of(test.coordinates[places[0]].unit, size)
+    forms = [display_unit_of(test.coordinates[place].unit, size) for place in places]
+    factors = np.array([form.factor for form in forms])
     followed = asked - factor * error
     label = "followed" if factor == 1.0 else f"followed, its error {factor:g} times"
     with style_context():
         figure = canvas(FULL * 0.62, _height(followed))
         plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
-        plan.plot(*_decimate(form.factor * asked), color=MUTED, linewidth=0.9, label="commanded")
-        plan.plot(*_decimate(form.factor * followed), color=SERIES[0], linewidth=0.9, label=label)
+        plan.plot(*_decimate(factors * asked), color=MUTED, linewidth=0.9, label="commanded")
+        plan.plot(*_decimate(factors * followed), color=SERIES[0], linewidth=0.9, label=label)
         plan.set_aspect("equal", adjustable="datalim")
-        plan.set_xlabel(to_typography(f"{axes_shown[0]} [{form.unit}]"))
-        plan.set_ylabel(to_typography(f"{axes_shown[1]} [{form.unit}]"))
+        plan.set_xlabel(to_typography(f"{axes_shown[0]} [{forms[0].unit}]"))
+        plan.set_ylabel(to_typography(f"{axes_shown[1]} [{forms[1].unit}]"))
         plan.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
     return figure
 
@@ -137,7 +138,7 @@ def magnification(size: float, error: Array) -> float:
     >>> magnification(1.0, np.array([[0.001, 0.0]]))
     50.0
     """
-    largest = float(np.max(np.hypot(error[:, 0], error[:, 1]), initial=0.0))
+    largest = float(np.max(np.linalg.norm(error, axis=1), initial=0.0))
     if largest == 0.0 or size == 0.0:
         return 1.0
     wanted = max(_OF_SIZE * size / largest, 1.0)

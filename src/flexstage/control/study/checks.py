@@ -7,7 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from flexstage.base.finding import Finding
-from flexstage.control.study.choices import Compensation, ControllerKind, Notching
+from flexstage.control.study.choices import SEARCHED, Compensation, ControllerKind, Notching
 from flexstage.control.study.setup import (
     ControllerSetup,
     DampingSetup,
@@ -141,10 +141,9 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
     """What a goal does not go with."""
     if found.goal is None:
         return
-    if found.law not in (ControllerKind.PI, ControllerKind.PID, ControllerKind.NONE):
-        yield Finding(
-            "controller.goal", f"a controller of kind {found.law.value} is not searched for", "Take kind pi or pid, or leave it out"
-        )
+    if found.law not in (*SEARCHED, ControllerKind.NONE):
+        advice = "Take kind pi, pid or lqg, or leave it out"
+        yield Finding("controller.goal", f"a controller of kind {found.law.value} is not searched for", advice)
     if found.bandwidth is not None:
         yield Finding("controller.goal", "a bandwidth is given too, and a search finds its own", "Leave one of them out")
     if found.notches or found.notching is Notching.NONE:

@@ -20,6 +20,10 @@ class ControllerKind(Enum):
     """Nothing: the stage is commanded in open loop."""
 
 
+SEARCHED = (ControllerKind.PI, ControllerKind.PID, ControllerKind.LQG)
+"""Kinds that a goal searches for; the others are tuned to the highest bandwidth."""
+
+
 class OfferedKind(str):
     """A kind of controller that stands in `CONTROLLERS` and not among the words above, by its name there."""
 
@@ -74,7 +78,7 @@ class StackKind(Enum):
 
 
 class Axis(Enum):
-    """A translation of the platform."""
+    """A motion of the platform that rasters and spirals go along."""
 
     X = "x"
     """Along x."""
@@ -82,6 +86,12 @@ class Axis(Enum):
     """Along y."""
     Z = "z"
     """Along z."""
+    RX = "rx"
+    """About x."""
+    RY = "ry"
+    """About y."""
+    RZ = "rz"
+    """About z."""
 
 
 class Criterion(Enum):

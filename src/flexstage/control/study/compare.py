@@ -2,29 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from functools import partial
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
 from flexstage.analysis.stance import Stance
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.jobs import CallError, Line, results
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import FREQUENCY, TIME
+from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, RATIO, TIME
 from flexstage.base.record import VIEW, Along
 from flexstage.control.controllers.kinds import CONTROLLERS
+from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import Kind, NoiseBudget
-from flexstage.control.study.choices import ControllerKind, OfferedKind
+from flexstage.control.study.choices import SEARCHED, ControllerKind, OfferedKind
 from flexstage.control.study.setup import ControllerSetup, DampingSetup, LoopSetup, StepMotion
 from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.control.tuning.judge import closed_growth
+from flexstage.control.tuning.outcome import bench, outcome
+from flexstage.control.tuning.search import field
+from flexstage.control.tuning.view import view
+from flexstage.control.tuning.wish import Wish
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
-_SEARCHED = (ControllerKind.PI, ControllerKind.PID)
+_TURNED = np.geomspace(1.0, 0.1, 9)
+"""Gains by which the output of a controller is multiplied for the front: a tenth is slower by ten, and quiet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """A controller as it was tuned, and turned down: its output times `gains` (g,), those that are stable.
+
+    By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` and `delay_margin`; `noise`
+    is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing disturbs).
+    """
+
+    gains: Annotated[Array, RATIO]
+    rejection: Annotated[Array, FREQUENCY]
+    noise: Annotated[Array, DISPLACEMENT]
+    settling: Annotated[Array, TIME]
+    delay_margin: Annotated[Array, TIME]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +57,8 @@ class Rival:
 
     `peak` is the coupled peak of S, `rejection` where |S| first rises through 1, `noise` the rms at rest, `settling` the time
     to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
-    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found.
+    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `turned`
+    what it comes to with less gain.
     """
 
     coordinates: tuple[str, ...]
@@ -46,6 +71,7 @@ class Rival:
     overshoot: Annotated[Array, Along("coordinates")]
     delay_margin: Annotated[float, TIME]
     gauge_share: float | None
+    turned: Turned | None = None
 
     @property
     def figures(self) -> Mapping[str, float]:
@@ -95,27 +121,57 @@ def compare_controllers(
     there: Stance | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
+    workers: int = 0,
 ) -> Comparison:
     """PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS`: each tuned to the same set-up, and what steps come to.
 
-    With a goal PI and PID are searched for; the others are tuned to the highest bandwidth within the same peak of S. Raises `DesignError`
-    where none of them can be had, or where the set-up states gains, which belong to one kind.
+    With a goal PI, PID and LQG are searched for; the others are tuned to the highest bandwidth within the same peak of S. With `workers`
+    as many processes share the kinds; what comes out is the same. Raises `DesignError` where none of them can be had, or where the set-up
+    states gains, which belong to one kind.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
-    found: dict[str, Rival] = {}
-    missed: dict[str, str] = {}
-    last: DesignError | None = None
     rivals = _rivals(mechanism, asked, tested=test is not None)
-    for number, (name, one) in enumerate(rivals.items()):
-        if tell is not None:
-            tell(f"tuning {name}", number / len(rivals))
-        try:
-            found[name] = rival(loop_study(mechanism, one, there=there, test=test))
-        except DesignError as error:
-            missed[name], last = "; ".join(str(each) for each in error.findings), error
-    if last is not None and not found:
-        raise last
-    return Comparison(Table(found), Table(missed))
+    one = partial(_rival_of, mechanism, there, test)
+    came: dict[str, _Came] = {}
+    said = tell or (lambda _, __: None)
+    said(f"tuning {', '.join(rivals)}", 0.0)
+    for name, found in _every(one, rivals, workers):
+        came[name] = found
+        left = ", ".join(each for each in rivals if each not in came)
+        said(f"tuning {left}" if left else "tuned", len(came) / len(rivals))
+    found = {name: each for name in rivals if isinstance(each := came[name], Rival)}
+    missed = {name: each for name in rivals if not isinstance(each := came[name], Rival)}
+    if not found:
+        raise DesignError(list(missed.values())[-1])
+    return Comparison(Table(found), Table({name: "; ".join(map(str, findings)) for name, findings in missed.items()}))
+
+
+_Came: TypeAlias = "Rival | tuple[Finding, ...]"
+
+
+def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, LoopSetup], workers: int) -> Iterator[tuple[str, _Came]]:
+    """What every kind comes to, as it is there; those that are searched for first, as they take longest."""
+    slowest = sorted(rivals, key=lambda name: rivals[name].controller.kind not in SEARCHED)
+    if not workers:
+        yield from ((name, one(None, rivals[name])) for name in slowest)
+        return
+    names = {id(rivals[name]): name for name in slowest}
+    try:
+        for (asked,), found in results(one, [(rivals[name],) for name in slowest], min(workers, len(rivals))):
+            yield names[id(asked)], found
+    except CallError as failed:
+        if failed.error is not None:
+            raise failed.error from None
+        what = "processes died over it again and again"
+        raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run it again") from None
+
+
+def _rival_of(mechanism: Mechanism, there: Stance | None, test: Identification | None, _line: Line | None, asked: LoopSetup) -> _Came:
+    """What a kind comes to, or why it cannot be had."""
+    try:
+        return rival(loop_study(mechanism, asked, there=there, test=test))
+    except DesignError as error:
+        return tuple(error.findings)
 
 
 def _rivals(mechanism: Mechanism, asked: LoopSetup, *, tested: bool) -> dict[str, LoopSetup]:
@@ -128,7 +184,9 @@ def _rivals(mechanism: Mechanism, asked: LoopSetup, *, tested: bool) -> dict[str
 
 
 def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> ControllerSetup:
-    goal = asked.controller.goal if kind in _SEARCHED else None
+    goal = asked.controller.goal if kind in SEARCHED else None
+    if kind is ControllerKind.LQG and goal is not None:
+        goal = replace(goal, prefilter=False)
     notches = () if kind is ControllerKind.LQG else asked.controller.notches
     return replace(asked.controller, kind=kind, goal=goal, notches=notches)
 
@@ -150,6 +208,26 @@ def rival(study: LoopStudy) -> Rival:
         overshoot=np.array([steps[name].overshoot for name in names]),
         delay_margin=min(each.delay.value for each in study.margins.channels),
         gauge_share=_gauge_share(study.noise),
+        turned=_turned(study),
+    )
+
+
+def _turned(study: LoopStudy) -> Turned:
+    """The same controller with less gain."""
+    loops = platform_loops(study.plant.coordinates)
+    seen = view(study.plant, loops, 0.0)
+    tried = bench(seen, field(seen, Wish(spread=0.0), study.settled.floor))
+    control = study.controller.system
+    quieter = ((gain, replace(control, C=gain * control.C, D=gain * control.D)) for gain in _TURNED)
+    stable = [gain for gain, system in quieter if closed_growth(seen.systems[0], system) < 0.0]
+    found = [outcome(tried, control, gain) for gain in stable]
+    noises = np.array([each.noise for each in found])
+    return Turned(
+        gains=np.array(stable),
+        rejection=np.array([np.min(each.rejection[0]) for each in found]),
+        noise=np.exp(np.mean(np.log(noises), axis=1)) if found and np.all(noises > 0.0) else np.zeros(0),
+        settling=np.array([np.max(each.settling) for each in found]),
+        delay_margin=np.array([np.min(each.delay_margin) for each in found]),
     )
 
 

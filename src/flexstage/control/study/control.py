@@ -119,7 +119,9 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
     if asked.goal is not None:
-        sought = find(given.plant, loops, Asked(_KINDS[ControllerKind(asked.law.value)], _wish(asked, asked.goal), given.floor, forward))
+        noises = _expected_noise(given) if asked.law is ControllerKind.LQG else None
+        kind = _KINDS[ControllerKind(asked.law.value)]
+        sought = find(given.plant, loops, Asked(kind, _wish(asked, asked.goal), given.floor, forward, noises))
         return Control(sought.controller.system(given.step), sought.controller, sought, gains)
     task = Task(
         kind=_tuned(asked.law),

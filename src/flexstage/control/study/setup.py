@@ -252,7 +252,10 @@ class StepMotion:
 
 @dataclass(frozen=True)
 class RasterMotion:
-    """`lines` of a `length`, `pitch` apart, to and fro at an even `speed`, turned around with `acceleration`; along `fast` and `slow`."""
+    """`lines` of a `length`, `pitch` apart, to and fro at an even `speed`, turned around with `acceleration`; along `fast` and `slow`.
+
+    Of a motion that turns, a metre stands for a radian: a line of 20 um along rx is one of 20 urad.
+    """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
 
@@ -267,7 +270,10 @@ class RasterMotion:
 
 @dataclass(frozen=True)
 class SpiralMotion:
-    """A spiral from the middle to `radius`, its turns `pitch` apart, at an even `speed`; in the plane of `first` and `second`."""
+    """A spiral from the middle to `radius`, its turns `pitch` apart, at an even `speed`; in the plane of `first` and `second`.
+
+    Of a motion that turns, a metre stands for a radian.
+    """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
 

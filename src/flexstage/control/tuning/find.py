@@ -11,30 +11,41 @@ from flexstage.analysis.random_response import Spectrum
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
-from flexstage.control.controllers.loops import Loops
+from flexstage.control.controllers.loops import Loops, platform_loops
+from flexstage.control.controllers.lqg import LQG, Disturbances
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.plants import Plant
+from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Judgement, Kind, Tuning
 from flexstage.control.tuning.judge import closed_growth, judge_loop
+from flexstage.control.tuning.outcome import Outcome, bench, outcome
 from flexstage.control.tuning.search import Field, Found, coupled_sensitivities, excess, field, rejects_to, search, variants
+from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import View, view
+from flexstage.control.tuning.weigh import Regulated, weigh
 from flexstage.control.tuning.wish import STABLE, Wish, wish_findings
 
-_KINDS = (Kind.PI, Kind.PID)
+_KINDS = (Kind.PI, Kind.PID, Kind.LQG)
 _TIGHTER = (1.0, 0.97, 0.93)
 _UNMET = 0.02
 _CORNERS, _DAMPINGS, _LEADS = np.geomspace(0.3, 12.0, 14), (0.6, 0.8, 1.0, 1.4, 2.0, 3.5), (0.7, 1.2, 2.0, 4.0, np.inf)
 _CALM, _BAND = 1.03, 0.019
+_EXPECTED = 1e-9
+"""Density [m/Hz^0.5] of strokes' noise that an observer expects where nothing is stated."""
 
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What is searched for: kind and wish, the floor's spectra by input, and the strokes (n, f) by which references are fed forward."""
+    """What is searched for: kind and wish, the floor's spectra by input, and the strokes (n, f) by which references are fed forward.
+
+    `expected` is what the observer of linear-quadratic control expects.
+    """
 
     kind: Kind
     wish: Wish
     floor: Mapping[str, Spectrum]
     feedforward: Array | None = None
+    expected: Disturbances | None = None
 
 
 def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
@@ -53,9 +64,12 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     """
     require(_findings(plant, asked))
     wish = asked.wish
+    loops = platform_loops(loops.coordinates) if asked.kind is Kind.LQG else loops
     between = (-0.5 * wish.spread, 0.5 * wish.spread)
     seen = view(plant, loops, wish.spread, tuple(dict.fromkeys([*(each.offset for each in variants(wish)), *between])))
     require(_growth_findings(seen))
+    if asked.kind is Kind.LQG:
+        return _find_weights(seen, asked)
     for tighter in _TIGHTER:
         within = field(seen, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0)), asked.floor)
         found = search(seen, within, asked.kind)
@@ -71,11 +85,59 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     raise DesignError([Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g} was found", advice)])
 
 
+def _find_weights(seen: View, asked: Asked) -> Tuning:
+    """Linear-quadratic control that is better than the one of the highest bandwidth, whose bandwidths are all the same."""
+    wish = asked.wish
+    within = field(seen, wish, asked.floor)
+    tried, goal = bench(seen, within), Goal(None, wish.sensitivity, wish.spread)
+    searched = Regulated(tried, asked.expected or Disturbances(_EXPECTED, {}), asked.feedforward)
+    begun = tune(seen.plant, seen.loops, Task(asked.kind, goal, expected=asked.expected, feedforward=asked.feedforward))
+    against = outcome(tried, begun.controller.system(seen.step))
+    for tighter in _TIGHTER:
+        sharper = replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0))
+        held = replace(searched, tried=replace(tried, field=_limited(within, sharper)))
+        controller = weigh(held, against)
+        judged = _judge(seen, wish, controller)
+        if judged.stable and judged.peak <= wish.sensitivity:
+            found = outcome(tried, controller.system(seen.step))
+            require(_unmet_of(wish, found))
+            reason = _said(seen, wish, found.rejection[0], judged)
+            return Tuning(asked.kind, goal, controller, judged, ((),) * len(seen.loops.names), reason)
+    raise DesignError([_none_found(asked)])
+
+
+def _limited(within: Field, wish: Wish) -> Field:
+    """The same plants held to another peak of S."""
+    return replace(within, wish=wish, variants=variants(wish))
+
+
+def _none_found(asked: Asked) -> Finding:
+    advice = "Allow a higher peak of S, a smaller spread of the modes, or take another kind"
+    return Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {asked.wish.sensitivity:g} was found", advice)
+
+
+def _unmet_of(wish: Wish, found: Outcome) -> Iterator[Finding]:
+    """What was asked for and is not reached, at the worst of the loops."""
+    reached = {
+        "rejection": (wish.rejection, float(np.min(found.rejection[0])), "Hz", 1.0),
+        "settling": (wish.settling, float(np.max(found.settling)), "ms", 1e3),
+        "delay margin": (wish.delay_margin or None, float(np.min(found.delay_margin)), "ms", 1e3),
+    }
+    for name, (wanted, value, unit, factor) in reached.items():
+        worse = wanted is not None and (value > wanted if name == "settling" else value < wanted)
+        if wanted is not None and worse and abs(value / wanted - 1.0) > _UNMET:
+            what = f"the nearest comes to {factor * value:.4g} {unit}, and {factor * wanted:.4g} {unit} is asked for"
+            yield Finding(f"controller.goal.{name}", what, "Ask for less of it, allow a higher peak of S, or sample faster")
+
+
 def _findings(plant: Plant, asked: Asked) -> Iterator[Finding]:
     yield from wish_findings(asked.wish, plant.hardware.step)
     if asked.kind not in _KINDS:
         what = f"there is no search for {asked.kind.value}"
-        yield Finding("controller.goal", what, "Take pi or pid, or leave the goal out: then it is tuned to the highest bandwidth")
+        yield Finding("controller.goal", what, "Take pi, pid or lqg, or leave the goal out: then it is tuned to the highest bandwidth")
+    if asked.kind is Kind.LQG and asked.wish.prefilter:
+        what = "linear-quadratic control shapes references itself, and takes no prefilter"
+        yield Finding("controller.goal.prefilter", what, "Leave it out, or take pi or pid")
 
 
 def _growth_findings(seen: View) -> Iterator[Finding]:
@@ -85,7 +147,7 @@ def _growth_findings(seen: View) -> Iterator[Finding]:
         yield Finding("plant", what, "A search begins with loops that are stable when open: support what gives way, or state the gains")
 
 
-def _judge(seen: View, wish: Wish, controller: Decentralised) -> Judgement:
+def _judge(seen: View, wish: Wish, controller: Decentralised | LQG) -> Judgement:
     """Peak and bandwidths within the spread; stability also beyond it."""
     near = [place for place, offset in enumerate(seen.offsets) if abs(offset) <= 1.001 * wish.spread]
     system = controller.system(seen.step)
@@ -151,8 +213,12 @@ def _unmet(seen: View, within: Field, found: Found) -> Iterator[Finding]:
 
 
 def _sentence(seen: View, within: Field, found: Found, kind: Kind, judged: Judgement) -> str:
-    reached = ", ".join(f"{name} {rejects_to(within, found, loop):.3g}" for loop, name in enumerate(seen.loops.names))
-    wish = within.wish
+    far = np.array([rejects_to(within, found, loop) for loop in range(len(seen.loops.names))])
+    return _said(seen, within.wish, far, judged, kind)
+
+
+def _said(seen: View, wish: Wish, far: Array, judged: Judgement, kind: Kind = Kind.LQG) -> str:
+    reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(seen.loops.names, far, strict=True))
     peak = (
         f"the peak of S is {judged.peak:.3g}, modes up to {100.0 * wish.spread:g} % off included"
         if wish.spread

@@ -1,0 +1,141 @@
+"""What any controller comes to, of whatever kind, read off frequency responses: fast enough for searches and for fronts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System
+from flexstage.control.tuning.search import Field
+from flexstage.control.tuning.view import View
+from flexstage.models.linear.model import Channel
+
+_BAND = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """The field of a search with all strokes: `plants` (v, f, k, n) and `slow` (w, h, k, n) from strokes to loops, none at rest."""
+
+    seen: View
+    field: Field
+    plants: Array
+    slow: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a controller comes to at the variants (v) of a field: its `peaks` (v,) of S over all loops, and by loop (k,) the rest.
+
+    `rejection` [Hz] is where |S| first rises through 1, of the model and worst of the modes' spread (2, k); `noise` the rms at rest and
+    `floor` the floor's part [m]; `settling` [s] to 2 % and `overshoot` worst over the spread; `delay_margin` [s] the loop's own.
+    """
+
+    peaks: Array
+    rejection: Array
+    noise: Array
+    floor: Array
+    settling: Array
+    overshoot: Array
+    delay_margin: Array
+
+
+def bench(seen: View, within: Field) -> Bench:
+    """The view's plants at the field's frequencies."""
+    systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
+    sense = seen.loops.sense
+    plants = [
+        sense @ systems[each.offset].at(at) * (each.gain * np.exp(-2j * np.pi * at * each.later))[:, None, None]
+        for each, at in zip(within.variants, within.frequencies, strict=True)
+    ]
+    offsets = tuple(dict.fromkeys(each.offset for each in within.variants if abs(each.offset) <= within.wish.spread))
+    return Bench(seen, within, np.stack(plants), np.stack([sense @ systems[each].at(within.lines[1:]) for each in offsets]))
+
+
+def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
+    """What a stable loop comes to, its controller's outputs times `gain`; whether it is stable is not asked here.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.search import field
+    >>> from flexstage.control.tuning.view import view
+    >>> from flexstage.control.tuning.wish import Wish
+    >>> closed = integral_loop(gain=100.0)
+    >>> seen = view(closed.plant, platform_loops(closed.plant.coordinates), 0.0)
+    >>> found = outcome(bench(seen, field(seen, Wish(spread=0.0), {})), closed.controller)
+    >>> bool(found.peaks[0] < 2.0), float(found.overshoot[0].round(2)), bool(found.settling[0] < 0.06)
+    (True, 0.0, True)
+    """
+    within, count = tried.field, len(tried.seen.loops.names)
+    responses, eye = resolvent(_entered(tried.seen, control)), np.eye(count)
+    every = gain * responses.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, 2 * count)
+    opened = tried.plants @ every[..., :count]
+    left = np.linalg.inv(eye + opened)
+    slow = gain * responses.at(within.lines[1:])
+    following = np.linalg.solve(eye + tried.slow @ slow[..., :count], tried.slow @ slow[..., count:])
+    steps, interval = _steps(np.einsum("whkk->whk", following)), 0.5 / float(within.lines[-1])
+    lengths = tried.seen.loops.coordinates.scale[:, None] * np.linalg.inv(tried.seen.loops.sense)
+    shaken = np.sum(np.abs(left[0] @ within.disturbed) ** 2, axis=(0, 2))
+    heard = np.sum(np.abs((eye - left[0]) * within.heard[:, None, :]) ** 2, axis=(0, 2))
+    spread = [place for place, each in enumerate(within.variants) if abs(each.offset) <= within.wish.spread]
+    own = np.einsum("vfkk->vfk", left)
+    far = np.array([[_first_rise(np.abs(own[v, :, k]), within.frequencies[v]) for k in range(count)] for v in spread])
+    return Outcome(
+        peaks=np.max(np.linalg.norm(lengths @ left @ np.linalg.inv(lengths), 2, axis=(-2, -1)), axis=-1),
+        rejection=np.stack([far[0], np.min(far, axis=0)]),
+        noise=np.sqrt(shaken + heard),
+        floor=np.sqrt(shaken),
+        settling=np.max(_settling(steps), axis=0) * interval,
+        overshoot=np.max(steps, axis=(0, 1)) - 1.0,
+        delay_margin=np.array([_delay_margin(1.0 / own[0, :, k] - 1.0, within.frequencies[0]) for k in range(count)]),
+    )
+
+
+def _entered(seen: View, control: System) -> System:
+    """The controller from loops' errors: pose and error together, as what comes back; and the error alone, as references enter."""
+    names, count = seen.loops.coordinates.names, len(seen.loops.names)
+    error, back = np.zeros((len(control.inputs), len(names))), np.zeros((len(control.inputs), len(names)))
+    for number, name in enumerate(names):
+        for kind, sign, into in (("error", 1.0, error), ("pose", -1.0, back), ("reference", 1.0, error)):
+            if f"{kind}.{name}" in control.input_names:
+                into[control.input_names.index(f"{kind}.{name}"), number] = sign
+    back[[name.startswith("error.") for name in control.input_names]] = error[[name.startswith("error.") for name in control.input_names]]
+    entry = np.hstack([back, error]) @ np.kron(np.eye(2), np.linalg.inv(seen.loops.sense))
+    inputs = tuple(Channel(f"{kind}{number}", "m") for kind in ("back", "to") for number in range(count))
+    return replace(control, B=control.B @ entry, D=control.D @ entry, inputs=inputs)
+
+
+def _steps(following: Array) -> Array:
+    """Answers (w, n, k) to steps of what follows (w, h, k), as far as a period of the lines holds them."""
+    whole = np.concatenate([np.ones((len(following), 1, following.shape[-1])), following], axis=1)
+    return np.cumsum(np.fft.irfft(whole, axis=1), axis=1)
+
+
+def _settling(steps: Array) -> Array:
+    """When steps (w, n, k) stay within 2 %, in samples, straight between them."""
+    off = np.abs(steps - 1.0)
+    last = np.max(np.where(off > _BAND, np.arange(steps.shape[1])[:, None], -1), axis=1)
+    ends = [np.take_along_axis(off, np.clip(last + by, 0, steps.shape[1] - 1)[:, None], axis=1)[:, 0] for by in (0, 1)]
+    return np.where(last < 0, 0.0, last + np.clip((ends[0] - _BAND) / np.maximum(ends[0] - ends[1], 1e-300), 0.0, 1.0))
+
+
+def _first_rise(sizes: Array, frequencies: Array) -> float:
+    """Where |S| first rises through 1, straight in the logarithms."""
+    above = np.flatnonzero(sizes >= 1.0)
+    if not len(above) or not above[0]:
+        return float(frequencies[-1 if not len(above) else 0])
+    ends = slice(int(above[0]) - 1, int(above[0]) + 1)
+    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(frequencies[ends]))))
+
+
+def _delay_margin(opened: Array, frequencies: Array) -> float:
+    """The least delay that brings L to -1 where its gain passes 1, straight between frequencies."""
+    sizes, turn = np.log(np.abs(opened)), np.unwrap(np.angle(opened))
+    places = np.flatnonzero(sizes[1:] * sizes[:-1] <= 0.0)
+    share = sizes[places] / (sizes[places] - sizes[places + 1])
+    angle = turn[places] + share * (turn[places + 1] - turn[places])
+    at = frequencies[places] + share * (frequencies[places + 1] - frequencies[places])
+    return float(np.min(np.mod(angle + np.pi, 2.0 * np.pi) / (2.0 * np.pi * at), initial=np.inf))

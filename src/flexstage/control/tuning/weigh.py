@@ -1,0 +1,133 @@
+"""A search for the weights of linear-quadratic control: what it shall be better in than the one tuned to the highest bandwidth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array
+from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
+from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.judge import closed_growth
+from flexstage.control.tuning.outcome import Bench, Outcome, outcome
+from flexstage.control.tuning.wish import Wish
+
+_BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
+"""Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
+_FIRST = (0.4, 1.2, 0.8)
+"""Edges of the first simplex: factors of e of bandwidths, noise and weights of the pose. The grid's steps are twice as far."""
+_ROUNDS, _SMALLER, _EVALUATIONS = 2, 0.35, 190
+"""The simplex begins anew, smaller, where it has come to, since it gets flat at kinks; designs that it tries in each round."""
+_SHARPNESS = 16.0
+"""Of the smooth least improvement, -ln(mean(exp(-s g)))/s: within ln(n)/s of the least of n, about 15 % of 15."""
+_STEEP = 20.0
+"""Weight of what passes a bound: 1 % too much costs as much as a fifth of an improvement by e."""
+_INSIDE = 0.985
+"""Share of the peak allowed that the frequencies looked at may have, for peaks between them."""
+_NOISIER = 1.15
+"""Times as much noise counts as no worse: where the gauges' own is most of it, as of loops that no floor shakes, rejection costs noise."""
+_UNSTABLE = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Regulated:
+    """What is searched in: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], the weights of the pose.
+
+    Loops that are the same have the same numbers.
+    """
+
+    tried: Bench
+    expected: Disturbances
+    feedforward: Array | None
+
+    @property
+    def firsts(self) -> tuple[int, ...]:
+        """The loops that are different."""
+        return tuple(sorted(set(self.tried.field.alike)))
+
+    def controller(self, point: Array) -> LQG:
+        """The design of a point."""
+        count, alike = len(self.firsts), self.tried.field.alike
+        places = [self.firsts.index(first) for first in alike]
+        numbers = np.exp(point)
+        weights = Weights(tuple(numbers[:count][places].tolist()), tuple(numbers[count + 1 :][places].tolist()))
+        model, coordinates = self.tried.seen.systems[0], self.tried.seen.loops.coordinates
+        observer = observer_gain(model, coordinates, Disturbances(float(numbers[count]), self.expected.gauges))
+        return with_observer(model, coordinates, weights, observer, self.feedforward)
+
+    def outcome(self, point: Array) -> Outcome | None:
+        """What it comes to; `None` where there is no design, or one that is unstable for the model or at the ends of the modes' offsets."""
+        seen = self.tried.seen
+        ends = {min(seen.offsets), 0.0, max(seen.offsets)}
+        try:
+            system = self.controller(point).system(seen.step)
+        except DesignError:
+            return None
+        growths = [closed_growth(each, system) for offset, each in zip(seen.offsets, seen.systems, strict=True) if offset in ends]
+        return None if max(growths) >= 0.0 else outcome(self.tried, system)
+
+
+def weigh(searched: Regulated, against: Outcome) -> LQG:
+    """The weights that are better than a known outcome in what the aim is about: in the least of all its numbers, most.
+
+    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
+    Optimization and Applications 51 (2012) 259) from the best of a grid: the same every time.
+    """
+
+    def cost(point: Array) -> float:
+        return _cost(searched, against, point)
+
+    first = float(searched.tried.seen.modes[0])
+    start = min(_grid(searched, first), key=cost)
+    count = len(searched.firsts)
+    edges = np.repeat(_FIRST, (count, 1, count))
+    for number in range(_ROUNDS):
+        simplex = np.vstack([start, start + _SMALLER**number * np.diag(edges)])
+        options = {"initial_simplex": simplex, "maxfev": _EVALUATIONS, "adaptive": True}
+        start = scipy.optimize.minimize(cost, start, method="Nelder-Mead", options=options).x
+    return searched.controller(start)
+
+
+def _grid(searched: Regulated, first: float) -> Iterator[Array]:
+    count = len(searched.firsts)
+    for share in _BANDWIDTHS:
+        for trust in _TRUSTS:
+            for pose in _POSES:
+                yield np.log([share * first] * count + [trust * searched.expected.strokes] + [pose] * count)
+
+
+def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
+    found = searched.outcome(point)
+    if found is None:
+        return _UNSTABLE
+    better = np.concatenate(list(_improvements(searched.tried.field.wish, found, against)))
+    least = -float(np.log(np.mean(np.exp(-_SHARPNESS * better)))) / _SHARPNESS
+    return _STEEP * excess_of(searched.tried, found) - least
+
+
+def _improvements(wish: Wish, found: Outcome, against: Outcome) -> Iterator[Array]:
+    """Logarithms by loop, of what the aim is about."""
+    if wish.aim in (Aim.BALANCE, Aim.REJECTION):
+        yield np.log(found.rejection[0] / against.rejection[0])
+    if wish.aim in (Aim.BALANCE, Aim.NOISE):
+        more = _NOISIER if wish.aim is Aim.BALANCE else 1.0
+        yield np.log(more * np.maximum(against.noise, 1e-300) / np.maximum(found.noise, 1e-300))
+    if wish.aim in (Aim.BALANCE, Aim.SETTLING):
+        yield np.log(np.maximum(against.settling, 1e-300) / np.maximum(found.settling, 1e-300))
+
+
+def excess_of(tried: Bench, found: Outcome) -> float:
+    """By how much bounds are passed, the sum of what each is."""
+    wish, limits = tried.field.wish, np.array([each.limit for each in tried.field.variants])
+    over = [
+        *(found.peaks / (_INSIDE * limits) - 1.0),
+        *(found.overshoot - wish.overshoot),
+        *((wish.rejection or 0.0) / found.rejection[0] - 1.0),
+        *((0.0 if wish.settling is None else found.settling / wish.settling - 1.0) * np.ones(len(found.settling))),
+        *(wish.delay_margin / found.delay_margin - 1.0),
+    ]
+    return float(np.sum(np.maximum(over, 0.0)))
