@@ -25,8 +25,9 @@ from flexstage.control.plants import Plant
 from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import bandwidths, margins, peaks
 from flexstage.control.study.choices import Criterion
-from flexstage.control.study.control import make_controller
+from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, resolve
+from flexstage.control.study.runs import StepAnswer, runs
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopNumbers, LoopSetup, NotchAt, VibrationSetup
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.fit import Bounds
@@ -166,6 +167,18 @@ def test_the_shipped_stage_is_brought_farther_than_by_hand():
         assert peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0
     assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])
     assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.05, 0.05))
+    for offset, soon in ((0.0, 25e-3), (-0.02, 30e-3), (0.02, 30e-3)):
+        steps = simulated_steps(given, tuned, offset)
+        assert max(each.settling for each in steps) <= soon
+        assert max(each.overshoot for each in steps) <= 0.2
+
+
+def simulated_steps(given: ResolvedSetup, tuned: Tuning, offset: float) -> list[StepAnswer]:
+    """Steps of every motion, rounding and limits included, with all modes off."""
+    wired = closed(given.plant, tuned, offset)
+    system = replace(tuned.controller.system(given.step), step=wired.plant.hardware.step)
+    control = Control(system, tuned.controller, tuned, given.plant.coordinates.strokes)
+    return [run.step for run in runs(replace(given, plant=wired.plant), control, wired) if run.step is not None]
 
 
 def test_a_plant_that_is_unstable_by_itself_is_refused():

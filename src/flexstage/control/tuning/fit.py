@@ -11,8 +11,8 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.tuning.shape import Shape
 
-_BAND = 0.018
-"""Within which a step is settled, a tenth less than the 2 % that are shown."""
+_BAND, _BAND_OFF = 0.0172, 0.0185
+"""Within which steps are settled, of the model and of modes that are off: less than the 2 % that are shown, for rounding of gauges."""
 STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
 _KEPT = 0.01
 _BELOW = 0.985
@@ -77,6 +77,11 @@ class OneLoop:
 def encircles_nothing(returned: Array) -> Array:
     """Whether curves (..., f) of 1 + L of stable plants and controllers that integrate encircle 0 nowhere: Nyquist's criterion."""
     return np.abs(np.unwrap(np.angle(returned), axis=-1)[..., -1]) < 2.0
+
+
+def _bands(steps: Array) -> Array:
+    """Bands of steps (w, n), the model's first."""
+    return np.where(np.arange(len(steps)) == 0, _BAND, _BAND_OFF)[:, None] * np.ones(steps.shape)
 
 
 def _following(loops: Array, at_rest: float) -> Array:
@@ -161,7 +166,7 @@ class Misfit:
             max(
                 np.max(sizes[below], initial=0.0) - _BELOW,
                 np.sqrt(self.loop.noise(point)) / self.bounds.noise - 1.0,
-                _SHARE * (np.max(np.abs(steps[:, late] - 1.0), initial=0.0) / _BAND - 1.0),
+                _SHARE * (np.max((np.abs(steps - 1.0) / _bands(steps))[:, late], initial=0.0) - 1.0),
                 np.max(steps) - 1.0 - self.bounds.overshoot,
             )
         )
@@ -190,12 +195,13 @@ class Misfit:
         every = max(1, steps.shape[1] // _SAMPLES)
         late = self._late(steps.shape[1])[every - 1 :: every]
         off = steps[:, every - 1 :: every] - 1.0
-        outside, above = late & (np.abs(off) > _BAND), off > self.bounds.overshoot
+        bands = _bands(off)
+        outside, above = late & (np.abs(off) > bands), off > self.bounds.overshoot
         if not np.any(outside) and not np.any(above):
             return
         moved = _summed((following * (1.0 - following))[:, 1:] * slopes(), every)
-        side = np.sign(off[outside])
-        yield _STEPS * (side * off[outside] / _BAND - 1.0), _STEPS * moved[:, outside] * side / _BAND
+        side = np.sign(off[outside]) / bands[outside]
+        yield _STEPS * (side * off[outside] - 1.0), _STEPS * moved[:, outside] * side
         yield STIFF * (off[above] - self.bounds.overshoot), STIFF * moved[:, above]
 
 

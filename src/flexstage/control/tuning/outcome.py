@@ -51,8 +51,14 @@ def bench(seen: View, within: Field) -> Bench:
         sense @ systems[each.offset].at(at) * (each.gain * np.exp(-2j * np.pi * at * each.later))[:, None, None]
         for each, at in zip(within.variants, within.frequencies, strict=True)
     ]
-    offsets = tuple(dict.fromkeys(each.offset for each in within.variants if abs(each.offset) <= within.wish.spread))
+    offsets = tuple(within.variants[place].offset for place in _spread(within))
     return Bench(seen, within, np.stack(plants), np.stack([sense @ systems[each].at(within.lines[1:]) for each in offsets]))
+
+
+def _spread(within: Field) -> list[int]:
+    """Variants of which only the modes are off, and no farther than the spread; the model first."""
+    cases = enumerate(within.variants)
+    return [place for place, each in cases if abs(each.offset) <= within.wish.spread and each.gain == 1.0 and not each.later]
 
 
 def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
@@ -80,7 +86,7 @@ def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
     lengths = tried.seen.loops.coordinates.scale[:, None] * np.linalg.inv(tried.seen.loops.sense)
     shaken = np.sum(np.abs(left[0] @ within.disturbed) ** 2, axis=(0, 2))
     heard = np.sum(np.abs((eye - left[0]) * within.heard[:, None, :]) ** 2, axis=(0, 2))
-    spread = [place for place, each in enumerate(within.variants) if abs(each.offset) <= within.wish.spread]
+    spread = _spread(within)
     own = np.einsum("vfkk->vfk", left)
     far = np.array([[_first_rise(np.abs(own[v, :, k]), within.frequencies[v]) for k in range(count)] for v in spread])
     return Outcome(

@@ -26,30 +26,58 @@ from flexstage.control.tuning.wish import STABLE, Wish
 _INSIDE = 0.97
 """Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
 _LOOSER, _LATER = 1.5, 8.0
+"""Limits of |S|, times the one allowed, where modes are off so far that the loop need only be stable; and where a delay margin is used up.
+
+Both are finite so that the descent sees an edge before it is passed: at 8, L is an eighth from -1, at a delay 3 % above the one asked for.
+"""
 _SETTLED = 6.0
-"""Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced."""
+"""Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced.
+
+A loop that crosses at f with one time constant, 1/(2 pi f), is within 2 % after ln(50)/(2 pi f) = 0.62/f; notched modes that lie elsewhere
+ring ten times as long. Loops of the shipped stage that were found settle in 3/f to 6/f.
+"""
 _NEAR, _MOST_NOTCHES = 4.0, 3
-_ZEROS = (0.2, 0.8)
+"""Modes that get notches: up to so many times the first that stands out, and so many. Beyond, PI at the first mode has fallen below 1/4."""
+_ABOVE = 1.6
+"""Where a second notch begins in a loop with one mode, times the mode: another pair of zeros and poles, free to go where it serves."""
+_ZEROS, _POLE_DAMPINGS, _ZERO_DAMPINGS = (0.2, 0.8), (0.8, 2.4), (0.04, 0.12)
+"""Grid of starts: k_i/k_p over the first mode's omega; dampings of the first notch's poles (narrow, wide) and zeros (deep, shallow)."""
 _LOOSE = 1.35
+"""Starts may have this much more than the peak allowed: the descent brings it down, and the next lower gain may be far below."""
 _DRIFT = 1e-9
 """Amplitude density [m/Hz^0.5] at 1 Hz of what is taken to disturb every loop where no floor is stated: it falls with the frequency."""
-_POLE_DAMPINGS, _ZERO_DAMPINGS = (0.8, 2.4), (0.04, 0.12)
 _SCALES = np.geomspace(0.01, 20.0, 40)
-_RATIO, _FINEST, _LEVELS, _STARTS = 1.4, 1.08, 6, 4
+"""Gains at which starts are tried: loops are in metres, of gain 1 at rest, so that 1 is a crossing near the mode; 20 % apart."""
+_LEVELS, _STARTS = 6, 4
+"""How often the wanted frequency falls by the ratio before starts are given up; how many are followed, those that reject farthest."""
+_RATIO, _FINEST = 1.4, 1.08
+"""By what the wanted frequency is raised, its root where that fails, until it is finer: what is found is within 8 % of where it ends."""
 _KICKS, _KICK, _TURN = 4, 0.25, 2.4
+"""Places around: so many, moved by 0.25 in the logarithms, in directions sin(2.4 n k): 2.4 rad is near the golden angle."""
 _NEARLY = 0.03
-_LEFT, _SLOWEST = 0.015, 0.1
+"""Excess of bounds within which a start counts as calm: noise is bounded by such starts alone."""
+_LEFT = 0.015
+"""Of the overshoot, what is left to rounding of gauges and to samples of steps that lie beside the top."""
+_SLOWEST = 0.1
+"""Least k_i/k_p over the first mode's omega: slower integrators leave a tail that the band of 2 % does not see and statics do."""
 _COUPLED = 0.5
+"""|g_ij g_ji / (g_ii g_jj)| above which loops are searched for together: the interaction at which a loop's own plant changes by half."""
 _NOISIER = 1.65
 """How much more noise a balance takes than what is quiet and already rejects far."""
 _AMBITION, _BACK = 1.0, 0.8
+"""What is wanted at first: 0.3 of the first mode's frequency, or this share of what the calm start rejects, with all bounds kept."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
+"""Shares of what loops reached by themselves that all together are asked for, in turn."""
 _SAME = 1e-6
+"""Relative difference of plants below which loops are the same: models of symmetric stages are symmetric to some 1e-9."""
 _CORNER, _OF_RATE = 10.0, 0.4
+"""Corner of a PID's filter: ten times the platform's highest mode, at most 0.4 of the sampling rate, where Tustin's rule keeps it."""
 _RATE = 20.0
 """Samples of steps in a period of the loops' highest mode."""
 _PERIODS, _LEAST_LINES, _MOST_LINES = 12.0, 9, 12
+"""Steps last so many periods of the lowest mode, 0.1 s at 100 Hz, as powers of two between 512 and 4096 samples."""
 _PLAIN, _AROUND = 90, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
+"""Frequencies: so many evenly in the logarithm, and around each mode by so many half widths: between, |S| of a pole is straight to 3 %."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +90,7 @@ class Effort:
 
 
 _CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
+"""To make starts quiet; to keep bounds, with noise to tell equals apart, until nothing that counts passes them; all loops at once."""
 
 
 @dataclass(frozen=True)
@@ -512,9 +541,10 @@ def _shape(seen: View, kind: Kind, loop: int) -> Shape:
 
 
 def _places(seen: View, loop: int) -> list[float]:
-    """Frequencies [Hz] of the first modes that stand out of a loop."""
+    """Frequencies [Hz] where notches begin: the first modes that stand out of a loop; of one mode alone also a place above it."""
     found = [each.frequency for each in resonances(seen, loop)]
-    return [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
+    near = [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
+    return [*near, _ABOVE * near[0]] if len(near) == 1 and (seen.step is None or _ABOVE * near[0] < _OF_RATE / seen.step) else near
 
 
 def _first_place(seen: View, loop: int) -> float:
