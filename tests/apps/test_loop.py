@@ -141,12 +141,16 @@ def test_a_file_of_hysteresis_and_one_of_poses(guide: Command, tmp_path: Path) -
 
 
 def test_exports_are_there_whole(guide: Command, tmp_path: Path) -> None:
-    names = ("plant.mat", "guide.c", "guide.fmu")
+    names = ("plant.mat", "guide.c", "guide.fmu", "guide.loop.fmu")
     ended = guide("loop", "stage.toml", *SMALL, *(word for name in names for word in ("--export", name)))
     assert ended.code == 0, ended.err
     assert all(f"Wrote {name}" in ended.err for name in (*names, "guide.h"))
     plant = scipy.io.loadmat(tmp_path / "plant.mat", simplify_cells=True)
     assert plant["sampled"]["step"] == pytest.approx(1e-4)
+    with zipfile.ZipFile(tmp_path / "guide.loop.fmu") as unit:
+        described = unit.read("modelDescription.xml").decode()
+    assert "true motions" in described
+    assert "added to readings before rounding" in described
     compiled = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "guide.c", "-o", "guide.o"]
     assert subprocess.run(compiled, cwd=tmp_path, check=False).returncode == 0
 

@@ -28,7 +28,8 @@ from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.hardware import NO_INVERSE, Precision
 from flexstage.control.export.code.text import identifier
-from flexstage.control.export.files import controller_files, export_findings, hardware_files, hardware_findings, plant_file
+from flexstage.control.export.code.whole import loop_code
+from flexstage.control.export.files import WHOLE, controller_files, export_findings, hardware_files, hardware_findings, plant_file
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.report import comparison_report, loop_report
 from flexstage.control.study import setup as forms
@@ -150,7 +151,11 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     report: Report = None,
     export: Annotated[
         list[Path] | None,
-        text_option("--export", "FILE", "Write the loop for other programs: plant.mat, controller.c, controller.fmu; several times."),
+        text_option(
+            "--export",
+            "FILE",
+            "Write plant.mat, controller.c, controller.fmu or, the whole loop, stage.loop.fmu for other programs; several times.",
+        ),
     ] = None,
     hardware: Annotated[
         Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
@@ -429,6 +434,8 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
     about = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
     if target.suffix == ".c":
         return controller_files(target, machine, about)
+    if target.name.endswith(WHOLE):
+        return {target: fmu(loop_code(machine, target.stem))}
     return {target: fmu(controller_code(machine, target.stem, about))}
 
 

@@ -30,6 +30,8 @@ from flexstage.models.linear.model import Channel
 _TESTED = 300
 ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
 """What a loop is exported as, by the ending of the file's name."""
+WHOLE = ".loop.fmu"
+"""Ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
 
 
 def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
@@ -41,7 +43,7 @@ def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
     place = Path(path)
     name = identifier(place.stem)
     if place.suffix not in ENDINGS:
-        known = ", ".join(f"{ending} ({what})" for ending, what in ENDINGS.items())
+        known = ", ".join(f"{ending} ({what})" for ending, what in {**ENDINGS, WHOLE: "the whole loop as one"}.items())
         yield Finding(os.fspath(path), f'the ending "{place.suffix}" is no export', f"End the name in {known}")
     elif place.suffix == ".c" and name != place.stem:
         what = f'its header {place.stem}.h would stand before a system\'s, or its functions could not be called "{place.stem}"'
