@@ -5,6 +5,7 @@ Seconds are those of the processor where the machine has other work as well. Tar
 
 from __future__ import annotations
 
+import os
 import resource
 import subprocess
 import sys
@@ -41,6 +42,7 @@ def least_times(command: list[str], folder: str | None = None, repeats: int = RE
 
 
 def main() -> None:
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # installed programs do not translate their modules at every start
     bare = least_times(BARE)
     helped = least_times([str(COMMAND), "--help"] if COMMAND.exists() else HELP)
     for name, (elapsed, spent) in {"python -c pass": bare, "flexstage --help": helped}.items():

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.jobs import cores
+from flexstage.base.lazy import Late
 from flexstage.base.quantity import (
     ACCELERATION_NOISE,
     CURRENT,
@@ -31,7 +32,6 @@ from flexstage.control.export.code.text import identifier
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.export.files import WHOLE, controller_files, export_findings, hardware_files, hardware_findings, plant_file
 from flexstage.control.export.fmu.unit import fmu
-from flexstage.control.report import comparison_report, loop_report
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, Criterion
@@ -53,6 +53,11 @@ from flexstage.show.command.output import announce, require_writable, save, writ
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, first_that_parses, motions
 from flexstage.show.table import Table
+
+if TYPE_CHECKING:
+    from flexstage.control import report as pages
+else:
+    pages = Late("flexstage.control.report")  # figures, scenes and sections: thirty modules
 
 _Record = TypeVar("_Record")
 _NOTHING = "none"
@@ -222,7 +227,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             test = None if not record else _tested(record, shown.share)
             rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share, workers=cores())
         if report is not None:
-            save(report, comparison_report(mechanism, asked, rivals), "--report")
+            save(report, pages.comparison_report(mechanism, asked, rivals), "--report")
         answer(
             "loops",
             mechanism,
@@ -240,7 +245,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         test = None if not record else _tested(record, shown.share)
         found = loop_study(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
     if report is not None:
-        save(report, loop_report(found), "--report")
+        save(report, pages.loop_report(found), "--report")
     for target in exports:
         _export(found, target)
     if hardware is not None:
