@@ -24,6 +24,9 @@ providers._get_local_constants = lambda: providers._local_constants
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 QUICK = os.environ.get("FLEXSTAGE_TESTS") == "quick"
 _FEW = 20
+STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount", "leaf-guide", "resonator"}
+STROKELESS |= {"quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "steering-mirror", "long-travel-xy"}
+"""Cases whose motion strokes do not determine: there are too few, or none."""
 
 # Laws build whole mechanisms: drawing one is slow by nature, and no test has a time limit. They are drawn once for all laws, by the first
 # one that asks (tests/laws/shared.py), which takes a `given` within another.

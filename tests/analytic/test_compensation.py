@@ -28,19 +28,8 @@ from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.parts.body import Payload
 from flexstage.spatial.frame import COMPONENTS
+from tests.conftest import STROKELESS
 
-STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
-STROKELESS |= {
-    "leaf-guide",
-    "resonator",
-    "quad-suspension",
-    "voice-coil-xy",
-    "z-stage",
-    "spiral-stage",
-    "steering-mirror",
-    "long-travel-xy",
-}
-"""Cases whose motion strokes do not determine: there are too few, or none."""
 STAGES = sorted(set(CASES) - {"double-triangle-a", "double-triangle-refitted"} - STROKELESS)
 DAMPING: Damping = ModalDamping(0.01)
 

@@ -246,3 +246,21 @@ def test_a_report_plays_modes_of_the_loaded_stage_and_all_else_as_drawn():
     still = [[each for each in data.motions if each.group is not Group.MODE] for data in (played, drawn)]
     assert [each.name for each in still[0]] == [each.name for each in still[1]]
     assert all(np.array_equal(one.twists, other.twists) for one, other in zip(*still, strict=True))
+
+
+def test_how_far_leaves_shorten_is_told():
+    """Of a vertical axis on leaves, 0.6 u^2 / L: it goes aside by that, as its equilibrium at the end of its stroke says."""
+    stage = fs.case("z-stage")
+    found = fs.analyse(stage).second_order
+    assert found is not None
+    ends = fs.equilibrium(fs.nonlinear(stage), hold={"platform.z": 2e-3})
+    assert found.shortening == pytest.approx(float(ends.displacement()[0]), rel=0.005)
+    assert "gets shorter by 0.04 mm" in found.text
+
+
+def test_stages_that_superelements_guide_have_a_stroke_and_no_second_order():
+    stage = fs.case("spiral-stage")
+    model = fs.nonlinear(stage)
+    found = fs.stroke(fs.path(model, "platform.z", np.array([0.0, 1e-3])))
+    assert found.cautions == ()
+    assert fs.analyse(stage).second_order is None

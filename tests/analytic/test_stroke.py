@@ -78,3 +78,21 @@ def test_options_bring_a_stage_where_it_is_to_be():
 def test_options_that_mean_nothing_are_refused(at: list[str], load: list[str]):
     with pytest.raises(fs.DesignError):
         footing(parallelogram(), Place(at, load))
+
+
+def test_loads_past_what_a_stage_bears_are_told_with_how_far_it_stays():
+    """Two slender leaves buckle at 2 pi^2 E I / L^2; a quarter of five times that is past it, three sixteenths are not."""
+    slender = 2.0 * np.pi**2 * 200e9 * 0.02 * 0.5e-3**3 / 12.0 / 0.1**2
+    with pytest.raises(fs.DesignError, match=r"loads, or strokes, the stage leaves in .* up to 19% of the way it stays"):
+        fs.stance(guide(), loads={"platform.fx": -5.0 * slender})
+
+
+def test_what_stays_locked_is_said_once():
+    with pytest.raises(fs.DesignError, match="given twice"):
+        footing(parallelogram(), Place(["platform.x=1 um"], hold=["platform.x", "platform.x"]))
+
+
+def test_what_is_bent_beyond_the_theory_is_told():
+    told = " ".join(each.what for each in fs.stance(guide(), {"platform.y": 90e-3}).cautions)
+    assert "beyond which no linear elastic law is physics" in told
+    assert "two shapes across its width do not suffice" in told

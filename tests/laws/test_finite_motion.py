@@ -10,22 +10,11 @@ from hypothesis import strategies as st
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.registry import CASES, case
 from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
-from tests.conftest import examples
+from tests.conftest import STROKELESS, examples
 from tests.laws.shared import ideal
 from tests.laws.strategies import actuated_platforms, moved, turns
 
 seeds = st.integers(0, 2**32 - 1)
-STROKELESS = {"xy-stage-floating", "tilt-stage", "voice-coil-stage", "mirror-mount", "telescope-mount"}
-STROKELESS |= {
-    "leaf-guide",
-    "resonator",
-    "quad-suspension",
-    "voice-coil-xy",
-    "z-stage",
-    "spiral-stage",
-    "steering-mirror",
-    "long-travel-xy",
-}
 ACTUATED = [name for name in CASES if name not in STROKELESS]
 
 

@@ -16,8 +16,13 @@ from flexstage.analysis.measures import measure_kind
 from flexstage.analysis.requirements import measure, requirements
 from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.store import dumps, loads
+from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.run import sweep
+from flexstage.studies.tolerances.file import load_tolerance
+from flexstage.studies.tolerances.slopes import slopes
 from tests.laws.test_nonlinear import LEAF, UNIT, guide
 
 OUT = fs.StrokePath("platform.y", ("-10 mm", "10 mm"), points=5, hold={"platform.x": "-5 N"})
@@ -117,3 +122,70 @@ def test_what_stays_on_a_path_stays():
     assert found.sag is not None
     assert np.max(np.abs(found.sag.values)) < 1e-15
     assert found.along.at("2", "platform.rz") == pytest.approx(0.0, abs=1e-15)
+
+
+BEAMS = """
+format = "flexstage study 1"
+name = "a guide at its stroke"
+design = "guide.toml"
+[responses]
+force = "out.force at 10 mm"
+soft = "out.stiffness"
+"""
+
+
+@pytest.fixture
+def at_its_stroke(tmp_path: Path) -> Path:
+    """A guide of beams, whose force over 10 mm is to be found: fast, and not linear."""
+    leaf = replace(LEAF, section=fs.LeafSection.BEAM)
+    path = fs.StrokePath("platform.y", ("0 mm", "10 mm"), points=2)
+    stated = replace(stage(), parts={"leaf": leaf}, paths={"out": path}, requirements={})
+    (tmp_path / "guide.toml").write_text(dumps(stated))
+    return tmp_path / "study.toml"
+
+
+def test_the_best_design_is_looked_for_by_what_it_does_at_its_stroke(at_its_stroke: Path):
+    at_its_stroke.write_text(
+        BEAMS
+        + """
+[variables]
+thin = { of = "parts.leaf.thickness", from = "0.3 mm", to = "0.8 mm" }
+[limits]
+"out.stiffness" = "at least 3 N/mm"
+[optimise]
+minimise = "force"
+starts = 1
+"""
+    )
+    study = load_study(at_its_stroke)
+    found = optimise(study, load_wanted(study))
+    assert found.final is not None
+    best = study.mechanism_for(values_of(study, found.final.shares))
+    path = fs.path(fs.nonlinear(best), "platform.y", np.array([0.0, 10e-3]))
+    told = fs.stroke(path).along.values[:, 2]
+    assert np.min(told) == pytest.approx(3e3, rel=1e-3)
+    assert [each.name for each in found.binding] == ["out.stiffness at least 3 N/mm"]
+
+
+def test_what_scatters_is_told_at_the_stroke(at_its_stroke: Path):
+    """How a force changes with a thickness: by two equilibria beside."""
+    at_its_stroke.write_text(
+        BEAMS
+        + """
+[scatter]
+cut = { of = "parts.leaf.thickness", normal = "2 um" }
+[tolerance]
+copies = 4
+require = false
+crosstalk = false
+"""
+    )
+    study = load_tolerance(at_its_stroke)
+    found = slopes(study)
+    assert found.smooth.all()
+    step = 1e-8
+    forces = [
+        fs.equilibrium(fs.nonlinear(replace(study.design, parts={"leaf": leaf})), hold={"platform.y": 10e-3}).reactions[0]
+        for leaf in (replace(LEAF, section=fs.LeafSection.BEAM, thickness=0.5e-3 + each) for each in (step, -step))
+    ]
+    assert found.gradient[0, 0] == pytest.approx((forces[0] - forces[1]) / (2.0 * step), rel=1e-5)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial, wraps
+from typing import Any
 
 import numpy as np
 
@@ -459,58 +460,38 @@ def _column(bench: Bench, asked: Measure, name: str) -> Array:
 _LESS = "Ask for less stroke, or ask flexstage buckle what gives way"
 
 
-@partial(MeasureKind, "<path>.force", FORCE, about=MOMENT, along=True)
-@_each_design
-def path_force(bench: Bench, asked: Measure) -> float:
-    """Force that holds the drive of a path there, at large displacements; over all of it the largest."""
-    return float(np.max(np.abs(_column(bench, asked, "force"))))
-
-
-@partial(MeasureKind, "<path>.stiffness", STIFFNESS, about=TWISTING, along=True)
-@_each_design
-def path_stiffness(bench: Bench, asked: Measure) -> float:
-    """Stiffness against the drive of a path, at large displacements; over all of it the least."""
-    return float(np.min(_column(bench, asked, "stiffness")))
-
-
-@partial(MeasureKind, "<path>.stress", PRESSURE, along=True)
-@_each_design
-def path_stress(bench: Bench, asked: Measure) -> float:
-    """Largest stress of a flexure over a path, at large displacements."""
-    return float(np.max(_column(bench, asked, "stress")))
-
-
-@partial(MeasureKind, "<path>.strain", RATIO, along=True)
-@_each_design
-def path_strain(bench: Bench, asked: Measure) -> float:
-    """Largest strain of a flexure over a path, at large displacements."""
-    return float(np.max(_column(bench, asked, "strain")))
-
-
-@partial(MeasureKind, "<path>.frequency", FREQUENCY, along=True)
-@_each_design
-def path_frequency(bench: Bench, asked: Measure) -> float:
-    """Lowest natural frequency along a path, free under the force there."""
-    return float(np.min(_column(bench, asked, "f1")))
-
-
-def _path_motion(axis: str) -> MeasureKind:
-    """The platform's motion along, or about, one axis as it goes along a path."""
+def _worst_along(name: str, column: str, quantity: Quantity, meaning: str, about: Quantity | None = None) -> MeasureKind:
+    """What a column of a stroke has of the worst, over all of a path or at one place on it: of stiffness and frequency the least."""
+    worst: Callable[[Array], Any] = np.min if name in _LEAST else _largest
 
     @_each_design
-    def motion(bench: Bench, asked: Measure) -> float:
-        """Motion of the platform along that axis as it goes along a path, from where it rests; over all of it the largest."""
-        drive = bench.mechanism.paths[asked.name].drive
-        return float(np.max(np.abs(_column(bench, asked, drive if drive == f"{PLATFORM}.{axis}" else f"{PLATFORM}.{axis}"))))
+    def work(bench: Bench, asked: Measure) -> float:
+        return float(worst(_column(bench, asked, column)))
 
-    return MeasureKind(f"<path>.motion.{axis}", ROTATION if axis.startswith("r") else DISPLACEMENT, motion, along=True)
+    work.__doc__ = meaning
+    return MeasureKind(f"<path>.{name}", quantity, work, about=about, along=True)
+
+
+def _largest(values: Array) -> Any:
+    return np.max(np.abs(values))
+
+
+_LEAST = {"stiffness", "frequency"}
+_MOVED = "Motion of the platform along that axis as it goes along a path, from where it rests; over all of it the largest."
+_FORCED = "Force that holds the drive of a path there, at large displacements; over all of it the largest."
+path_force = _worst_along("force", "force", FORCE, _FORCED, MOMENT)
+_STIFF = "Stiffness against the drive of a path, at large displacements; over all of it the least."
+path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
+path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
+path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
+path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, free under the force there.")
 
 
 @partial(MeasureKind, "buckling.factor", RATIO)
 @_each_design
 def buckling_factor(bench: Bench, _: Measure) -> float:
     """How many times its own weight and payloads the stage bears, at large displacements."""
-    return critical(bench.nonlinear, {WEIGHT: 1.0}, weight=0.0, tolerance=1e-6).factor
+    return critical(bench.nonlinear, {WEIGHT: 1.0}, weight=0.0, tolerance=1e-9).factor  # slopes are taken of it
 
 
 def over(kind: MeasureKind) -> MeasureKind:
@@ -531,7 +512,9 @@ def over(kind: MeasureKind) -> MeasureKind:
 
 
 _OVER = " over <path>"
-_PATH_MOTIONS = tuple(_path_motion(axis) for axis in COMPONENTS)
+_PATH_MOTIONS = tuple(
+    _worst_along(f"motion.{axis}", f"{PLATFORM}.{axis}", ROTATION if axis.startswith("r") else DISPLACEMENT, _MOVED) for axis in COMPONENTS
+)
 MEASURES: Register[MeasureKind] = Register(
     "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
 )

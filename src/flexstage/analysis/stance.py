@@ -86,8 +86,8 @@ def stance(
     require(_contradictions(asked))
     rest = equilibrium(asked.model, asked.loads)
     if not bool(rest.converged):
-        what = "under its weight and loads no equilibrium was found"
-        raise refuse("stage", what, "Ask flexstage buckle how much it bears")
+        far = f": equilibrium was followed to {float(rest.reached):.3g} of them" if float(rest.reached) else ""
+        raise refuse("stage", f"under its weight and loads no equilibrium was found{far}", "Ask flexstage buckle how much it bears")
     state = asked.reach(rest, 1.0)
     if not bool(state.converged):
         raise refuse("--at", *_how_far(asked, rest))
@@ -192,10 +192,20 @@ def _require_stable(asked: _Asked, state: State) -> None:
     if count > 0:
         most = float(np.max(strains(state).largest, initial=0.0))
         ways = f"{count} way{'s' if count > 1 else ''}"
-        what = f"under the force that brings it there the released stage leaves in {ways}; its largest strain is {most:.2%}"
         loose = [name for name in asked.coordinates if name not in asked.hold]
+        under = "under the force that brings it there the released stage" if loose else "under its weight and loads, or strokes, the stage"
+        what = f"{under} leaves in {ways}; its largest strain is {most:.2%}{_stable_until(asked)}"
         lock = f"Lock it: --hold {loose[0]}, or ask" if loose else "Ask"
         raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle what gives way")
+
+
+def _stable_until(asked: _Asked) -> str:
+    """Up to which sixteenth of what is asked, loads and strokes and places, the stage stays."""
+    rest = equilibrium(asked.model, {name: _SHARES * value for name, value in asked.loads.items()})
+    states = asked.reach(equilibrium(asked.model, asked.loads), _SHARES) if asked.at else rest
+    stays = unstable_motions(states, locked=asked.hold) == 0
+    count = int(np.argmin(np.append(stays, False)))
+    return f"; up to {_SHARES[count - 1]:.0%} of the way it stays" if count else ""
 
 
 def _held(asked: _Asked, rest: State, state: State) -> Matrix | None:

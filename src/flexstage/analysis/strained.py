@@ -94,4 +94,4 @@ def _moved(state: State, body: int, place: np.ndarray) -> np.ndarray:
 
 def _most(values: np.ndarray) -> np.ndarray:
     """The largest (l,) of all cases (..., l)."""
-    return np.max(values.reshape(-1, values.shape[-1]), axis=0, initial=0.0)
+    return np.max(values, axis=tuple(range(values.ndim - 1)), initial=0.0)

@@ -40,7 +40,7 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.eigen import cholesky, sign_weights
 from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
-from flexstage.models.linear.large import Quadratic, Solver, surely_definite
+from flexstage.models.linear.large import SINGULAR, Quadratic, Solver, surely_definite
 from flexstage.models.linear.model import Contribution, Contributions, LinearModel, assemble, strain_forces
 from flexstage.parts.condensation import Condensed, condense
 from flexstage.parts.freedom import ALL, Freedom
@@ -49,7 +49,6 @@ from flexstage.parts.part import Part, Restricted
 from flexstage.parts.stated import negative_part
 from flexstage.spatial.frame import FORCES, spatial_rotation, twist_transform
 
-_SINGULAR = 1e-11
 _ROUNDING = 1e-12
 _MASSLESS = 1e-12
 _STILL = 1e-7
@@ -435,15 +434,15 @@ def _loose(stage: _Stage, basis: Array | None) -> Array:
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
         pivots = np.diag(np.linalg.cholesky(scaled))
-        if np.min(pivots) ** 2 > _SINGULAR:
+        if np.min(pivots) ** 2 > SINGULAR:
             return np.zeros((len(diagonal), 0))
     except np.linalg.LinAlgError:
         pass
     values, vectors = np.linalg.eigh(scaled)
-    if values[0] < -_SINGULAR:
+    if values[0] < -SINGULAR:
         motion = vectors[:, 0] / diagonal
         raise _unstable(stage, strains, motion if first is None else first @ motion)
-    loose = vectors[:, values < _SINGULAR] / diagonal[:, None]
+    loose = vectors[:, values < SINGULAR] / diagonal[:, None]
     _require_told_apart(stage, loose, basis)
     return loose
 
@@ -465,10 +464,10 @@ def _critical_share(rest: Array, steep: Array) -> float:
     root = np.sqrt(np.where(np.diag(rest) > 0.0, np.diag(rest), 1.0))
     rest, steep = (each / root / root[:, None] for each in (rest, steep))
     values, vectors = np.linalg.eigh(rest)
-    loose, held = vectors[:, values < _SINGULAR], vectors[:, values >= _SINGULAR]
-    if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > _SINGULAR * np.max(np.diag(steep)):
+    loose, held = vectors[:, values < SINGULAR], vectors[:, values >= SINGULAR]
+    if np.max(np.diag(loose.T @ steep @ loose), initial=0.0) > SINGULAR * np.max(np.diag(steep)):
         return 0.0
-    half = held / np.sqrt(values[values >= _SINGULAR])
+    half = held / np.sqrt(values[values >= SINGULAR])
     return float(1.0 / np.linalg.eigvalsh(half.T @ steep @ half)[-1])
 
 

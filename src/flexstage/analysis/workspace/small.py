@@ -15,7 +15,8 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import RATIO
+from flexstage.base.quantity import LENGTH, RATIO
+from flexstage.base.unit import show
 from flexstage.mechanism.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
@@ -29,12 +30,17 @@ ERROR = 0.01
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """By how much linear models may be off over a box of motions: the relative `error` of second order, of the part `link`, and why."""
+    """By how much linear models may be off over a box of motions: the relative `error` of second order, of the part `link`, and why.
+
+    `shortening` is how far the ends of the leaf or rod `shortened` come nearer as it bends, by which a guide goes aside; empty of none.
+    """
 
     error: Annotated[float, RATIO]
     link: str
     why: str
     held_twice: bool = False
+    shortening: Annotated[float, LENGTH] = 0.0
+    shortened: str = ""
 
     @property
     def text(self) -> str:
@@ -47,8 +53,11 @@ class SecondOrder:
         besides = (
             "; redundant constraints may stretch flexures besides, which flexstage stroke tells" if self.held_twice and not more else ""
         )
+        aside = (
+            f", and leaves out that {self.shortened} gets shorter by {show(self.shortening, LENGTH, digits=2)}" if self.shortened else ""
+        )
         what = f"Over the strokes small-displacement theory is off by up to {100.0 * self.error:.2g} %"
-        return f"{what} ({self.link} {self.why}){more}{besides}."
+        return f"{what} ({self.link} {self.why}){aside}{more}{besides}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +65,7 @@ class SmallMotion:
     """Per unit of each coordinate (names (f)): `turn` [rad] and `bend` (deflection over length) of every link and of the platform (L, f).
 
     `limit` (L) is the turn [rad] that each may make: of second-order error, or where the faces of a notch touch; `closes` says which.
+    `span` (L) is the length that a part bends over [m], nought of one that bends at a point.
     """
 
     coordinates: tuple[str, ...]
@@ -64,6 +74,7 @@ class SmallMotion:
     bend: Array
     limit: Array
     closes: tuple[bool, ...]
+    span: Array
 
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
         """Share of its bound that the most moved link makes of it over a box of commands (half widths), and its name."""
@@ -73,13 +84,21 @@ class SmallMotion:
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """The largest theta^2 / 2 of a part that turns, or of a deflection over a length, over a box of commands (half widths)."""
+        """The largest theta^2 / 2 of a part that turns, or of a deflection over a length, over a box of commands (half widths).
+
+        A leaf or rod of length L that is bent by u and turned by theta between its ends, u as its middle sees it, is shorter by
+        3 u^2 / (5 L) + L theta^2 / 24.
+        """
         half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
         turned, bent = self.turn @ half, self.bend @ half
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
         bends = bent[worst] > turned[worst]
         why = f"bends by {bent[worst]:.3g} of its length" if bends else f"turns by {1e3 * turned[worst]:.3g} mrad"
-        return SecondOrder(0.5 * float(max(turned[worst], bent[worst])) ** 2, self.names[worst], why)
+        shorter = self.span * (0.6 * bent**2 + turned**2 / 24.0)
+        most = int(np.argmax(np.round(shorter, 15)))
+        shortened = self.names[most] if shorter[most] > 0.0 else ""
+        error = 0.5 * float(max(turned[worst], bent[worst])) ** 2
+        return SecondOrder(error, self.names[worst], why, shortening=float(shorter[most]), shortened=shortened)
 
     def doubt(self, command: Mapping[str, Number]) -> str:
         """Why linear models do not answer for a box of commands; empty where they do."""
@@ -120,7 +139,8 @@ def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
     assembly = expand(mechanism)
     moved = {name: _first(kinematics.strains[name]) for name in assembly.links}
     turn = [np.linalg.norm(each[3:], axis=0) for each in moved.values()]
-    bend = [np.linalg.norm(each[1:3], axis=0) / _span(assembly.links[name]) for name, each in moved.items()]
+    spans = {name: _span(assembly.links[name]) for name in moved}
+    bend = [np.linalg.norm(each[1:3], axis=0) / spans[name] for name, each in moved.items()]
     closing = [_closing(link.part) for link in assembly.links.values()]
     platform = _first(kinematics.motion)
     return SmallMotion(
@@ -130,6 +150,7 @@ def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
         bend=np.stack([*bend, np.zeros(platform.shape[-1])]),
         limit=np.array([*(min(_SMALL, each) for each in closing), _SMALL]),
         closes=(*(each < _SMALL for each in closing), False),
+        span=np.array([*(each if np.isfinite(each) else 0.0 for each in spans.values()), 0.0]),
     )
 
 

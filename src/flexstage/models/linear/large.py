@@ -20,7 +20,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.sparse import Sparse, as_csr, block_diagonal
 
-_SINGULAR = 1e-11
+SINGULAR = 1e-11
+"""The least share of a diagonal of K that a pivot or eigenvalue may have."""
 _DEFINITE = 1e-12
 _EXACT = 1e-13
 _ENOUGH = 1e-9
@@ -108,7 +109,7 @@ class Solver:
             pivots = self._factor.U.diagonal()
         except RuntimeError:  # exactly singular
             return False
-        return bool(np.min(pivots) > _SINGULAR)
+        return bool(np.min(pivots) > SINGULAR)
 
     def solve(self, load: Array) -> Array:
         """q (n, k) for loads (n, k). Raises `DesignError` where the digits that computers carry do not suffice."""

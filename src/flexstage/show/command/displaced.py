@@ -125,6 +125,7 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
         for name in held
         if "=" in name
     )
+    require(Finding(f"--hold {name}", "it is given twice", "Say it once") for name in dict.fromkeys(held) if held.count(name) > 1)
     warmth = 0.0 if asked.temperature is None else parse(asked.temperature, TEMPERATURE, where="--temperature")
     return Footing(mechanism, model, stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth))
 
