@@ -258,7 +258,7 @@ def test_how_far_leaves_shorten_is_told():
     assert "gets shorter by 0.04 mm" in found.text
 
 
-def test_stages_that_superelements_guide_have_a_stroke_and_no_second_order():
+def test_stages_guided_by_given_matrices_have_a_stroke_and_no_second_order():
     stage = fs.case("spiral-stage")
     model = fs.nonlinear(stage)
     found = fs.stroke(fs.path(model, "platform.z", np.array([0.0, 1e-3])))

@@ -31,7 +31,6 @@ from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.number import Number, Table
 from flexstage.base.threads import one_thread
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.frequency import Response
@@ -168,10 +167,11 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
 
 
 def _second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
-    """The error of small displacements over a box of motions; None where nobody asks for one, or superelements bend in an unknown way."""
-    if not command or not kinematics.coordinates or expand(mechanism).superelements:
+    """The error of small displacements over a box of motions; None where nobody asks for one, or no part is known to turn or bend."""
+    if not command or not kinematics.coordinates:
         return None
-    return replace(small_motion(mechanism, kinematics).second_order(command), held_twice=bool(kinematics.redundant))
+    found = small_motion(mechanism, kinematics).second_order(command)
+    return replace(found, held_twice=bool(kinematics.redundant)) if found.error else None
 
 
 def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:
