@@ -1,9 +1,12 @@
-"""How cost grows: models, statics, modes and drift of coiled chains of bodies, a process each; seconds of processor and memory.
+"""How cost grows: with bodies, with designs and with samples; a process each size, seconds of processor and memory.
 
-    python benchmarks/growth.py [BODIES ...]
+    python benchmarks/growth.py [bodies | designs | samples] [SIZES ...] [--figure FILE]
 
-What bounds each: expanding the description and the links' operators grow with the bodies; the factor of the stiffness hardly does in
-chains and trees; the modes take some 300 solves of it. Below 60 bodies matrices are dense.
+Bodies: models, statics, modes and drift of coiled chains. What bounds each: expanding the description and the links' operators grow with
+the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some 300 solves of it. Below 60 bodies matrices are
+dense. Designs: six platform frequencies of the shipped stage over four numbers, features fitted once; what is found is let go, as a study
+writes it.
+Samples: spectra of one drive and one reading, taken from a source that makes them as they are asked for, in segments of a second.
 """
 
 from __future__ import annotations
@@ -12,13 +15,27 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import argparse
 import itertools
+import resource
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
-SIZES = (10, 30, 100, 300, 1000, 3000, 10000)
-STEPS = ("describe", "lumped", "statics", "modes", "drift", "ideal")
+SIZES = {
+    "bodies": (10, 30, 100, 300, 1000, 3000, 10000),
+    "designs": (10**3, 10**4, 10**5, 10**6, 10**7),
+    "samples": (10**4, 10**5, 10**6, 10**7, 10**8),
+}
+STEPS = {
+    "bodies": ("describe", "lumped", "statics", "modes", "drift", "ideal"),
+    "designs": ("fit", "solve"),
+    "samples": ("open", "spectra"),
+}
+NUMBERS = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "place.B1-B3.pattern.radius")
+PORTION, RATE = 100_000, 10_000.0
 
 
 def chain(count: int) -> object:
@@ -45,42 +62,113 @@ def chain(count: int) -> object:
     return fs.Mechanism("coil", materials={"steel": steel}, parts={"rod": rod}, bodies=bodies, links=links, gravity=(0.0, 0.0, 0.0))
 
 
-def measure(count: int) -> None:
-    """The seconds of every step and the memory taken in the end, in one line."""
-    import resource
-
+def bodies(count: int) -> Iterator[None]:
+    """Step by step, the models and analyses of a coil."""
     import flexstage as fs
 
-    times = [time.process_time()]
-
-    def tick() -> None:
-        times.append(time.process_time())
-
     stage = chain(count)
-    tick()
+    yield
     model = fs.lumped(stage)
-    tick()
+    yield
     fs.statics(model)
-    tick()
+    yield
     fs.modes(model)
-    tick()
+    yield
     fs.drift(stage, model, ground="none")
-    tick()
+    yield
     fs.ideal(stage)
-    tick()
+    yield
+
+
+def designs(count: int) -> Iterator[None]:
+    """The plan of the shipped stage over four numbers, then its designs, portion by portion."""
+    import numpy as np
+
+    from flexstage.cases.double_triangle import double_triangle
+    from flexstage.mechanism.address import get
+    from flexstage.models.batch.engine import plan, platform_modes
+
+    stage = double_triangle()
+    own = np.array([get(stage, name) for name in NUMBERS])
+    found = plan(stage, NUMBERS, ranges=(0.95 * own, 1.05 * own))
+    yield
+    random = np.random.default_rng(0)
+    for first in range(0, count, PORTION):
+        platform_modes(found, own * random.uniform(0.95, 1.05, (min(PORTION, count - first), len(own))))
+    yield
+
+
+@dataclass(frozen=True)
+class Noise:
+    """A drive of white noise and a reading that follows it, made as they are read."""
+
+    length: int
+
+    def read(self, start: int, stop: int) -> object:
+        """Both channels from one sample to another."""
+        import numpy as np
+
+        drive = np.random.default_rng(start).standard_normal(stop - start)
+        return np.stack([drive, 2.0 * drive], axis=1)
+
+
+def samples(count: int) -> Iterator[None]:
+    """The spectra of one reading."""
+    import flexstage as fs
+
+    ends = (fs.experiment.Channel("u", "V", fs.experiment.Role.INPUT), fs.experiment.Channel("y", "um", fs.experiment.Role.OUTPUT))
+    record = fs.experiment.Record(ends, RATE, Noise(count))
+    yield
+    fs.experiment.spectra(record, fs.experiment.Segments(min(1.0, 0.1 * count / RATE)))
+    yield
+
+
+OF: dict[str, Callable[[int], Iterator[None]]] = {"bodies": bodies, "designs": designs, "samples": samples}
+
+
+def measure(what: str, count: int) -> None:
+    """The seconds of every step and the memory taken in the end, in one line."""
+    times = [time.process_time()]
+    times += [time.process_time() for _ in OF[what](count)]
     spent = [after - before for before, after in itertools.pairwise(times)]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    print(f"{count:8,}" + "".join(f"{each:10.2f}" for each in spent) + f"{sum(spent):10.2f}{memory:10.0f}", flush=True)
+    print(f"{count:12,}" + "".join(f"{each:10.2f}" for each in spent) + f"{sum(spent):10.2f}{memory:10.0f}", flush=True)
+
+
+def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None:
+    """Seconds and megabytes over size, both logarithmic."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    for place, (axis, title) in enumerate(zip(figure.subplots(1, 2), ("processor time [s]", "memory [MB]"), strict=True), start=1):
+        for what, rows in curves.items():
+            axis.loglog([row[0] for row in rows], [row[place] for row in rows], marker="o", label=what)
+        axis.set(xlabel="how many", title=title)
+        axis.legend()
+    figure.savefig(file)
 
 
 def main() -> None:
-    print(f"{'bodies':>8}" + "".join(f"{each:>10}" for each in STEPS) + f"{'sum [s]':>10}{'[MB]':>10}", flush=True)
-    for count in [int(each) for each in sys.argv[1:]] or SIZES:
-        subprocess.run([sys.executable, __file__, "--one", str(count)], check=True)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("words", nargs="*", help="bodies, designs or samples; sizes")
+    parser.add_argument("--figure")
+    asked = parser.parse_args()
+    kinds = [word for word in asked.words if word in SIZES]
+    sizes = [int(float(word)) for word in asked.words if word not in SIZES]
+    curves: dict[str, list[tuple[float, float, float]]] = {}
+    for what in kinds or (["bodies"] if sizes else SIZES):
+        print(f"{what:>12}" + "".join(f"{each:>10}" for each in STEPS[what]) + f"{'sum [s]':>10}{'[MB]':>10}", flush=True)
+        for count in sizes or SIZES[what]:
+            line = subprocess.run([sys.executable, __file__, "--one", what, str(count)], check=True, capture_output=True, text=True).stdout
+            print(line, end="", flush=True)
+            *_, seconds, memory = line.split()
+            curves.setdefault(what, []).append((count, float(seconds), float(memory)))
+    if asked.figure:
+        draw(curves, asked.figure)
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--one"]:
-        measure(int(sys.argv[2]))
+        measure(sys.argv[2], int(sys.argv[3]))
     else:
         main()
