@@ -34,10 +34,10 @@ HOMES = {
     "hysteresis.creep": "LogCreep exponentials",
     "hysteresis.stack": "dump_hysteresis load_hysteresis stack_hysteresis",
     "hysteresis.stack_test": "stack_test",
-    "study.choices": "Axes Axis Compensation ControllerKind Criterion Notching StackKind",
+    "study.choices": "Axes Axis Compensation ControllerKind Criterion Following Notching StackKind",
     "study.setup": (
-        "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor GaugeSetup GoalSetup HystereticStacks LoopNumbers LoopSetup Motion "
-        "NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
+        "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor FollowSetup GaugeSetup GoalSetup HystereticStacks LoopNumbers "
+        "LoopSetup Motion NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
     ),
     "study.file": "load_setup",
     "study.compare": "compare_controllers",

@@ -91,6 +91,7 @@ from flexstage.control.study.choices import (
     Compensation as Compensation,
     ControllerKind as ControllerKind,
     Criterion as Criterion,
+    Following as Following,
     Notching as Notching,
     StackKind as StackKind,
 )
@@ -103,6 +104,7 @@ from flexstage.control.study.setup import (
     DampingSetup as DampingSetup,
     FileMotion as FileMotion,
     Floor as Floor,
+    FollowSetup as FollowSetup,
     GaugeSetup as GaugeSetup,
     GoalSetup as GoalSetup,
     HystereticStacks as HystereticStacks,

@@ -112,6 +112,28 @@ def damping_table(found: LoopStudy) -> Table | None:
     return make_table("Force feedback in the legs", heads, rows, notes=notes)
 
 
+def learning_table(runs: Sequence[Run]) -> Table | None:
+    """What passes over a path have taught, by motion; `None` where nothing was learned."""
+    rows, notes = [], []
+    for run in runs:
+        seen = run.learned
+        if seen is None:
+            continue
+        for index, (name, unit) in enumerate(zip(seen.coordinates, seen.units, strict=True)):
+            values = (seen.rms[0, index], seen.rms[-1, index], seen.noise[index], seen.beyond[index])
+            rows.append((run.course.name, Cell(name, Mark.STRONG), *(format_value(float(value), unit, 3) for value in values)))
+        passes, end = len(seen.rms) - 1, number(seen.band, 4)
+        contraction = f"a pass leaves {percent(seen.contraction, 3)} at most of what repeats, all modes up to {percent(seen.spread)} off"
+        notes.append(f"{run.course.name}: {passes} passes of gain {seen.gain:g} up to {end} Hz; {contraction}.")
+    if not rows:
+        return None
+    heads = ["path", "motion", "before", "learned", "does not repeat", "beyond the band"]
+    last = (
+        "Rms errors as the gauges tell them, the first three in the band. What is beyond it is not learnable: there the loop is not known."
+    )
+    return make_table("Learning", heads, rows, notes=[*notes, last])
+
+
 def law_table(found: LoopStudy) -> Table | None:
     """The controller's numbers, loop by loop; `None` of one that is not made of single loops."""
     loops = found.controller.loops

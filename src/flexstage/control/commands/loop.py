@@ -34,7 +34,7 @@ from flexstage.control.export.files import WHOLE, controller_files, export_findi
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
-from flexstage.control.study.choices import Axes, Compensation, Criterion
+from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
 from flexstage.control.study.compare import compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
@@ -95,6 +95,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     damping: Annotated[
         str | None,
         text_option("--damping", "RATIO", "Integral force feedback in the legs, for modes of this damping, e.g. 50%. Default: none."),
+    ] = None,
+    follow: Annotated[
+        Following | None,
+        word_option("--follow", Following, "How a path known beforehand is commanded: zv, zvd need the set-up.", show_default=False),
     ] = None,
     rate: Annotated[
         str | None, text_option("--rate", "VALUE", "Sampling rate. Default: 10 kHz, or 10 times the highest platform mode.")
@@ -213,6 +217,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "damping": None
         if damping is None
         else _override(given.damping or forms.DampingSetup(), {"ratio": values.value("--damping", damping, RATIO)}),
+        "follow": None if follow is None else _followed(given.follow, follow),
         "hysteresis": _hysteresis(hysteresis),
         "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     }
@@ -314,6 +319,10 @@ def _amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
         else:
             found[fit[0]] = fit[1]
     return found
+
+
+def _followed(given: forms.FollowSetup | None, by: Following) -> forms.FollowSetup:
+    return forms.FollowSetup(by) if given is None else replace(given, by=by)
 
 
 def _hysteresis(said: str | None) -> forms.HystereticStacks | None:
@@ -452,6 +461,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.measured_table(found)
     yield tables.step_table(found.runs)
     yield tables.tracking_table(found.runs)
+    yield tables.learning_table(found.runs)
     yield None if found.static_errors is None else errors.rest_table(found.static_errors)
     yield errors.noise_table(found)
     if found.hysteresis is not None:

@@ -7,12 +7,13 @@ from itertools import pairwise
 from pathlib import Path
 
 from flexstage.base.finding import Finding
-from flexstage.control.study.choices import SEARCHED, Compensation, ControllerKind, Notching
+from flexstage.control.study.choices import SEARCHED, Compensation, ControllerKind, Following, Notching
 from flexstage.control.study.setup import (
     ControllerSetup,
     DampingSetup,
     FileMotion,
     Floor,
+    FollowSetup,
     GaugeSetup,
     HystereticStacks,
     LoopSetup,
@@ -26,6 +27,7 @@ from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar import node_of
 
 _HIGHEST_ORDER = 20
+_MOST_PASSES = 50
 _MOST_LINES = 100_000
 _TUNED = ("bandwidth", "sensitivity", "goal")
 
@@ -47,6 +49,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     yield from _gauges(setup.gauges)
     yield from _floor(setup.floor)
     yield from _controller(setup.controller)
+    yield from _follow(setup.follow) if setup.follow is not None else ()
     yield from _damping(setup.damping) if setup.damping is not None else ()
     yield from _compensation(setup)
     yield from _hysteresis(setup.hysteresis) if setup.hysteresis is not None else ()
@@ -124,6 +127,20 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
     if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
+
+
+def _follow(found: FollowSetup) -> Iterator[Finding]:
+    shaped = found.by in (Following.ZV, Following.ZVD)
+    if shaped and found.frequency is None:
+        yield Finding(
+            "follow.frequency", "a shaper is for a mode, and its frequency is not given", 'Write for example frequency = "106 Hz"'
+        )
+    if not shaped and found.frequency is not None:
+        yield Finding("follow.frequency", f"{found.by.value} has no mode of its own", "Leave it out, or take zv or zvd")
+    if found.damping >= 1.0:
+        yield Finding("follow.damping", f"found {found.damping:g}", "Give less than 1: what does not swing needs no shaper")
+    if not 1 <= found.passes <= _MOST_PASSES:
+        yield Finding("follow.passes", f"found {found.passes}", f"Give between 1 and {_MOST_PASSES}")
 
 
 def _damping(found: DampingSetup) -> Iterator[Finding]:

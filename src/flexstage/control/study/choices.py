@@ -68,6 +68,19 @@ class Compensation(Enum):
     """The inverse of the stacks' hysteresis."""
 
 
+class Following(Enum):
+    """What is commanded along a known path."""
+
+    INVERSE = "inverse"
+    """The path through the inverse of the model's loop."""
+    LEARNING = "learning"
+    """What passes over it have taught."""
+    ZV = "zv"
+    """The path through a shaper that leaves a mode at rest."""
+    ZVD = "zvd"
+    """The same, less sensitive to the mode's frequency."""
+
+
 class StackKind(Enum):
     """How hysteretic stacks behave."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
@@ -19,6 +19,7 @@ from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
 from flexstage.control.creep_plant import add_creep
+from flexstage.control.learning.learn import Learned
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
@@ -26,6 +27,7 @@ from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
 from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
+from flexstage.control.study.follow import follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
 
@@ -56,13 +58,17 @@ class StepAnswer:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true)."""
+    """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
+
+    `learned` is what passes over it have taught, where the set-up asks for that.
+    """
 
     course: Course
     simulated: Simulated
     figures: Annotated[StepFigures | None, INNER]
     tracking: Matrix
     cautions: Annotated[tuple[Finding, ...], INNER] = ()
+    learned: Learned | None = None
 
     @property
     def seconds(self) -> Annotated[float, VIEW]:
@@ -98,21 +104,22 @@ def runs(
 ) -> tuple[Run, ...]:
     """Simulate every course of a set-up.
 
-    Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
-    have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
-    for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
-    findings: motions that the stage does not have, courses beyond the strokes.
+        Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
+        have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
+        for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
+        findings: motions that the stage does not have, courses beyond the strokes.
 
-    >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.closed import loop
-    >>> from flexstage.control.study.control import make_controller
-    >>> from flexstage.control.study.resolve import resolve
-    >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
-    >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
-    >>> control = make_controller(given, given.plant.coordinates.strokes)
-    >>> found = runs(given, control, loop(given.plant, control.system))
-    >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
-    ('x', True)
+        >>> from flexstage.cases.parallelogram import parallelogram
+        >>> from flexstage.control.closed import loop
+        >>> from flexstage.control.study.control import make_controller
+        >>> from flexstage.control.study.follow import follow
+    from flexstage.control.study.resolve import resolve
+        >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
+        >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
+        >>> control = make_controller(given, given.plant.coordinates.strokes)
+        >>> found = runs(given, control, loop(given.plant, control.system))
+        >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
+        ('x', True)
     """
     loop = given.plant.coordinates
     asked = courses(given.setup.trajectory, loop)
@@ -129,10 +136,15 @@ def runs(
     )
     computed = driven_machine(given, control, stacks)
     slew = computed.amplifiers.slew
-    return tuple(
-        _run(given, course, computed, tuple(course_cautions(course, poses, times, gains, slew, units=units)), poses=poses, rest=rest)
-        for course, (times, poses) in zip(asked, sampled, strict=True)
-    )
+    found = []
+    for course, (times, poses) in zip(asked, sampled, strict=True):
+        cautions = tuple(course_cautions(course, poses, times, gains, slew, units=units))
+        if (known := given.setup.follow) is None:
+            found.append(_run(given, course, computed, cautions, poses=poses, rest=rest))
+        else:
+            learnt = follow(known, closed, control.system, poses, rest=rest, run=_in_noise(given, computed, rest))
+            found.append(_run_of(course, learnt.simulated, computed, cautions, learnt.learned))
+    return tuple(found)
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
@@ -253,8 +265,22 @@ def _after(found: Simulated, lead: int) -> Simulated:
 
 def _run(given: ResolvedSetup, course: Course, computed: Machine, cautions: tuple[Finding, ...], *, poses: Array, rest: float) -> Run:
     found = simulate(computed, poses) if course.is_step else _simulate_noise(given, computed, poses, rest)
+    return _run_of(course, found, computed, cautions)
+
+
+def _in_noise(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[Array, int], Simulated]:
+    """Simulations of what is commanded, in each pass with numbers of its own."""
+
+    def run(commanded: Array, number: int) -> Simulated:
+        seed = given.setup.seed + number
+        return _simulate_noise(replace(given, setup=replace(given.setup, seed=seed)), computed, commanded, rest)
+
+    return run
+
+
+def _run_of(course: Course, found: Simulated, computed: Machine, cautions: tuple[Finding, ...], learned: Learned | None = None) -> Run:
     figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)))
+    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)), learned)
 
 
 def _range_cautions(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:

@@ -28,7 +28,7 @@ from flexstage.base.quantity import (
 )
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.study.amplifiers import AMPLIFIERS, AmplifierForm, AmplifierSetup
-from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Notching, OfferedKind, StackKind
+from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
 from flexstage.control.tuning.aim import Aim
 from flexstage.mechanism.node import ChoiceNode, Wanted
 from flexstage.models.theory import Model
@@ -219,6 +219,22 @@ class DampingSetup:
 
 
 @dataclass(frozen=True)
+class FollowSetup:
+    """What the loop is asked to follow instead of the trajectory itself, which is known beforehand; the error is against the trajectory.
+
+    `by` the inverse of the model's loop or by learning (so many `passes` of a `gain`), both in the band that holds with all modes up to
+    `spread` off; or by a shaper for a mode at `frequency` of a `damping` ratio.
+    """
+
+    by: Following
+    passes: int = 10
+    gain: Annotated[float, RATIO, _DAMPED] = 0.6
+    spread: Annotated[float, RATIO, _SPREAD] = 0.02
+    frequency: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    damping: Annotated[float, RATIO, NOT_NEGATIVE] = 0.0
+
+
+@dataclass(frozen=True)
 class HystereticStacks:
     """The stacks' hysteresis: a model in a `file`, as `flexstage hysteresis` writes it, or only the `width` of the loop per stroke.
 
@@ -333,6 +349,7 @@ class LoopSetup:
     damping: DampingSetup | None = None
     hysteresis: HystereticStacks | None = None
     trajectory: TrajectorySetup = field(default_factory=StepMotion)
+    follow: FollowSetup | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The keys of its file with plain values, SI."""

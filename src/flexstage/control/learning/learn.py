@@ -1,0 +1,172 @@
+"""Learning from pass to pass: what repeats is taken away, in the band where the loop is known well enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY
+from flexstage.base.record import INNER, VIEW, Along, Axes
+from flexstage.control.closed import Loop
+from flexstage.control.learning.responses import Band, frequencies_of, inverse, motions, readings, through
+from flexstage.control.system import System
+
+_CONTRACTS = 0.8
+"""What is learned anew in a pass stays below this share of what was there, wherever the modes lie."""
+_OFFSETS, _LINES, _AROUND = 5, 600, 15
+_REPEATS = 4
+"""Runs of what was learned, by which what repeats and what does not are told apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Robust:
+    """The `band` in which learning takes away what repeats; `contraction` is the largest ||Q (I - gain P P^^-1)|| over its frequencies."""
+
+    band: Band
+    contraction: float
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What passes over the same path came to, by the loop's `coordinates` in their `units`.
+
+    `rms` (passes, f) is the error in the band up to `band` [Hz], as the gauges tell it, before the first and after each pass learned;
+    `noise` (f,) what of it does not repeat, by four runs of what was learned, whose rms the last row is. `beyond` (f,) is the rms of the
+    error outside the band, which is not learned: it stays. `contraction` is the largest share of the error that a pass leaves, all modes
+    by up to `spread` off, `gain` that of learning.
+    """
+
+    coordinates: tuple[str, ...]
+    units: tuple[str, ...]
+    band: Annotated[float, FREQUENCY]
+    contraction: float
+    gain: float
+    spread: float
+    rms: Annotated[Array, Axes("passes", "coordinates")]
+    noise: Annotated[Array, Along("coordinates")]
+    beyond: Annotated[Array, Along("coordinates")]
+    commanded: Annotated[Array, INNER]
+
+    @property
+    def above_noise(self) -> Annotated[Array, VIEW, Along("coordinates")]:
+        """The last error in the band over what does not repeat of it (f,)."""
+        return self.rms[-1] / self.noise
+
+
+def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Robust:
+    """The band in which learning with a gain contracts, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, all modes by up to `spread` off.
+
+    P are the loop's responses with its modes moved, P^ those of the model (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
+    below 1 at all frequencies makes the error fall from pass to pass). Raises `DesignError` where they differ too much even at rest.
+    """
+    plant, step = closed.plant, closed.step or 1.0
+    lines = _lines(closed, spread)
+    back = np.linalg.inv(readings(plant, control, lines))
+    scale = plant.coordinates.scale
+    worst = np.zeros(len(lines))
+    for offset in np.linspace(-spread, spread, _OFFSETS):
+        left = np.eye(len(scale)) - gain * readings(plant, control, lines, float(offset)) @ back
+        worst = np.maximum(worst, np.linalg.norm(left * scale[:, None] / scale, ord=2, axis=(1, 2)))
+    beyond = np.flatnonzero(worst > _CONTRACTS)
+    if len(beyond) and beyond[0] == 0:
+        what = f"with all modes up to {100.0 * spread:g} % off, a pass would leave {worst[0]:.3g} times the error at {lines[0]:.3g} Hz"
+        raise refuse("follow", what, "Take a smaller gain or spread")
+    end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
+    band = Band(end)
+    return Robust(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
+
+
+def _lines(closed: Loop, spread: float) -> Array:
+    """Frequencies up to 0.45 of the rate, densely around each mode wherever it may lie."""
+    highest, modes, ratios = 0.45 / (closed.step or 1.0), closed.plant.frequencies, np.minimum(closed.plant.ratios, 0.3)
+    around = [
+        mode * (1.0 + offset) * (1.0 + ratio * np.tan(np.linspace(-1.3, 1.3, _AROUND)))
+        for offset in np.linspace(-spread, spread, _OFFSETS)
+        for mode, ratio in zip(modes, ratios, strict=True)
+    ]
+    every = np.unique(np.concatenate([np.geomspace(1e-3 * modes[0], highest, _LINES), *around]))
+    return every[(every >= 1e-3 * modes[0]) & (every <= highest)]
+
+
+def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
+    """What the gauges would tell (n, k) of a true path (n, k): their lags are known, up to four times a band's end."""
+    step = closed.step or 1.0
+    frequencies = frequencies_of(wanted, step)
+    share = Band(min(4.0 * end, 0.45 / step)).gains(frequencies)
+    seen = np.broadcast_to(np.eye(wanted.shape[1]), (len(frequencies), wanted.shape[1], wanted.shape[1])).astype(complex)
+    inside = share > 0.0
+    told = readings(closed.plant, control, frequencies[inside]) @ np.linalg.inv(motions(closed, frequencies[inside]))
+    seen[inside] = share[inside, None, None] * told + (1.0 - share[inside, None, None]) * seen[inside]
+    return through(seen, wanted)
+
+
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """How to learn: so many `passes`, a `gain`, modes up to `spread` off; the error is judged within `window` of the samples."""
+
+    passes: int
+    gain: float
+    spread: float
+    window: slice
+
+
+def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: Lesson) -> Learned:
+    """Passes over a true path (n, f), at rest at both ends: commanded = wanted + d, d <- Q (d + gain P^^-1 e) after each.
+
+    `run` gives the readings (n, f) of a commanded path in a pass of that number. Raises `DesignError` as `robust_band` does.
+    """
+    robust = robust_band(closed, control, lesson.gain, lesson.spread)
+    frequencies = frequencies_of(wanted, closed.step or 1.0)
+    filtered = robust.band.gains(frequencies)
+    whole = Band(0.75 * robust.band.end).gains(frequencies)
+    back = np.zeros((len(frequencies), wanted.shape[1], wanted.shape[1]), complex)
+    inside = filtered > 0.0
+    back[inside] = filtered[inside, None, None] * lesson.gain * np.linalg.inv(readings(closed.plant, control, frequencies[inside]))
+    target, added, rms = wanted_readings(closed, control, wanted, robust.band.end), np.zeros_like(wanted), []
+    error = target
+    for number in range(lesson.passes + 1):
+        error = target - run(wanted + added, number)
+        rms.append(_rms(_filtered(whole, error)[lesson.window]))
+        if number < lesson.passes:
+            added = _filtered(filtered, added) + through(back, error)
+    final = [run(wanted + added, lesson.passes + each) for each in range(1, _REPEATS)]
+    again = np.array([_filtered(whole, target - each)[lesson.window] for each in final])
+    every = np.concatenate([_filtered(whole, error)[None, lesson.window], again])
+    rms[-1] = np.sqrt(np.mean(every**2, axis=(0, 1)))
+    return Learned(
+        coordinates=closed.plant.coordinates.names,
+        units=closed.plant.coordinates.units,
+        band=0.75 * robust.band.end,
+        contraction=robust.contraction,
+        gain=lesson.gain,
+        spread=lesson.spread,
+        rms=np.array(rms),
+        noise=np.sqrt(np.mean(np.var(every, axis=0, ddof=1), axis=0)),
+        beyond=_rms((error - _filtered(whole, error))[lesson.window]),
+        commanded=wanted + added,
+    )
+
+
+def _filtered(gains: Array, path: Array) -> Array:
+    """A path (n, f) through real gains without phase."""
+    return through(gains[:, None, None] * np.eye(path.shape[1]), path)
+
+
+def _rms(values: Array) -> Array:
+    return np.sqrt(np.mean(values**2, axis=0))
+
+
+def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
+    """What to command (n, f) so that the model's loop truly follows a path (n, f), at rest at both ends, in the robust band."""
+    robust = robust_band(closed, control, 1.0, spread)
+    frequencies = frequencies_of(wanted, closed.step or 1.0)
+    band = robust.band.gains(frequencies)
+    found = np.broadcast_to(np.eye(wanted.shape[1]), (len(frequencies), wanted.shape[1], wanted.shape[1])).astype(complex)
+    inside = band > 0.0
+    found[inside] = inverse(motions(closed, frequencies[inside]), band[inside])
+    return through(found, wanted)

@@ -1,0 +1,89 @@
+"""What a closed loop makes of its reference, with its modes where they may lie; its inverse over a known path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.closed import Loop
+from flexstage.control.controllers.pose_plant import pose_plant
+from flexstage.control.plants import Plant
+from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System, select
+
+_AT_REST = 1e-4
+_TAPER = 0.75
+"""From this share of its end on, a band fades out."""
+
+
+def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
+    """Responses (f, k, k) from reference to the pose that the gauges tell, all modes by a relative `offset` higher.
+
+    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. Modes that lie
+    higher are time that runs faster, lags and delays with it.
+    """
+    given = plant.hardware
+    slower = replace(given, rate=(given.rate or np.inf) / (1.0 + offset), delay=given.delay * (1.0 + offset))
+    moved = replace(pose_plant(replace(plant, hardware=slower)), step=given.step)
+    P, names = resolvent(moved).at(frequencies), plant.coordinates.names
+    parts = {kind: _part(control, kind, names, frequencies) for kind in ("error", "pose", "reference")}
+    back = P @ (parts["error"] - parts["pose"])
+    return np.linalg.solve(np.eye(len(names)) + back, P @ (parts["error"] + parts["reference"]))
+
+
+def _part(control: System, kind: str, names: tuple[str, ...], frequencies: Array) -> Array:
+    wanted = [f"{kind}.{name}" for name in names]
+    known = [name for name in wanted if name in control.input_names]
+    found = np.zeros((len(frequencies), len(control.outputs), len(names)), complex)
+    if known:
+        seen = resolvent(select(control, known, control.output_names)).at(frequencies)
+        found[:, :, [wanted.index(name) for name in known]] = seen
+    return found
+
+
+def motions(closed: Loop, frequencies: Array) -> Array:
+    """Responses (f, k, k) from reference to the true motion against the ground."""
+    names = closed.plant.coordinates.names
+    whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
+    return resolvent(whole).at(frequencies)
+
+
+@dataclass(frozen=True)
+class Band:
+    """Frequencies up to `end` [Hz], whole up to three quarters of it, then fading as a cosine; without phase."""
+
+    end: float
+
+    def gains(self, frequencies: Array) -> Array:
+        """Q (f,), from 1 to 0."""
+        share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
+        return 0.5 * (1.0 + np.cos(np.pi * share))
+
+
+def frequencies_of(path: Array, step: float) -> Array:
+    """Frequencies [Hz] of a path's transform; instead of 0, where integrators have no number, next to nothing."""
+    found = np.fft.rfftfreq(len(path), step)
+    found[0] = _AT_REST * found[1]
+    return found
+
+
+def through(responses: Array, path: Array) -> Array:
+    """A path (n, k), from nothing to rest, through responses (n/2+1, k, k) at the frequencies of its transform.
+
+    What is transformed are its differences, which end in nothing. Of an inverse whose poles lie outside the unit circle too, the
+    answer on the circle is the stable part forward and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans. Autom.
+    Control 41 (1996) 930): it begins before the path does.
+    """
+    spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
+    return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)
+
+
+def inverse(responses: Array, band: Array) -> Array:
+    """Q T^-1 (f, k, k) + (1 - Q) of responses T: the inverse where the band is, what was commanded beyond it."""
+    own = np.eye(responses.shape[-1])
+    found = np.broadcast_to(own, responses.shape).astype(complex)
+    inside = band > 0.0
+    found[inside] = band[inside, None, None] * np.linalg.inv(responses[inside]) + (1.0 - band[inside, None, None]) * own
+    return found

@@ -1,0 +1,78 @@
+"""Input shapers: impulses that leave a mode at rest after a step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Shaper:
+    """A step becomes steps of `amplitudes` (k,), which sum to 1, at `times` (k,) [s]."""
+
+    times: Array
+    amplitudes: Array
+
+    def shape(self, poses: Array, step: float) -> Array:
+        """A path (n, f), at rest before it begins, sampled every `step` [s]; impulses between samples are shared by both.
+
+        >>> half = Shaper(np.array([0.0, 0.2]), np.array([0.5, 0.5]))
+        >>> half.shape(np.ones((4, 1)), 0.1).ravel().tolist()
+        [0.5, 0.5, 1.0, 1.0]
+        """
+        found = np.zeros_like(poses)
+        for time, amplitude in zip(self.times, self.amplitudes, strict=True):
+            whole = int(time / step + 1e-9)
+            late = time / step - whole
+            for shift, share in ((whole, 1.0 - late), (whole + 1, late)):
+                if share > 1e-9 and shift < len(poses):
+                    found[shift:] += amplitude * share * poses[: len(poses) - shift]
+        return found
+
+    def residual(self, frequency: float, damping: float) -> float:
+        """What vibration of a mode is left, as a share of that after a plain step (Singer & Seering 1990, eq. 9).
+
+        >>> round(zv(100.0, 0.02).residual(100.0, 0.02), 12)
+        0.0
+        """
+        turning = 2.0 * np.pi * frequency
+        ringing = turning * np.sqrt(1.0 - damping**2)
+        grown = self.amplitudes * np.exp(damping * turning * (self.times - self.times[-1]))
+        return float(np.abs(np.sum(grown * np.exp(1j * ringing * self.times))))
+
+
+def zv(frequency: float, damping: float) -> Shaper:
+    """Zero vibration: 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)).
+
+    Singer & Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76; `frequency` [Hz] undamped. Raises `DesignError` for numbers that are none.
+
+    >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
+    ([0.0, 0.01], [0.5, 0.5])
+    """
+    factor, half = _factor(frequency, damping)
+    return Shaper(np.array([0.0, half]), np.array([1.0, factor]) / (1.0 + factor))
+
+
+def zvd(frequency: float, damping: float) -> Shaper:
+    """Zero vibration and derivative: 1, 2K, K^2 over (1+K)^2; what is left grows with the square of the frequency's error.
+
+    >>> zvd(50.0, 0.0).amplitudes.tolist()
+    [0.25, 0.5, 0.25]
+    """
+    factor, half = _factor(frequency, damping)
+    return Shaper(np.array([0.0, half, 2.0 * half]), np.array([1.0, 2.0 * factor, factor**2]) / (1.0 + factor) ** 2)
+
+
+def _factor(frequency: float, damping: float) -> tuple[float, float]:
+    found = [] if frequency > 0.0 else [Finding("shaper", f"its frequency is {frequency:g} Hz", "Give a positive one")]
+    if not 0.0 <= damping < 1.0:
+        found.append(
+            Finding("shaper", f"its damping is {damping:g}", "Give a ratio from 0 to below 1: what does not swing needs no shaper")
+        )
+    require(found)
+    root = float(np.sqrt(1.0 - damping**2))
+    return float(np.exp(-damping * np.pi / root)), 0.5 / (frequency * root)

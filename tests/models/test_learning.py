@@ -1,0 +1,119 @@
+"""Paths known beforehand: shapers by their closed forms, inverses that begin before the path, and learning down to what does not repeat."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.registry import case
+from flexstage.control.closed import loop
+from flexstage.control.learning.learn import robust_band
+from flexstage.control.learning.responses import readings, through
+from flexstage.control.learning.shaper import zv, zvd
+from flexstage.control.study.checks import setup_findings
+from flexstage.control.study.choices import Following
+from flexstage.control.study.control import make_controller
+from flexstage.control.study.resolve import resolve
+from flexstage.control.study.runs import runs
+from flexstage.control.study.setup import ControllerSetup, FollowSetup, GaugeSetup, LoopSetup, Motion, RasterMotion, SineMotion, StepMotion
+from flexstage.control.system import select
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
+def test_shapers_leave_a_mode_at_rest(damping):
+    """By integration of the mode, not by their formula; a wrong frequency by its square with the derivative."""
+    for shaper, order in ((zv(40.0, damping), 1), (zvd(40.0, damping), 2)):
+        assert np.sum(shaper.amplitudes) == pytest.approx(1.0, rel=1e-14)
+
+        def left(frequency, shaper=shaper):
+            w = 2.0 * np.pi * frequency
+            state = np.zeros(2)
+            A = np.array([[0.0, 1.0], [-(w**2), -2.0 * damping * w]])
+            for time, amplitude in zip(shaper.times, shaper.amplitudes, strict=True):
+                state += amplitude * scipy.linalg.expm(A * (shaper.times[-1] - time)) @ np.array([-1.0, 0.0])
+            return np.hypot(state[0], (state[1] + damping * w * state[0]) / (w * np.sqrt(1.0 - damping**2)))
+
+        assert left(40.0) < 1e-13
+        grown = left(40.0 * 1.002) / left(40.0 * 1.001)
+        assert grown == pytest.approx(2.0**order, rel=0.01)
+
+
+def test_an_antistable_inverse_runs_backward():
+    """Of T = 2/z - 1, whose zero is outside: w[n+1]/2 + w[n+2]/4 + ..."""
+    path = np.concatenate([np.zeros(60), np.linspace(0.0, 1.0, 30), np.ones(70)])[:, None]
+    points = np.exp(2j * np.pi * np.arange(len(path) // 2 + 1) / len(path))
+    found = through((1.0 / (2.0 / points - 1.0))[:, None, None], path)
+    later = np.concatenate([path[1:], np.ones((60, 1))])
+    wanted = sum(0.5 ** (ahead + 1) * later[ahead : ahead + len(path)] for ahead in range(50))
+    assert found == pytest.approx(wanted, abs=1e-12)
+    assert np.max(np.abs(found[:59])) > 1e-3  # it begins before the path does
+
+
+def closed_of(name, **given):
+    resolved = resolve(case(name), LoopSetup(**given))
+    control = make_controller(resolved, resolved.plant.coordinates.strokes)
+    return resolved, control, loop(resolved.plant, control.system)
+
+
+def test_a_pass_contracts_wherever_the_modes_lie():
+    """On a finer grid, at offsets of its own, by loops that are closed as a whole."""
+    gain, spread = 0.6, 0.02
+    _, control, closed = closed_of("parallelogram")
+    found = robust_band(closed, control.system, gain, spread)
+    assert 0.0 < found.contraction < 0.8
+    lines = np.linspace(5.0, found.band.end, 4001)
+    model, worst = readings(closed.plant, control.system, lines), 0.0
+    seen = select(closed.system, ["reference.x"], ["pose.x"]).transfer(lines)
+    assert model == pytest.approx(seen, rel=1e-8)
+    for offset in (-0.02, -0.0133, 0.0071, 0.0169, 0.02):
+        moved = readings(closed.plant, control.system, lines, offset)
+        worst = max(worst, float(np.max(np.abs(found.band.gains(lines) * (1.0 - gain * moved / model)[:, 0, 0]))))
+    assert worst < found.contraction * 1.02
+
+
+def test_a_raster_is_learned_down_to_what_does_not_repeat():
+    path = RasterMotion(length=10e-6, pitch=1e-6, lines=2, speed=0.5e-3, acceleration=0.05)
+    quiet = GaugeSetup(noise=1e-10, resolution=0.0)
+    given, control, closed = closed_of("xy-stage", trajectory=path, gauges=quiet, follow=FollowSetup(Following.LEARNING))
+    (found,) = runs(given, control, closed)
+    seen = found.learned
+    assert seen.contraction < 0.8
+    assert np.max(seen.rms[0] / seen.noise) > 10.0
+    assert np.all(seen.above_noise < 2.0)
+    assert np.all(seen.beyond > 0.0)
+    assert found.tracking.at("x", "true rms") < 0.3 * runs(replace(given, setup=replace(given.setup, follow=None)), control, closed)[
+        0
+    ].tracking.at("x", "true rms")
+
+
+def test_the_inverse_leaves_nothing_of_a_slow_path():
+    path = SineMotion(frequency=20.0, by=Motion(x=3e-6))
+    quiet = GaugeSetup(resolution=0.0)
+    plain, inverted = (
+        runs(*closed_of("parallelogram", trajectory=path, gauges=quiet, follow=follow))[0].tracking.at("x", "true rms")
+        for follow in (None, FollowSetup(Following.INVERSE))
+    )
+    assert inverted < 1e-2 * plain  # what is left is beyond the band
+
+
+def test_a_shaped_step_rings_less():
+    given = {"controller": ControllerSetup(integral=900.0), "trajectory": StepMotion(by=Motion(x=1e-6))}
+    resolved, control, closed = closed_of("parallelogram", **given)
+    poles = closed.system.poles
+    rates = np.log(poles[np.abs(poles) > 1e-6].astype(complex)) * resolved.rate
+    ring = rates[np.argmax(np.where(rates.imag > 1.0, rates.real, -np.inf))]
+    follow = FollowSetup(Following.ZV, frequency=float(np.abs(ring) / (2.0 * np.pi)), damping=float(-ring.real / np.abs(ring)))
+    assert follow.damping < 0.3
+    shaped = closed_of("parallelogram", **given, follow=follow)
+    late = [np.ptp(run.simulated.true_error[run.simulated.times > 0.01, 0]) for run in (*runs(resolved, control, closed), *runs(*shaped))]
+    assert late[1] <= late[0]
+
+
+def test_what_cannot_be_is_said():
+    asked = [FollowSetup(Following.ZV), FollowSetup(Following.INVERSE, frequency=3.0), FollowSetup(Following.LEARNING, passes=0)]
+    told = [str(finding) for each in asked for finding in setup_findings(LoopSetup(follow=each))]
+    assert [each.partition(":")[0] for each in told] == ["follow.frequency", "follow.frequency", "follow.passes"]
+    with pytest.raises(DesignError, match="its frequency is 0 Hz"):
+        zv(0.0, 0.1)
