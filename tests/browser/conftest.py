@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, BrowserContext, Error, Page, sync_playw
 _VARIABLE = "FLEXSTAGE_BROWSER"
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 # Pictures by software, the same on every machine; nothing that asks the network by itself.
-_FLAGS = [
+FLAGS = [
     "--no-sandbox",
     "--use-gl=angle",
     "--use-angle=swiftshader",
@@ -43,7 +43,7 @@ def browser() -> Iterator[Browser]:
         pytest.skip(f"no browser: neither {_VARIABLE} names one, nor is any of {', '.join(_NAMES)} on the PATH")
     with sync_playwright() as playwright:
         try:
-            launched = playwright.chromium.launch(executable_path=path, args=_FLAGS)
+            launched = playwright.chromium.launch(executable_path=path, args=FLAGS)
         except Error as error:
             pytest.skip(f"{path} does not start: {str(error).splitlines()[0]}")
         yield launched

@@ -72,6 +72,7 @@ export class JobsPane {
       h("form", { className: "run", submit: start }, h("h3", {}, form.title), h("p", { className: "quiet" }, form.about), study, record && h("label", {}, "record's file ", record), h("label", {}, "options ", options), h("button", { type: "submit" }, `Start ${form.title.toLowerCase()}`)),
     );
     (study ?? record ?? options).focus();
+    study?.setSelectionRange(0, 0); // its beginning is what is to be seen
   }
 
   private async run(question: Omit<Run, "id">): Promise<void> {
