@@ -312,6 +312,23 @@ async def test_geometry_is_sent_once(page, studio):
 
 
 @on_page
+async def test_what_no_page_shows_is_computed_when_it_is_looked_at(page, studio):
+    """With another pane in front and nothing moving, a change gives no strokes and no motions; looking at them does, and nothing else."""
+    before = page.counts[say.Reach]
+    await page.ask(say.Look, panes=("stage",))
+    await page.ask(say.Set, address=THICKNESS, text="0.95 mm")
+    await page.settle()
+    assert page.counts[say.Reach] == before
+    assert page.told[say.Scene].revision == page.state.revision
+    assert page.told[say.Scene].data["motions"] == []
+    figures = page.counts[say.Figures]
+    await page.ask(say.Look, panes=("stage", "motions", "reach"))
+    await page.until(lambda page: page.told[say.Reach].revision == page.state.revision and page.told[say.Scene].data["motions"])
+    assert page.counts[say.Figures] == figures
+    assert len(page.told[say.Scene].data["motions"]) > 10
+
+
+@on_page
 async def test_what_is_asked_about_the_stage(page, studio):
     stage = loads(TEXT)
     card = await page.ask(say.Part, link="left")
