@@ -93,10 +93,7 @@ def _find_weights(seen: View, asked: Asked) -> Tuning:
     searched = Regulated(tried, asked.expected or Disturbances(_EXPECTED, {}), asked.feedforward)
     begun = tune(seen.plant, seen.loops, Task(asked.kind, goal, expected=asked.expected, feedforward=asked.feedforward))
     against = outcome(tried, begun.controller.system(seen.step))
-    for tighter in _TIGHTER:
-        sharper = replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0))
-        held = replace(searched, tried=replace(tried, field=_limited(within, sharper)))
-        controller = weigh(held, against)
+    for controller in _weighed(searched, wish, against, begun.controller):
         judged = _judge(seen, wish, controller)
         if judged.stable and judged.peak <= wish.sensitivity:
             found = outcome(tried, controller.system(seen.step))
@@ -106,6 +103,15 @@ def _find_weights(seen: View, asked: Asked) -> Tuning:
     raise DesignError([_none_found(asked)])
 
 
+def _weighed(searched: Regulated, wish: Wish, against: Outcome, begun: Decentralised | LQG) -> Iterator[Decentralised | LQG]:
+    """What is found within the peak of S, then within a lower one; where both pass it between frequencies, what the search began from."""
+    for tighter in (_TIGHTER[0], _TIGHTER[-1]):
+        sharper = replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0))
+        tried = replace(searched.tried, field=_limited(searched.tried.field, sharper))
+        yield weigh(replace(searched, tried=tried), against)
+    yield begun
+
+
 def _limited(within: Field, wish: Wish) -> Field:
     """The same plants held to another peak of S."""
     return replace(within, wish=wish, variants=variants(wish))
@@ -113,7 +119,9 @@ def _limited(within: Field, wish: Wish) -> Field:
 
 def _none_found(asked: Asked) -> Finding:
     advice = "Allow a higher peak of S, a smaller spread of the modes, or take another kind"
-    return Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {asked.wish.sensitivity:g} was found", advice)
+    wish = asked.wish
+    beyond = f", stable with modes up to {100.0 * STABLE * wish.spread:g} % off," if wish.spread else ""
+    return Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g}{beyond} was found", advice)
 
 
 def _unmet_of(wish: Wish, found: Outcome) -> Iterator[Finding]:
