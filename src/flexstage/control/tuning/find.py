@@ -81,8 +81,7 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
             require(_unmet(seen, within, found))
             goal = Goal(None, wish.sensitivity, wish.spread)
             return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
-    advice = "Allow a higher peak of S, a smaller spread of the modes, or take another kind"
-    raise DesignError([Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g} was found", advice)])
+    raise DesignError([_none_found(asked)])
 
 
 def _find_weights(seen: View, asked: Asked) -> Tuning:
