@@ -10,7 +10,7 @@ HOMES = {
     "health": "Needs examine",
     "cross_spectra": "Segments spectra",
     "transfer": "h1 h2",
-    "identification.identify": "Search identify",
+    "identification.identify": "Excitation Search identify",
     "comparison": "compare",
     "updating.update": "update",
     "updating.free": "Known",

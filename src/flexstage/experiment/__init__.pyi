@@ -16,6 +16,7 @@ from flexstage.experiment.health import (
     examine as examine,
 )
 from flexstage.experiment.identification.identify import (
+    Excitation as Excitation,
     Search as Search,
     identify as identify,
 )

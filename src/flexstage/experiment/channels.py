@@ -119,6 +119,8 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
     ('B1 and B2 look exchanged: the other way round, their parts in the modes are like theory to 1.00, as they are to 0.23',)
     """
+    if not residues.inputs:
+        return ()
     theory, measured = (_columns(each) for each in (residues.theory, residues.measured))
     if not theory.size or len(theory) < _FEWEST:
         return ()

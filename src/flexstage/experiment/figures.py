@@ -55,6 +55,26 @@ def response_matrix_figure(found: Identified) -> Any:
     return figure
 
 
+def density_figure(found: Identified) -> Any:
+    """Amplitude densities of outputs where no input was recorded, and the modes found, as a matplotlib Figure."""
+    lines = found.responses.frequencies
+    inside = _inside(lines, focus(found))
+    with style_context():
+        figure = canvas(FULL, 2.6)
+        axes = panels(figure, 1, 1, Margins(left=0.75, top=0.3))[0, 0]
+        for index, channel in enumerate(found.outputs[:LARGEST]):
+            x, size = _extremes(lines[inside], np.abs(found.responses.values[inside, index, 0]), 4 * _BINS)
+            axes.semilogy(x, size, color=SERIES[index % len(SERIES)], linewidth=0.7, label=channel.name)
+        for frequency in found.frequencies:
+            axes.axvline(float(frequency), color=MUTED, linewidth=0.6, linestyle=":")
+        units = {channel.unit for channel in found.outputs}
+        axes.set_xlim(*focus(found))
+        axes.set_xlabel("frequency [Hz]")
+        axes.set_ylabel(f"density [{to_typography(units.pop())}/√Hz]" if len(units) == 1 else "density")
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=LARGEST, borderaxespad=0.2)
+    return figure
+
+
 def focus(found: Identified) -> tuple[float, float]:
     """The frequencies that figures show [Hz]: from below the lowest mode to well above the highest one, within the band looked at.
 

@@ -34,13 +34,17 @@ _UNWINDOWED = (
 
 @dataclass(frozen=True)
 class Needs:
-    """What is asked: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit)."""
+    """What is asked: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
+
+    `unrecorded` where nothing that drove the stage was recorded: there are no inputs then.
+    """
 
     resolution: float | None = None
     averages: int = 8
     highest: float | None = None
     inputs: tuple[tuple[str, str], ...] | None = None
     outputs: tuple[tuple[str, str], ...] | None = None
+    unrecorded: bool = False
 
 
 @dataclass(frozen=True)
@@ -117,7 +121,7 @@ def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: 
     dropped = found.channels({Allow.DEAD, Allow.DEPENDENT, Allow.NAMES})
     kept = record.select([name for name in record.names if name not in dropped]) if dropped else record
     where = record.source or record.name or "record"
-    left = [fault.finding for fault in _roles(kept, Needs(), where)]
+    left = [fault.finding for fault in _roles(kept, Needs(unrecorded=needs.unrecorded), where)]
     if left:
         raise DesignError(left)
     if not any(found.numbers[name].broken for name in kept.names):
@@ -280,9 +284,15 @@ def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
                 Allow.NAMES, channel.name, Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice)
             )
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
+        if kind == "input" and needs.unrecorded:
+            if channels:
+                what = f"{', '.join(each.name for each in channels)}: taken for inputs, where none is said to have been recorded"
+                yield Fault(None, "", Finding(where, what, "Name the channels that count (only), or say that inputs were recorded"))
+            continue
         if not channels:
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
-            yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns"))
+            other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
+            yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns{other}"))
     yield from _name_faults(record.inputs, record.outputs, needs, where)
 
 

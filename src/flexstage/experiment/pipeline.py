@@ -8,14 +8,15 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, Finding, join_findings, require
+from flexstage.base.finding import DesignError, Finding, join_findings, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
-from flexstage.experiment.cross_spectra import Spectra, pool, spectra
+from flexstage.experiment.cross_spectra import Spectra, Tell, pool, spectra
 from flexstage.experiment.health import Needs, responses_findings, usable_record
 from flexstage.experiment.identification.evidence import choose_segments
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.identification.identify import Search, identify
+from flexstage.experiment.identification.identify import Excitation, Search, identify
+from flexstage.experiment.identification.unrecorded import identify_decay, identify_floor
 from flexstage.experiment.options import Allow
 from flexstage.experiment.record import Record, Responses, report_reading
 from flexstage.experiment.transfer import h2, multiple_coherence, spectral_ratio
@@ -96,6 +97,8 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
     >>> round(float(seen.found.frequencies[0]), 1), seen.multiple.shape[1]
     (10.0, 1)
     """
+    if search.excitation is not Excitation.RECORDED:
+        return Identification(test, _without_inputs(test, search, _stage_progress(told, "finding modes", _LOOKED, 1.0)))
     if isinstance(test, Responses):
         return Identification(test, identify(test, search, _stage_progress(told, "finding modes", 0.0, 1.0)))
     segments = search.segments if search.segments is not None else choose_segments(test)
@@ -109,6 +112,14 @@ def identification(test: Measurement, search: Search = _DEFAULT, told: Told | No
     known = pool([part.driven(names) for part in parts])
     second = h2(known) if len(known.outputs) >= len(known.inputs) else None
     return Identification(test, found, known, multiple_coherence(known), second, spectral_ratio(known))
+
+
+def _without_inputs(test: Measurement, search: Search, tell: Tell | None) -> Identified:
+    if isinstance(test, Responses):
+        what = f"the test is of responses to inputs, and {search.excitation.value} is said to have moved the stage"
+        raise refuse(test.source or test.name or "responses", what, "Leave the excitation out, or give records of outputs")
+    find = identify_floor if search.excitation is Excitation.FLOOR else identify_decay
+    return find(test, search, tell)
 
 
 def _sound_record(record: Record, allow: frozenset[Allow], needs: Needs, told: Told | None) -> Record:

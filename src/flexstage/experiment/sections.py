@@ -10,6 +10,7 @@ from flexstage.experiment.comparison_tables import compare_table, further_table,
 from flexstage.experiment.figures import (
     LARGEST,
     coherence_figure,
+    density_figure,
     estimator_figure,
     focus,
     response_matrix_figure,
@@ -38,6 +39,11 @@ from flexstage.show.table import Table
 from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import Group, Motion, Skeleton
 
+_FLOOR = (
+    "No input was recorded. Candidates are stable poles of covariance-driven stochastic subspaces, band by band; intervals come from the "
+    "scatter between forty blocks of the record, to first order. Shapes are over their largest component: their scale by mass is unknown."
+)
+
 
 def found_section(seen: Identification) -> Section | None:
     """The modes found, and what the data cannot tell."""
@@ -46,14 +52,18 @@ def found_section(seen: Identification) -> Section | None:
         "ones is fitted by maximum likelihood to the transform of the whole record. What the data do not ask for is left out."
     )
     found = seen.found
+    text = text if found.inputs else _FLOOR
     shapes = measured_shape_table(found) if len(found.frequencies) else None
     blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), peak_table(found.peaks), shapes]
     return section("Modes found", [*blocks, Prose(text)])
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Responses with the fit over the data, estimators beside one another."""
+    """Responses with the fit over the data, estimators beside one another; densities where no input was recorded."""
     found = seen.found
+    if not found.inputs:
+        picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
+        return section("Densities", [Picture(picture, "Amplitude densities of the outputs. Dotted: modes found.")])
     drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs, with the fit over the data")
     caption = "Responses, magnitude over phase: grey the data (H1), blue the fit. Columns: inputs; rows: outputs."
     cut = max(len(found.outputs), len(found.inputs)) > LARGEST

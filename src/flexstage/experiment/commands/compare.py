@@ -15,6 +15,7 @@ from flexstage.experiment.commands.records import (
     Band,
     Inputs,
     Kind,
+    Moved,
     Only,
     Outputs,
     Rate,
@@ -52,6 +53,7 @@ def compare(  # noqa: PLR0913 (its options)
     allow: Allow = None,
     band: Band = None,
     resolution: Resolution = None,
+    excitation: Moved = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -64,7 +66,7 @@ def compare(  # noqa: PLR0913 (its options)
 
     FEA is shown where the cache holds all of it, else with --fea.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays, excitation)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
     linear = elastic_model(mechanism, model)

@@ -16,6 +16,7 @@ from flexstage.experiment.commands.records import (
     Band,
     Inputs,
     Kind,
+    Moved,
     Only,
     Outputs,
     Rate,
@@ -61,6 +62,7 @@ def identify(  # noqa: PLR0913 (its options)
     allow: Allow = None,
     band: Band = None,
     resolution: Resolution = None,
+    excitation: Moved = None,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
@@ -72,7 +74,7 @@ def identify(  # noqa: PLR0913 (its options)
 
     Bad channels are named and explained, and used only as far as --allow says.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
+    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays, excitation)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))

@@ -16,14 +16,14 @@ from flexstage.experiment import options
 from flexstage.experiment.cross_spectra import Segments
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.health import Needs
-from flexstage.experiment.identification.identify import Search
+from flexstage.experiment.identification.identify import Excitation, Search
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
 from flexstage.experiment.record import Record, Responses
 from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
-from flexstage.show.command.options import text_option
+from flexstage.show.command.options import text_option, word_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
 
@@ -59,6 +59,12 @@ Allow: TypeAlias = Annotated[
 Band: TypeAlias = Annotated[
     tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Where modes are looked for, e.g. --band "50 Hz" "400 Hz".')
 ]
+Moved: TypeAlias = Annotated[
+    Excitation | None,
+    word_option(
+        "--excitation", Excitation, "What moved the stage: recorded inputs, the floor all along, nothing after a blow.", show_default=False
+    ),
+]
 Resolution: TypeAlias = Annotated[
     str | None, text_option("--resolution", "FREQUENCY", 'Resolution of the spectra, e.g. "0.5 Hz". Default: by length.')
 ]
@@ -78,6 +84,7 @@ class RecordTexts:
     band: tuple[str, str] | None = None
     resolution: str | None = None
     arrays: list[str] | None = None
+    excitation: Excitation | None = None
 
     def options(self) -> options.Options:
         """The options of the reader; raises `DesignError` with all that is wrong with them."""
@@ -104,13 +111,15 @@ class RecordTexts:
         if self.band is not None and band is not None and band[0] >= band[1]:
             raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Give a low frequency and a higher one")
         lines = self._resolution()
-        return Search(band=band, segments=None if lines is None else Segments(1.0 / lines))
+        moved = self.excitation or Excitation.RECORDED
+        return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def needs(self, model: LinearModel | None, highest: float | None = None) -> Needs:
         """What is asked of records: outputs of the stage where there is one, a rate for the highest mode or the band, the resolution."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
-        return Needs(resolution=self._resolution(), highest=top, outputs=outputs)
+        unrecorded = self.excitation not in (None, Excitation.RECORDED)
+        return Needs(resolution=self._resolution(), highest=top, outputs=outputs, unrecorded=unrecorded)
 
     def _resolution(self) -> float | None:
         return None if self.resolution is None else _hertz("--resolution", self.resolution)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
@@ -33,16 +34,29 @@ _FEW = 5.0
 _LEAST_PARTS, _MOST_PARTS = 3, 8
 
 
+class Excitation(Enum):
+    """What moved the stage."""
+
+    RECORDED = "recorded"
+    """Inputs that were recorded."""
+    FLOOR = "floor"
+    """The floor, or other noise that nobody recorded, all along."""
+    DECAY = "decay"
+    """Nothing: it was left to itself after a blow or a release."""
+
+
 @dataclass(frozen=True)
 class Search:
     """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show), damped no more than `highest_damping`.
 
-    `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length).
+    `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length). `excitation` is what moved
+    the stage: of a stage whose inputs were not recorded modes are found from outputs alone, by `identification`.
     """
 
     band: tuple[float, float] | None = None
     highest_damping: float = 0.1
     segments: Segments | None = None
+    excitation: Excitation = Excitation.RECORDED
 
 
 def identify(
@@ -218,7 +232,7 @@ def _result(
     inside = (known.responses.frequencies >= band[0]) & (known.responses.frequencies <= band[1])
     lines = known.responses.frequencies[inside]
     rest = known.responses.values[inside] - modal_sum(lines, 2.0 * np.pi * poles, shapes, participation)
-    close = _close_groups(poles)
+    close = close_groups(poles)
     return Identified(
         frequencies=np.abs(poles),
         damping=-np.real(poles) / np.abs(poles),
@@ -266,7 +280,7 @@ def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> 
     return (relative / turn)[:, order], participation[order], (wide / np.abs(turn))[:, order]
 
 
-def _close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
+def close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
     """Modes nearer to the next than the mean of their half-widths, in groups."""
     groups: list[list[int]] = []
     for index in range(len(poles)):

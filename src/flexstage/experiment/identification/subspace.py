@@ -1,0 +1,229 @@
+"""Modes from outputs alone: covariance-driven stochastic subspaces, band by band, with deviations from blocks of the record."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import stdtrit
+
+from flexstage.base.number import Array
+from flexstage.experiment.cross_spectra import Tell
+from flexstage.experiment.identification.bands import Sweep
+from flexstage.experiment.identification.cluster import Candidate, Stabilisation, stabilisation
+from flexstage.experiment.identification.confidence import NORMAL_95
+from flexstage.experiment.identification.lscf import Poles
+from flexstage.experiment.record import Channel, Record, Responses, Role
+
+BLOCKS = 40
+"""Into how many blocks a record is divided: their scatter gives the intervals."""
+_TAPER, _SKIPPED = 0.15, 2
+_ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 24
+_FADED = 0.08
+_HIGHEST = 18
+_RATIO, _MARGIN = 1.4, 0.4
+_CLOSE, _SURE = 0.3, 6.0
+
+
+@dataclass(frozen=True, eq=False)
+class Shaken:
+    """A mode of a stage that the floor shakes: `pole` in Hz (rad/s over 2 pi), its `shape` (p,), largest component 1.
+
+    `width_deviation` and `deviation` are those of the pole's real and imaginary part, `shape_deviation` (p,) those of the shape.
+    """
+
+    pole: complex
+    shape: Array
+    width_deviation: float
+    deviation: float
+    shape_deviation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, turning with `low` Hz less; the part searched is `sweep`.
+
+    Outputs are times `scale` (p,).
+    """
+
+    covariances: Array
+    step: float
+    low: float
+    sweep: Sweep
+    scale: Array
+
+
+def band_covariances(record: Record, low: float, high: float, tell: Tell | None = None) -> tuple[list[Band], Responses]:
+    """Output covariances of all bands between `low` and `high` in Hz, block by block; and the outputs' amplitude density, unit/Hz^0.5.
+
+    Each block is transformed; products of its lines within a band, tapered towards the band's ends, give by an inverse transform
+    R(l) = E[y(n + l) y(n)^H] of the band alone, as if it had been mixed down and sampled at its width; R is divided by 1 - l/N, the share
+    of the block that lag l leaves. Outputs are over their root mean squares. The floor's density needs to be smooth within a band only.
+    """
+    chosen = record.select([channel.name for channel in record.outputs])
+    size = record.length // BLOCKS
+    every = _divide(low, high)
+    lags = 2 * _rows(len(chosen.channels), 1e-9) + _SKIPPED + 1
+    parts: list[list[Array]] = [[] for _ in every]
+    power = np.zeros((size // 2 + 1, len(chosen.channels)))
+    for number in range(BLOCKS):
+        values = chosen.samples.read(number * size, (number + 1) * size)
+        lines = np.fft.rfft(values - np.mean(values, axis=0), axis=0) / np.sqrt(size)
+        power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
+        for place, sweep in enumerate(every):
+            parts[place].append(_covariances(lines, _lines(sweep, record.rate / size, len(lines)), lags))
+        if tell is not None:
+            tell((number + 1) / BLOCKS)
+    found = []
+    for sweep, each in zip(every, parts, strict=True):
+        first, last = _lines(sweep, record.rate / size, size // 2 + 1)
+        covariances = np.array(each)
+        scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(np.mean(covariances[:, 0], axis=0))), 1e-300))
+        found.append(
+            Band(covariances * scale[:, None] * scale, size / record.rate / (last - first), first * record.rate / size, sweep, scale)
+        )
+    lines = np.fft.rfftfreq(size, 1.0 / record.rate)
+    return found, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
+
+
+def _divide(low: float, high: float) -> list[Sweep]:
+    """Bands of 1.4 from end to end, read two fifths of their width further on both sides."""
+    limits = np.geomspace(low, high, max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO)))) + 1)
+    return [Sweep(a - _MARGIN * (b - a), b + _MARGIN * (b - a), float(a), float(b)) for a, b in itertools.pairwise(limits)]
+
+
+def _rows(outputs: int, damping: float) -> int:
+    """Block rows: as many as it takes for a mode to fade to a half or so, and for as many poles as are tried."""
+    return int(np.clip(np.ceil(_FADED / damping), max(_ROWS, _SIZE // outputs), max(_SIZE // outputs, min(_LONGEST, _LARGEST // outputs))))
+
+
+def _lines(sweep: Sweep, resolution: float, count: int) -> tuple[int, int]:
+    """First and last line of a band."""
+    return max(1, int(sweep.low / resolution)), min(count, int(np.ceil(sweep.high / resolution)))
+
+
+def _covariances(lines: Array, extent: tuple[int, int], lags: int) -> Array:
+    inside = lines[extent[0] : extent[1]]
+    count = len(inside)
+    taper = np.minimum(np.minimum(np.arange(count), count - 1 - np.arange(count)) / (_TAPER * count), 1.0)
+    power = inside[:, :, None] * np.conj(inside[:, None, :]) * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None]
+    found = np.fft.ifft(power, axis=0)[:lags]
+    return found / (1.0 - np.arange(len(found)) / count)[:, None, None]
+
+
+def hankel(covariances: Array, rows: int, first: int) -> Array:
+    """The block Hankel matrix (rows p, rows p) of covariances (lags, p, p) from lag `first` on.
+
+    >>> hankel(np.arange(4.0)[:, None, None], 2, 1).tolist()
+    [[1.0, 2.0], [2.0, 3.0]]
+    """
+    outputs = covariances.shape[1]
+    places = first + np.arange(rows)[:, None] + np.arange(rows)
+    return covariances[places].transpose(0, 2, 1, 3).reshape(rows * outputs, rows * outputs)
+
+
+def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
+    """The modes of a band, and the stabilisation diagram: H = O Z of rising order, poles by O(shifted) = O A.
+
+    Van Overschee & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. Deviations:
+    the equations are projected onto the signal subspace of the whole record, U^H H(shifted) V = Lambda U^H H V, and perturbed to first
+    order by what each block has of covariances (Doehler & Mevel, MSSP 38 (2013) 346), blocks taken as independent.
+    """
+    outputs = band.covariances.shape[2]
+    diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
+    sure = [-mode.pole.real / abs(mode.pole) for mode in found if -mode.pole.real > _SURE * mode.width_deviation]
+    longer = _rows(outputs, min(sure)) if sure else _rows(outputs, np.inf)
+    return _with_rows(band, longer, highest_damping) if longer > 1.5 * _rows(outputs, np.inf) else (diagram, found)
+
+
+def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
+    mean = np.mean(band.covariances, axis=0)
+    left, values, right = np.linalg.svd(hankel(mean, rows, _SKIPPED))
+    orders = range(2, min(len(values) // 2, _HIGHEST) + 1)
+    poles = tuple(_poles(band, left[:, :order] * np.sqrt(values[:order]), order, mean.shape[1]) for order in orders)
+    diagram, candidates = stabilisation(poles, highest_damping)
+    inside = [each for each in candidates if band.sweep.first <= each.pole.imag <= band.sweep.last]
+    if not inside:
+        return diagram, []
+    order = _order(poles, inside)
+    return diagram, _perturbed(band, left[:, :order], np.conj(right[:order].T), inside)
+
+
+def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
+    state = np.linalg.lstsq(observability[:-outputs], observability[outputs:], rcond=None)[0]
+    turns, vectors = np.linalg.eig(state)
+    values = np.log(turns) / band.step
+    values = np.real(values) + 1j * (np.mod(np.imag(values), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)
+    shapes = (observability[:outputs] @ vectors).T
+    kept = np.flatnonzero(np.real(values) < 0.0)
+    kept = kept[np.argsort(np.imag(values)[kept])]
+    return Poles(order, values[kept], shapes[kept] / np.linalg.norm(shapes[kept], axis=1, keepdims=True))
+
+
+def _order(poles: Sequence[Poles], candidates: Sequence[Candidate]) -> int:
+    """The lowest order that has all candidates to a part of their half-widths, else the one that is nearest."""
+
+    def away(each: Poles) -> float:
+        if len(each.values) < len(candidates):
+            return np.inf
+        distance = [np.min(np.abs(each.values / (2.0 * np.pi) - one.pole)) / -one.pole.real for one in candidates]
+        return float(np.max(distance))
+
+    return next((each.order for each in poles if away(each) < _CLOSE), min(poles, key=away).order)
+
+
+def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[Shaken]:
+    outputs = band.covariances.shape[2]
+    rows = len(left) // outputs
+    every = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
+    own, shifted = (np.mean([each[index] for each in every], axis=0) for index in range(2))
+    inner = np.conj(left.T) @ own
+    turns, vectors = np.linalg.eig(np.linalg.solve(inner, np.conj(left.T) @ shifted))
+    rest = np.linalg.solve(inner @ vectors, np.conj(left.T))
+    poles = np.log(turns) / band.step
+    poles = (np.real(poles) + 1j * (np.mod(np.imag(poles), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)) / (2.0 * np.pi)
+    shapes = own[:outputs] @ vectors / band.scale[:, None]
+    found: list[Shaken] = []
+    for place in _matches(poles, candidates):
+        moved = np.array([rest @ ((each[1] - turns[place] * each[0]) @ vectors[:, place]) for each in every])
+        apart = turns[place] - turns
+        turned = np.where(np.arange(len(turns)) == place, 0.0, moved / np.where(apart == 0.0, np.inf, apart))
+        largest = int(np.argmax(np.abs(shapes[:, place])))
+        shape = shapes[:, place] / shapes[largest, place]
+        change = np.array([each[0][:outputs] @ vectors[:, place] for each in every]) / band.scale - shapes[:, place] + turned @ shapes.T
+        change = (change - change[:, largest, None] * shape) / shapes[largest, place]
+        step = moved[:, place] / turns[place] / (2.0 * np.pi * band.step)
+        found.append(
+            Shaken(
+                complex(poles[place]), shape, float(_deviation(np.real(step))), float(_deviation(np.imag(step))), _shape_deviation(change)
+            )
+        )
+    return found
+
+
+def _matches(poles: Array, candidates: Sequence[Candidate]) -> list[int]:
+    """Which pole is each candidate: the nearest that no other is, within two half-widths."""
+    found: list[int] = []
+    for candidate in candidates:
+        away = np.abs(poles - candidate.pole)
+        away[found] = np.inf
+        if np.min(away) < -2.0 * candidate.pole.real:
+            found.append(int(np.argmin(away)))
+    return found
+
+
+def _deviation(changes: Array) -> Array:
+    """Standard deviation of the mean of independent blocks' changes (b, ...).
+
+    Times Student's t over the normal's 1.96, so that 1.96 of them are half a 95 % interval.
+    """
+    blocks = len(changes)
+    spread = np.sqrt(np.sum((changes - np.mean(changes, axis=0)) ** 2, axis=0) / (blocks * (blocks - 1.0)))
+    return spread * float(-stdtrit(blocks - 1.0, 0.025)) / NORMAL_95
+
+
+def _shape_deviation(changes: Array) -> Array:
+    """Of each part, real and imaginary: the root of their mean square."""
+    return np.sqrt(0.5 * (_deviation(np.real(changes)) ** 2 + _deviation(np.imag(changes)) ** 2))

@@ -1,0 +1,139 @@
+"""Modes from outputs alone are those of the truth, within their intervals: of a floor that shakes all along, and of free decays."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import DesignError
+from flexstage.cases.double_triangle import double_triangle
+from flexstage.experiment.health import Needs
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identify import Excitation, Search
+from flexstage.experiment.pipeline import identification, usable_measurement
+from flexstage.experiment.record import Channel, InMemory, Record, Role
+from flexstage.models.linear.frequency import superpose
+from flexstage.models.linear.port import ports
+from flexstage.models.lumped import lumped
+from tests.models.synthetic_records import Truth, truth
+
+PAIR = truth((118.0, 118.0, 231.0), outputs=3, inputs=3)
+FLOOR, DECAY = Search(band=(90.0, 300.0), excitation=Excitation.FLOOR), Search(excitation=Excitation.DECAY)
+
+
+def outputs(values: np.ndarray, rate: float) -> Record:
+    return Record(tuple(Channel(f"S{each + 1}", "um", Role.OUTPUT) for each in range(values.shape[1])), rate, InMemory(values))
+
+
+def shaken(response: np.ndarray, density: np.ndarray, rate: float, seed: int, noise: float) -> Record:
+    """Outputs of inputs of that density [unit/Hz^0.5] at each line, independent of one another, and white noise of density `noise`."""
+    random = np.random.default_rng(seed)
+    size = 2 * (len(response) - 1)
+    drive = random.standard_normal((2, len(response), response.shape[2]))
+    lines = np.einsum("fpm,fm->fp", response, (drive[0] + 1j * drive[1]) * density[:, None]) * np.sqrt(0.25 * rate * size)
+    return outputs(
+        np.fft.irfft(lines, size, axis=0) + noise * np.sqrt(0.5 * rate) * random.standard_normal((size, response.shape[1])), rate
+    )
+
+
+def floor_record(known: Truth, seconds: float, seed: int) -> Record:
+    rate = 1024.0
+    lines = np.fft.rfftfreq(int(seconds * rate), 1.0 / rate)
+    return shaken(known.response(lines), 1.0 / np.maximum(lines, 1.0) ** 1.5, rate, seed, 1e-3)
+
+
+def errors(found: Identified, known: Truth) -> np.ndarray:
+    """Errors of frequencies and damping over their standard deviations; modes within a tenth of a hertz are taken by damping."""
+    own = np.lexsort((found.damping, found.frequencies.round(0)))
+    true = np.lexsort((known.damping, known.frequencies))
+    frequency = (found.frequencies[own] - known.frequencies[true]) / found.frequency_deviations[own]
+    return np.concatenate([frequency, (found.damping[own] - known.damping[true]) / found.damping_deviations[own]])
+
+
+def test_modes_of_a_shaken_floor_are_those_of_the_truth_a_pair_too() -> None:
+    found = identification((floor_record(PAIR, 400.0, 1),), FLOOR).found
+    assert found.frequencies.round(0).tolist() == [118.0, 118.0, 231.0]
+    assert np.max(np.abs(errors(found, PAIR))) < 4.0
+    np.testing.assert_allclose(found.frequencies, PAIR.frequencies, rtol=3e-3)
+    assert found.close_modes == ((1, 2),)
+    away = found.shapes[:, 2] - PAIR.shapes[:, 2] / PAIR.shapes[np.argmax(np.abs(PAIR.shapes[:, 2])), 2]
+    assert np.all(np.abs(away) <= 5.0 * found.shape_deviations[:, 2] + 1e-12)
+    assert found.inputs == ()
+    assert found.participation.shape == (3, 0)
+    assert any("mass-normalised shapes are unknown" in each for each in found.warnings)
+
+
+def test_noise_alone_has_no_mode() -> None:
+    noise = np.random.default_rng(3).standard_normal((120 * 1024, 3))
+    found = identification((outputs(noise, 1024.0),), FLOOR).found
+    assert not len(found.frequencies)
+
+
+def free(known: Truth, column: int, noise: float = 0.3) -> Record:
+    rate, silent = 2048.0, 300
+    time = np.arange(int(3.0 * rate)) / rate
+    decays = np.imag(np.exp(known.poles * time[:, None])) * 2.0 * np.pi * known.frequencies * known.participation[:, column]
+    values = np.vstack([np.zeros((silent, len(known.shapes))), decays @ known.shapes.T])
+    return outputs(values + noise * np.random.default_rng(column).standard_normal(values.shape), rate)
+
+
+def test_two_free_decays_tell_both_modes_of_a_pair_and_one_says_that_there_may_be_more() -> None:
+    both = identification((free(PAIR, 0), free(PAIR, 1)), DECAY).found
+    assert both.frequencies.round(0).tolist() == [118.0, 118.0, 231.0]
+    assert np.max(np.abs(errors(both, PAIR))) < 4.5
+    np.testing.assert_allclose(both.frequencies, PAIR.frequencies, rtol=1e-4)
+    assert any("outputs are largest: 0.1" in each for each in both.warnings)
+    one = identification((free(truth((118.0, 166.0, 231.0), outputs=3, inputs=3), 0),), DECAY).found
+    assert one.frequencies.round(0).tolist() == [118.0, 166.0, 231.0]
+    assert any("only decay 1 was driven" in each for each in one.warnings)
+
+
+def test_what_moved_the_stage_is_never_guessed() -> None:
+    made = floor_record(PAIR, 20.0, 1)
+    with pytest.raises(DesignError, match="or say what else moved the stage"):
+        usable_measurement([made])
+    driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
+    with pytest.raises(DesignError, match="u: taken for inputs, where none is said to have been recorded"):
+        usable_measurement([driven], needs=Needs(unrecorded=True))
+    with pytest.raises(DesignError, match="there are 2 records"):
+        identification((made, made), FLOOR)
+    with pytest.raises(DesignError, match="40 blocks of 400 are needed"):
+        identification((floor_record(PAIR, 10.0, 1),), FLOOR)
+
+
+@cache
+def floor_response() -> tuple[np.ndarray, np.ndarray]:
+    """Gauges of the shipped stage by its floor in x, y and z [um/m], and VC-D's displacement, its velocity held beyond 80 Hz [m/Hz^0.5]."""
+    model = lumped(double_triangle())
+    gauges = [each.name for each in model.outputs if "." not in each.name]
+    lines = np.fft.rfftfreq(1800 * 512, 1.0 / 512.0)
+    assert model.damping is not None
+    asked = np.flatnonzero(lines > 40.0)
+    response = np.zeros((len(lines), len(gauges), 3), dtype=complex)
+    response[asked] = 1e6 * superpose(model, ports(model, gauges, ["ground.x", "ground.y", "ground.z"]), lines[asked], model.damping)
+    velocity = 6.25e-6 / np.sqrt(np.log(2.0) / 3.0 * np.maximum(lines, 1.0))
+    return response, velocity / (2.0 * np.pi * np.maximum(lines, 1.0))
+
+
+@pytest.mark.full
+def test_half_an_hour_of_vc_d_tells_modes_and_how_sure_they_are() -> None:
+    response, density = floor_response()
+    true = np.array([106.0126, 106.0126, 126.1554, 173.0859, 173.0859])  # yaw is hardly shaken by a floor that does not turn
+    scores, parts, whole = [], [], 0
+    for seed in range(200):
+        search = Search(band=(85.0, 210.0), excitation=Excitation.FLOOR)
+        found = identification((shaken(response, density, 512.0, seed, 5e-4),), search).found
+        for each in np.unique(true):
+            near = np.abs(found.frequencies / each - 1.0) < 0.01
+            whole += int(np.sum(near))
+            frequency, damping = found.frequencies[near] / each - 1.0, found.damping[near] / 0.01 - 1.0
+            spread = found.frequency_deviations[near] / each, found.damping_deviations[near] / 0.01
+            parts += list(zip(frequency, damping, strict=True))
+            scores += list(zip(np.abs(frequency) < 1.96 * spread[0], np.abs(damping) < 1.96 * spread[1], strict=True))
+    assert whole > 0.85 * 200 * len(true)
+    assert np.all(np.mean(scores, axis=0) > 0.90)
+    typical = np.sqrt(np.mean(np.square(parts), axis=0))
+    assert 1.96 * typical[0] < 1e-3
+    assert 1.96 * typical[1] < 0.1
