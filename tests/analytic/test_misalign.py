@@ -13,6 +13,7 @@ from flexstage.beams.section import rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.show.displaced import misalign_report
+from flexstage.show.viewer.course import misalign_data
 from flexstage.spatial.rotation import exponential
 from tests.laws.test_nonlinear import guide
 
@@ -76,3 +77,8 @@ def test_its_report_stands_alone():
     page = misalign_report(slender(), found)
     assert "gives way at" in page
     assert "<svg" in page
+    played = misalign_data(slender(), found).motions
+    assert [each.name for each in played] == ["left ry"]
+    assert played[0].course is not None
+    sizes = np.max(np.abs(played[0].course.poses), axis=(1, 2))
+    assert np.all(np.diff(sizes) > 0.0)

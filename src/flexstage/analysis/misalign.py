@@ -36,9 +36,9 @@ class Misaligned(InNotebook):
     """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
 
     `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
-    of a flexure, in how many ways the stage leaves (0: it stays). `loads` are the wrenches in all flexures at the last size, on each end in
-    the frame of its start. `critical` is the size at which the stage stops being stable [rad, m]; NaN where it does not up to 0.1 rad, or
-    0.1 of the longest flexure.
+    of a flexure, in how many ways the stage leaves (0: it stays); `state` is where it stands then. `loads` are the wrenches in all flexures
+    at the last size, on each end in the frame of its start. `critical` is the size at which the stage stops being stable [rad, m]; NaN
+    where it does not up to 0.1 rad, or 0.1 of the longest flexure.
     """
 
     copy: str
@@ -47,6 +47,7 @@ class Misaligned(InNotebook):
     loads: Matrix
     critical: float
     strained: Annotated[Strains, INNER]
+    state: Annotated[State, INNER]
     provenance: str
 
     @property
@@ -87,6 +88,7 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
         loads=Matrix(loads, names, FORCES, (WRENCH_UNITS,) * len(names)),
         critical=forced.critical(),
         strained=strained,
+        state=state,
         provenance=f"{copy} misaligned in the {forced.model.provenance}",
     )
 

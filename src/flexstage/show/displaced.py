@@ -21,7 +21,7 @@ from flexstage.show.scene.stage import scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, make_table, matrix_table, result_tables
-from flexstage.show.viewer.course import buckling_data, curves_of, limits, stroke_data
+from flexstage.show.viewer.course import buckling_data, curves_of, limits, misalign_data, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -69,22 +69,22 @@ def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """What a misaligned copy does, as a page of HTML: loads, frequencies and stress over the misalignment."""
-    seen = scene(mechanism)
+    """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
+    seen, data = scene(mechanism), misalign_data(mechanism, found)
     curves = curves_of(found.along)
     beyond = found.along.values[:, -1] != 0.0
     kind = "about" if found.axis.startswith("r") else "along"
     words = f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
     figure = to_svg(stroke_figure(curves, beyond), "misalign", "What a misalignment does")
     sections = (
-        stage_section(seen),
+        stage_section(seen, motion=f"path {data.motions[0].name}", said="Flexures lie as it bends them. Red is beyond a limit."),
         section("Over the misalignment", [Picture(figure, to_typography(f"{words}. Shaded: the stage gives way."))]),
         caveat_section(mechanism, found.cautions),
         section("Point by point", [*result_tables(found)]),
         drawing_section(mechanism, seen),
     )
     good = not bool(np.any(beyond))
-    return _page(mechanism, "A misalignment", found.provenance, (Headline(to_typography(words), good), sections), still_data(mechanism))
+    return _page(mechanism, "A misalignment", found.provenance, (Headline(to_typography(words), good), sections), data)
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from flexstage.analysis.misalign import Misaligned
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.stance import Stance
 from flexstage.analysis.stroke import Stroke
@@ -39,8 +40,15 @@ def stroke_data(mechanism: Mechanism, path: Path, found: Stroke, *, text: str = 
     equilibrium are skipped.
     """
     still = still_data(mechanism, text=text)
-    motions = [_along(still, path, found), *_modes_there(still, path)]
+    motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
     return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.cautions))
+
+
+def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
+    """A stage as one of its copies is forced into a misaligned seat: one motion from none to all of it."""
+    still = still_data(mechanism)
+    motion = _along(still, found.state, f"{found.copy} {found.axis}", found)
+    return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
 
 
 def buckling_data(mechanism: Mechanism, found: Critical, said: str, *, text: str = "") -> StageData:
@@ -58,15 +66,15 @@ def modes_at_data(mechanism: Mechanism, there: Stance, found: Modes, said: str, 
     return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
 
 
-def _along(still: StageData, path: Path, found: Stroke) -> Motion:
-    known = np.flatnonzero(path.state.converged)
-    poses = _poses(still, path.state)
+def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligned) -> Motion:
+    known = np.flatnonzero(state.converged)
+    poses = _poses(still, state)
     most = max(2, _BYTES // (24 * poses.shape[1]))
     frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
     curves = curves_of(found.along)
     numbers = {thing.name: number for number, thing in enumerate(still.things)}
     course = Course(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
-    return Motion(Group.PATH, path.drive, f"{path.drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
+    return Motion(Group.PATH, drive, f"{drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
 
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
@@ -83,18 +91,18 @@ def _curve(name: str, values: Array, unit: str) -> Curve:
     return Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
 
 
-def limits(found: Stroke) -> tuple[str, ...]:
+def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
     """What is beyond a limit at each point, in words; empty where nothing is."""
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 
-def _over(found: Stroke, point: int) -> list[int]:
+def _over(found: Stroke | Misaligned, point: int) -> list[int]:
     """The flexures whose stress is above their material's limit."""
     strained = found.strained
     return [place for place, limit in enumerate(strained.limit) if strained.stress[point, place] > limit]
 
 
-def _words(found: Stroke, point: int) -> Iterator[str]:
+def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
     strained = found.strained
     for place in _over(found, point):
         stress, limit = (format_value(float(each), "Pa", 4) for each in (strained.stress[point, place], strained.limit[place]))
@@ -106,7 +114,7 @@ def _words(found: Stroke, point: int) -> Iterator[str]:
         yield "the free stage is not stable here"
 
 
-def _parts_beyond(found: Stroke, numbers: Mapping[str, int]) -> tuple[tuple[int, ...], ...]:
+def _parts_beyond(found: Stroke | Misaligned, numbers: Mapping[str, int]) -> tuple[tuple[int, ...], ...]:
     names = found.strained.names
     return tuple(
         tuple(sorted(numbers[names[place]] for place in _over(found, point) if names[place] in numbers))
@@ -184,6 +192,8 @@ def _poses(still: StageData, state: State) -> Array:
     position, turn = np.zeros((count, len(still.bodies), 3)), np.broadcast_to(np.eye(3), (count, len(still.bodies), 3, 3)).copy()
     model = state.model
     for name in model.bodies:
+        if name not in still.bodies:  # a seat that is not drawn
+            continue
         place, number = still.bodies.index(name), model.body(name)
         position[:, place] = state.pose.position[:, number] - model.reference[number]
         turn[:, place] = state.pose.turn[:, number]
