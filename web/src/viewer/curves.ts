@@ -46,7 +46,8 @@ class Small {
     path.setAttribute("d", this.outline(low, span));
     svg.append(...this.bands(said), line("axis", { x1: 0, x2: WIDE, y1: HIGH, y2: HIGH }), path, this.cursor);
     const caption = document.createElement("figcaption"), name = document.createElement("span"), range = document.createElement("div");
-    name.textContent = curve.name;
+    name.textContent = curve.name.replace(/^platform\./, ""); // its value stands beside it, and both are to be read
+    name.title = curve.name;
     caption.append(name, this.told);
     range.className = "range";
     range.append(...(known.length ? [low, high] : []).map((each) => Object.assign(document.createElement("span"), { textContent: written(Math.abs(each) > ROUNDING * large ? each : 0) })));
