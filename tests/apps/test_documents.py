@@ -152,7 +152,8 @@ def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None
         alone = flexstage(name, "stage.toml", "--json", "-").document
         common = {key: value for key, value in alone.items() if key in whole[name]}
         assert whole[name] == common, name
-        assert set(alone) - set(common) <= {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "loaded"}
+        beside = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "loaded"}
+        assert set(alone) - set(common) <= beside
         assert alone.get("loaded", whole["loaded"]) == whole["loaded"]
     assert [line["passed"] for line in whole["requirements"]] == [True] * 8
     assert list(whole).index("requirements") < list(whole).index("mapping")
