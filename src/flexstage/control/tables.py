@@ -112,6 +112,25 @@ def damping_table(found: LoopStudy) -> Table | None:
     return make_table("Force feedback in the legs", heads, rows, notes=notes)
 
 
+def heat_table(runs: Sequence[Run]) -> Table | None:
+    """What force actuators bear in each course run over and over; `None` where there are none."""
+    rows = [
+        (
+            run.course.name,
+            Cell(name, Mark.STRONG),
+            format_value(each.rms, each.unit, 3),
+            NO_VALUE if each.held is None else format_value(each.held, each.unit, 3),
+            NO_VALUE if each.power is None else format_value(each.power, "W", 3),
+            NO_VALUE if each.warming is None else f"{number(each.warming, 3)} K",
+        )
+        for run in runs
+        for name, each in run.heat.items()
+    ]
+    heads = ["course", "actuator", "rms", "held for ever", "heat", "warms by"]
+    note = "Each course as simulated, over and over, without heat carried off by motion; what the data do not tell is absent."
+    return make_table("Heat of force actuators", heads, rows, notes=[note]) if rows else None
+
+
 def learning_table(runs: Sequence[Run]) -> Table | None:
     """What passes over a path have taught, by motion; `None` where nothing was learned."""
     rows, notes = [], []

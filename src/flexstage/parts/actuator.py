@@ -81,6 +81,14 @@ class ThrustActuator(Actuator):
         """How fast its input can rise from zero to a `limit`, in the mean [1/s]; None: no limit is known."""
         return None
 
+    def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
+        """The power [W] that an input of this rms turns into heat; None: it is not known."""
+        return None
+
+    def warming(self, rms: Number) -> Number | None:  # noqa: ARG002
+        """By how much an input of this rms, held for ever, warms it [K]; None: it is not known."""
+        return None
+
     @property
     def intended(self) -> tuple[Freedom, ...]:
         """All six: it holds nothing."""

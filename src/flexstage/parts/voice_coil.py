@@ -151,6 +151,18 @@ class VoiceCoil(ThrustActuator):
             return None
         return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
 
+    def loss(self, rms: Number) -> Number | None:
+        """i^2 R [W]; None where no resistance is stated."""
+        return None if self.resistance is None else rms**2 * self.resistance
+
+    def warming(self, rms: Number) -> Number | None:
+        """i^2 R over its thermal resistance [K]; None where one of these numbers is not stated.
+
+        >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0).warming(2.0)
+        80.0
+        """
+        return None if self.resistance is None or self.thermal_resistance is None else rms**2 * self.resistance * self.thermal_resistance
+
     @property
     def heat_current(self) -> Number | None:
         """The direct current whose heat i^2 R warms the coil by what it bears [A]; None where one of these numbers is not stated.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated
 
 import numpy as np
@@ -14,8 +14,8 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.number import Array
-from flexstage.base.quantity import TIME
+from flexstage.base.number import Array, Table
+from flexstage.base.quantity import POWER, TEMPERATURE, TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
 from flexstage.control.creep_plant import add_creep
@@ -30,6 +30,8 @@ from flexstage.control.study.course import Course, course_cautions, course_findi
 from flexstage.control.study.follow import follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
+from flexstage.mechanism.expand import expand
+from flexstage.parts.actuator import ThrustActuator
 
 _TIME_CONSTANTS = 8.0
 _SHORTEST, _LONGEST = 0.02, 2.0
@@ -56,11 +58,25 @@ class StepAnswer:
     largest: Annotated[Array, VIEW]
 
 
+@dataclass(frozen=True)
+class CoilHeat:
+    """What a force actuator bears where a course is run over and over: the `rms` of its input [`unit`], and the most it may be `held` at.
+
+    `power` [W] is what it turns into heat and `warming` [K] by how much that warms it in the end; absent where its data do not tell.
+    """
+
+    rms: float
+    unit: str
+    held: float | None
+    power: Annotated[float | None, POWER]
+    warming: Annotated[float | None, TEMPERATURE]
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
 
-    `learned` is what passes over it have taught, where the set-up asks for that.
+    `learned` is what passes over it have taught, where the set-up asks for that, `heat` what force actuators bear by name.
     """
 
     course: Course
@@ -69,6 +85,7 @@ class Run:
     tracking: Matrix
     cautions: Annotated[tuple[Finding, ...], INNER] = ()
     learned: Learned | None = None
+    heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
 
     @property
     def seconds(self) -> Annotated[float, VIEW]:
@@ -144,7 +161,24 @@ def runs(
         else:
             learnt = follow(known, closed, control.system, poses, rest=rest, run=_in_noise(given, computed, rest))
             found.append(_run_of(course, learnt.simulated, computed, cautions, learnt.learned))
-    return tuple(found)
+    return tuple(_with_heat(given, run) for run in found)
+
+
+def _with_heat(given: ResolvedSetup, run: Run) -> Run:
+    """The run with what its force actuators bear; a caution where that is more than they may be held at."""
+    assembly, heat, cautions = expand(given.mechanism), {}, []
+    for number, channel in enumerate(given.plant.coordinates.commands()):
+        if channel.name not in assembly.thrusts or not isinstance(part := assembly.actuator(channel.name), ThrustActuator):
+            continue
+        rms = float(np.sqrt(np.mean(run.simulated.given[:, number] ** 2)))
+        ends = [float(each.held) for each in part.limits if each.held is not None]
+        power, warming = part.loss(rms), part.warming(rms)
+        told = (None if power is None else float(power), None if warming is None else float(warming))
+        heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
+        if ends and rms > min(ends):
+            what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, and bears {min(ends):.3g} {channel.unit} for ever"
+            cautions.append(Finding(f"trajectory {run.course.name}", what, "Rest between courses, or command less"))
+    return replace(run, heat=Table(heat), cautions=(*run.cautions, *cautions)) if heat else run
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
