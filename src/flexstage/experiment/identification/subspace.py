@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
+import scipy
 
 from flexstage.base.number import Array
 from flexstage.experiment.cross_spectra import Tell
@@ -221,7 +221,7 @@ def _deviation(changes: Array) -> Array:
     """
     blocks = len(changes)
     spread = np.sqrt(np.sum((changes - np.mean(changes, axis=0)) ** 2, axis=0) / (blocks * (blocks - 1.0)))
-    return spread * float(-stdtrit(blocks - 1.0, 0.025)) / NORMAL_95
+    return spread * float(-scipy.special.stdtrit(blocks - 1.0, 0.025)) / NORMAL_95
 
 
 def _shape_deviation(changes: Array) -> Array:

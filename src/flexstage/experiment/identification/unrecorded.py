@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import erfc
+import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.experiment.cross_spectra import Tell
@@ -147,4 +147,6 @@ def _none(modes: Sequence[Shaken]) -> list[str]:
 def _weak(mode: Shaken, outputs: Sequence[Channel], resolution: float) -> Peak:
     largest = np.abs(mode.shape) > 0.5
     named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
-    return Peak(abs(mode.pole), Doubt.WEAK, float(erfc(_certainty(mode) / np.sqrt(2.0))), -2.0 * mode.pole.real, resolution, named)
+    return Peak(
+        abs(mode.pole), Doubt.WEAK, float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0))), -2.0 * mode.pole.real, resolution, named
+    )
