@@ -200,6 +200,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
 
 
 ENVELOPE = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "method", "provenance", "reasons"}
+ENVELOPE |= {"loaded"}  # a section of its own
 
 
 def page_section(kind: str) -> str:
