@@ -18,6 +18,8 @@ import scipy.io
 from flexstage.cases.registry import CASES, case
 from flexstage.control.study.file import FORMAT, load_setup
 from flexstage.control.study.setup import LoopSetup
+from flexstage.experiment.example import one_mode_record
+from flexstage.experiment.formats.write import write
 from flexstage.mechanism.store import dump
 from tests.apps.command import Command, design_in
 
@@ -49,6 +51,19 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
     for name in ("loop-diagram", "open-loops", "sensitivities", "poles", "steps", "noise-shares", "noise-spectrum"):
         assert f".{name}-" in page or f'"{name}-' in page, name
     assert not re.search(r"(src|href)=.?https?:|url\(.?https?:", page)
+
+
+def test_options_of_records_need_a_record_and_are_heard(guide: Command, tmp_path: Path) -> None:
+    ended = guide("loop", "stage.toml", "--units", "S*=um", "--only", "S")
+    assert ended.code == 2
+    assert "--units: it is of records" in ended.err
+    assert "--only: it is of records" in ended.err
+    write(tmp_path / "record.h5", one_mode_record())
+    ended = guide("loop", "stage.toml", "--record", "record.h5", "--units", "=um", "--allow", "everything")
+    assert ended.code == 2
+    assert "--units =um" in ended.err
+    assert "--allow everything" in ended.err
+    assert "Traceback" not in ended.err
 
 
 SEVERAL = ("xy-stage-floating", "bridge")

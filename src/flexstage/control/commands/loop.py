@@ -41,9 +41,8 @@ from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.aim import Aim
-from flexstage.experiment.formats.read import read
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.record_options import Allow, Arrays, Inputs, Only, Outputs, RecordTexts, Units, open_records
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
@@ -153,6 +152,12 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         list[Path] | None,
         text_option("--record", "FILE", "Records or responses of a test: the plant is what they tell, not the model. Several times."),
     ] = None,
+    inputs: Inputs = None,
+    outputs: Outputs = None,
+    only: Only = None,
+    units: Units = None,
+    arrays: Arrays = None,
+    allow: Allow = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -186,6 +191,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         _write_example(design, example)
         return
     _require_names(exports, hardware)
+    texts = RecordTexts(inputs, outputs, only, units, arrays=arrays, allow=allow)
+    if not record:
+        texts.require_unsaid()
     values = Values()
     given = values.attempt(lambda: forms.LoopSetup() if setup is None else load_setup(setup)) or forms.LoopSetup()
     options = {
@@ -229,7 +237,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     if compare:
         _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
         with progress_bar() as shown:
-            test = None if not record else _tested(record, shown.share)
+            test = None if not record else _tested(record, texts, shown.share)
             rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share, workers=cores())
         if report is not None:
             save(report, pages.comparison_report(mechanism, asked, rivals), "--report")
@@ -247,7 +255,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         )
         return
     with progress_bar() as shown:
-        test = None if not record else _tested(record, shown.share)
+        test = None if not record else _tested(record, texts, shown.share)
         found = loop_study(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
     if report is not None:
         save(report, pages.loop_report(found), "--report")
@@ -269,17 +277,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     )
 
 
-def _tested(paths: Sequence[Path], tell: Told) -> Identification:
+def _tested(paths: Sequence[Path], texts: RecordTexts, tell: Told) -> Identification:
     """The modes of records or responses, all of one test."""
-    findings: list[Finding] = []
-    contents: list[Record | Responses] = []
-    for path in dict.fromkeys(paths):
-        try:
-            contents.append(read(path))
-        except DesignError as error:
-            findings += error.findings
-    require(findings)
-    return identification(usable_measurement(contents, told=tell), told=tell)
+    reader = texts.options()
+    return identification(usable_measurement(open_records(paths, reader), reader.allow, told=tell), told=tell)
 
 
 def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import comparison
-from flexstage.experiment.commands.records import (
+from flexstage.experiment.record_options import (
     Allow,
     Arrays,
     Band,

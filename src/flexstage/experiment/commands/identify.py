@@ -10,7 +10,9 @@ from typing import Annotated, TypeAlias
 import typer
 
 from flexstage.base.record import SideBySide
-from flexstage.experiment.commands.records import (
+from flexstage.experiment.comparison import compare
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.record_options import (
     Allow,
     Arrays,
     Band,
@@ -26,8 +28,6 @@ from flexstage.experiment.commands.records import (
     identify_records,
     shapes_on,
 )
-from flexstage.experiment.comparison import compare
-from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.report import identify_report
 from flexstage.experiment.shapes_on_stage import StageShapes
 from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table

@@ -12,7 +12,7 @@ from flexstage.analysis.standing import standing
 from flexstage.base.finding import refuse
 from flexstage.base.quantity import RATIO
 from flexstage.base.unit import parse
-from flexstage.experiment.commands.records import (
+from flexstage.experiment.record_options import (
     Allow,
     Arrays,
     Band,

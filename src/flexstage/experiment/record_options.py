@@ -105,6 +105,11 @@ class RecordTexts:
             allow=frozenset(options.Allow(word) for word in allowed if word is not None),
         )
 
+    def require_unsaid(self) -> None:
+        """Refuse every option that is given: there is no record that it could be of."""
+        said = {"array" if name == "arrays" else name: value for name, value in vars(self).items() if value}
+        require(Finding(f"--{name}", "it is of records, and none is given", "Name them by --record, or leave it out") for name in said)
+
     def search(self) -> Search:
         """What is searched for."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
