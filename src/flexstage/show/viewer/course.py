@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +30,16 @@ _BYTES = 400_000
 """What the poses of a path may take in a page."""
 _MODES = 6
 _MILLIMETRES = DisplayUnit("mm", 1e3)
-_Label: TypeAlias = tuple[str, str, str, "float | None"]
+
+
+@dataclass(frozen=True)
+class _Label:
+    """What a small motion is called, how it reads in a list, what is remarked of it, its frequency [Hz] where it has one."""
+
+    name: str
+    text: str
+    remark: str
+    frequency: float | None = None
 
 
 def stroke_data(mechanism: Mechanism, path: Path, found: Stroke, *, text: str = "") -> StageData:
@@ -55,7 +64,7 @@ def buckling_data(mechanism: Mechanism, found: Critical, said: str, *, text: str
     """A stage as it gives way under a load, `said`, drawn about its last stable state."""
     still = still_data(mechanism, text=text)
     label = f"{found.kind.value}  × {format_value(found.factor, '1', 4)}"
-    told = _about(still, found.state, critical_motion(found), [("buckling", to_typography(label), said, None)])
+    told = _about(still, found.state, critical_motion(found), [_Label("buckling", to_typography(label), said)])
     return replace(still, motions=tuple(told))
 
 
@@ -147,7 +156,7 @@ def _told(path: Path, point: int) -> str:
 
 def _labels(frequencies: Array, said: str) -> list[_Label]:
     return [
-        (str(number + 1), to_typography(f"{number + 1}  {format_value(float(each), 'Hz', 4)}"), said, float(each))
+        _Label(str(number + 1), to_typography(f"{number + 1}  {format_value(float(each), 'Hz', 4)}"), said, float(each))
         for number, each in enumerate(frequencies)
     ]
 
@@ -157,13 +166,13 @@ def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Lab
     poses = _poses(still, state)[:1]
     lines = {name: Line(line.shares, line.place[:1], line.turn[:1]) for name, line in centre_lines(state).items()}
     order = [still.bodies.index(name) for name in state.model.bodies]
-    for number, (name, label, remark, frequency) in enumerate(labels):
+    for number, label in enumerate(labels):
         bodies = np.zeros((len(still.bodies), 6))
         bodies[order] = moved.bodies[number]
         inside = {each: rows[number] for each, rows in moved.lines.items()}
         shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, (lines, inside)) for carrier in _bending(still))])
         course = Course(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
-        yield Motion(Group.STATE, name, label, np.zeros((0, 6)), remark, frequency, course=course)
+        yield Motion(Group.STATE, label.name, label.text, np.zeros((0, 6)), label.remark, label.frequency, course=course)
 
 
 @dataclass(frozen=True, eq=False)
