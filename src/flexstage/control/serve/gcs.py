@@ -524,7 +524,7 @@ COMMANDS: dict[str, Command] = {
     "STP": Command(_stop, "stop all axes"),
     "SVO": Command(_set_servo, "set servo mode"),
     "SVO?": Command(lambda s, w: s.by_axis(w, lambda a: str(int(s.stage.held[a]))), "get servo mode"),
-    "TMN?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.low[a])), "get minimum commandable position"),
+    "TMN?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.low[a])), "get minimum commandable position", f"{_M}198"),
     "TMX?": Command(lambda s, w: s.by_axis(w, lambda a: _shown(s.stage.high[a])), "get maximum commandable position"),
     "TNR?": Command(lambda _s, _: [str(recorder.TABLES)], "get number of record tables", f"{_E}67"),
     "TPC?": Command(lambda s, _: [str(len(s.stage.volts))], "get number of output channels"),
