@@ -233,6 +233,6 @@ def test_only_what_is_asked_is_worked_out(stage, monkeypatch):
     def refused(*_):
         raise AssertionError("worked out for nothing")
 
-    for name in ("lumped", "ideal", "modes", "lost_motion", "hinge_stress", "drift"):
+    for name in ("standing", "drawn", "kinematics", "modes", "lost_motion", "hinge_stress", "drift"):
         monkeypatch.setattr(bench, name, refused)
     assert judge(replace(stage, requirements={"mass": "at most 14 kg"}))[0].passed

@@ -107,7 +107,7 @@ def best_gain(frequency: float, zero: float) -> float:
 
     >>> roots = np.roots([1.0, best_gain(1.2, 1.0), (2.4 * np.pi) ** 2, best_gain(1.2, 1.0) * (2.0 * np.pi) ** 2])
     >>> pair = roots[np.argmax(roots.imag)]
-    >>> round(-pair.real / abs(pair), 9), round(most_damping(1.2, 1.0), 9)
+    >>> round(float(-pair.real / abs(pair)), 9), round(most_damping(1.2, 1.0), 9)
     (0.1, 0.1)
     """
     return 2.0 * np.pi * frequency * float(np.sqrt(frequency / zero))

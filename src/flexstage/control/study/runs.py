@@ -121,22 +121,21 @@ def runs(
 ) -> tuple[Run, ...]:
     """Simulate every course of a set-up.
 
-        Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
-        have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
-        for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
-        findings: motions that the stage does not have, courses beyond the strokes.
+    Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
+    have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
+    for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
+    findings: motions that the stage does not have, courses beyond the strokes.
 
-        >>> from flexstage.cases.parallelogram import parallelogram
-        >>> from flexstage.control.closed import loop
-        >>> from flexstage.control.study.control import make_controller
-        >>> from flexstage.control.study.follow import follow
-    from flexstage.control.study.resolve import resolve
-        >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
-        >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
-        >>> control = make_controller(given, given.plant.coordinates.strokes)
-        >>> found = runs(given, control, loop(given.plant, control.system))
-        >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
-        ('x', True)
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.closed import loop
+    >>> from flexstage.control.study.control import make_controller
+    >>> from flexstage.control.study.resolve import resolve
+    >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup
+    >>> given = resolve(parallelogram(), LoopSetup(controller=ControllerSetup(integral=300.0)))
+    >>> control = make_controller(given, given.plant.coordinates.strokes)
+    >>> found = runs(given, control, loop(given.plant, control.system))
+    >>> found[0].course.name, bool(found[0].figures.settling[0] < 0.03)
+    ('x', True)
     """
     loop = given.plant.coordinates
     asked = courses(given.setup.trajectory, loop)

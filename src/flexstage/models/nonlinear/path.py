@@ -157,9 +157,9 @@ def branch(
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
-    >>> found = branch(nonlinear(parallelogram()), {"platform.fy": 1e3}, points=2, weight=0.0)
-    >>> found.values.size, bool(np.ptp(found.state.displacement()[:, 0]) > 1e-3)
-    (3, True)
+    >>> found = branch(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
+    >>> found.values.round(3).tolist()
+    [6.066, 6.067, 6.071]
     """
     given = critical(model, load, rest=rest, weight=weight)
     if given.kind is Kind.LIMIT:

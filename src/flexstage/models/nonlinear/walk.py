@@ -36,7 +36,7 @@ def tree(model: Nonlinear) -> tuple[Step, ...]:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> [step.body for step in tree(nonlinear(parallelogram()))]
-    [0]
+    [0, 1, 2]
     """
     reached, ground = {len(model.bodies)}, len(model.bodies)
     joins: dict[int, list[tuple[int, Step]]] = {}
