@@ -42,7 +42,7 @@ def in_metres(matrix):
 
 
 @given(platforms())
-@examples(8, 150)
+@examples(4, 150)
 def test_the_mass_at_a_point_is_that_at_the_reference_carried_there(drawn):
     stage = with_point(drawn[0])
     model = lumped(stage)

@@ -274,6 +274,7 @@ def test_structural_damping_becomes_equivalent_ratios_and_says_so() -> None:
     np.testing.assert_allclose(found.damping, ratios, rtol=0.01)
 
 
+@pytest.mark.full
 def test_the_solid_model_is_a_plant_like_any_other() -> None:
     mechanism, read_as_solid = small(), small_stage().read.model
     setup = RigSetup(seconds=5.0, rate=16_384.0, sensing=Sensing(density=1e-11, resolution=0.0))

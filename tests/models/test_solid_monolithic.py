@@ -33,6 +33,7 @@ def whole():
     return parts.model, monolithic(stage, replace(COARSE, modes=18), cache=None)
 
 
+@pytest.mark.full
 def test_props_are_the_same_in_one_mesh():
     """Rods between rigid bodies have nothing to cut: the lowest modes agree to 1e-6, the others to the modes left out."""
     stage = propped(6e-3, 7e-3, 8e-3)

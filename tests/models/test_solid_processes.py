@@ -122,7 +122,9 @@ def test_an_error_is_told_with_its_last_line(folder: Path) -> None:
     assert "failed while starting (ZeroDivisionError: " in finding.what
 
 
-@pytest.mark.parametrize(("what", "limits"), [("os.abort()", Limits()), ("time.sleep(1000.0)", Limits(mesh_seconds=4.0))])
+@pytest.mark.parametrize(
+    ("what", "limits"), [("os.abort()", Limits()), pytest.param("time.sleep(1000.0)", Limits(mesh_seconds=4.0), marks=pytest.mark.full)]
+)
 def test_a_mesher_that_crashes_or_hangs_is_asked_again_otherwise(folder: Path, what: str, limits: Limits) -> None:
     found = results(mined("lever", code(FIRST_TIME.format(what=what))), limits=limits)
     assert found["lever"].elements > 0
