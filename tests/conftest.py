@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -20,6 +21,10 @@ from threadpoolctl import threadpool_limits
 # Else Hypothesis also tries numbers it finds in the code of whatever modules are loaded by then, but for those of a path with "test" in it:
 # what a law is tried on would depend on which tests ran before it in this process, and on where the tree lies.
 providers._get_local_constants = lambda: providers._local_constants
+
+# A script that runs the tests in its background ignores interrupts, and so would every process that a test starts and interrupts.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 QUICK = os.environ.get("FLEXSTAGE_TESTS") == "quick"
