@@ -112,6 +112,8 @@ def test_the_report_of_a_comparison(recorded: Command, tmp_path: Path) -> None:
     page = (tmp_path / "compared.html").read_text()
     assert page.index("<h2>Theory and experiment</h2>") < page.index("<h2>Modes found</h2>")
     assert len(pictures(page)) == 1 + 6 + 5
+    assert len(page.encode()) < 2_000_000
+    assert max(len(each) for each in pictures(page)) < 200_000  # 36 responses of some thousand points
 
 
 def test_compare_gives_a_document(recorded: Command) -> None:

@@ -13,7 +13,7 @@ import pytest
 from flexstage.analysis.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
-from flexstage.show.figures.export import compact_svg, to_png, to_svg
+from flexstage.show.figures.export import compact_svg, share_styles, to_png, to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.spectrum import spectrum_figure
@@ -99,6 +99,32 @@ def test_compaction_keeps_points_within_a_tenth() -> None:
     assert len(short) < 0.6 * len(path)
 
 
+def test_marks_of_one_look_are_one_path_and_stand_where_matplotlib_puts_them() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    with style_context():
+        figure = canvas(3.0, 2.0)
+        axes = figure.add_axes((0.2, 0.2, 0.7, 0.7))
+        axes.plot(x, x**2, "s", color="#009988")
+    text = sound(figure, "marks")
+    mark, places = re.findall(r'<marker id="([^"]+)".*?<path d="M([^"]+)"', text)[0]
+    assert f"marker:url(#{mark})" in text
+    ends = axes.transData.transform(np.stack([x, x**2], axis=1)) * 72.0 / figure.dpi
+    assert np.allclose(np.array(places.split(), dtype=float).reshape(-1, 2), np.stack([ends[:, 0], 144.0 - ends[:, 1]], axis=1), atol=0.051)
+
+
+def test_pictures_of_a_page_share_their_styles_and_keep_their_looks() -> None:
+    """Every element has the rules it had by itself; a name that a user gave is no class."""
+    alone = [to_svg(spectrum_figure(found), name, 'class="one-0"') for name in ("one", "two") if (found := analysed("parallelogram").modes)]
+    page, sheet = share_styles("".join(alone))
+    looks = dict(re.findall(r"\.([\w-]+)\{([^}]*)\}", "".join(alone)))
+    shared = dict(re.findall(r"\.([\w-]+)\{([^}]*)\}", sheet))
+    before, after = (re.findall(r' class="([^"]+)"', text) for text in ("".join(alone), page))
+    assert [looks[each] for each in before] == [shared[each] for each in after]
+    assert len(shared) == len(set(looks.values())) < len(looks)
+    assert "<style>" not in page
+    assert page.count("class=&quot;one-0&quot;") == 2
+
+
 def test_a_dollar_sign_is_a_dollar_sign() -> None:
     with style_context():
         figure = canvas(1.0, 1.0)
@@ -126,6 +152,9 @@ def test_a_reading_has_the_numbers_and_the_places_of_what_is_drawn() -> None:
     assert [each["name"] for each in upper["curves"]] == [each["name"] for each in lower["curves"]]
     size = np.frombuffer(base64.b64decode(upper["curves"][0]["y"]), "<f4")
     assert np.allclose(size, np.abs(leading_curves(found.response)[0].values), rtol=1e-6)
+    (over,) = told["over"]
+    assert np.array_equal(np.frombuffer(base64.b64decode(over), "<f4"), found.response.frequencies.astype("<f4"))
+    assert {each["x"] for panel in told["panels"] for each in panel["curves"]} == {0}
     for panel, axes in zip(told["panels"], figure.axes, strict=True):
         (left, top, width, height), (low, high), (bottom, above) = panel["box"], panel["x"], panel["y"]
         ends = axes.transData.transform([(low, bottom), (high, above)]) * 72.0 / figure.dpi

@@ -91,6 +91,8 @@ def test_mapped_reading_has_a_report() -> None:
 def test_references_inside_the_page_lead_somewhere() -> None:
     page = reported("double-triangle")
     names = set(re.findall(r' id="([^"]+)"', page))
+    styled = set(re.findall(r"\.(_\d+)\{", page))
+    assert {each for each in re.findall(r' class="([^"]+)"', page) if each.startswith("_")} == styled != set()
     wanted = set(re.findall(r'href="#([^"]+)"', page)) | set(re.findall(r"url\(#([^)]+)\)", page))
     assert wanted <= names
 

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from flexstage.base.text import printable
+from flexstage.show.figures.export import share_styles
 from flexstage.show.render import templates
 from flexstage.show.table import Table
 from flexstage.show.viewer.data import StageData
@@ -156,7 +157,8 @@ def page(head: Head, sections: Sequence[Section], stages: Mapping[str, StageData
     True
     """
     scripts = [_static("report.js"), *([bundle()] if stages else [])]
-    told = printable(templates().page(head, sections, _static("report.css"), _policy(scripts)), keep="\n\t")
+    shown, pictures = share_styles(templates().page(head, sections, _static("report.css"), _policy(scripts)))
+    told = printable(shown.replace("</style></head>", f"{pictures}</style></head>", 1), keep="\n\t")
     data = "".join(data_script(key, each) for key, each in stages.items())
     return told + data + "".join(f"<script>{each}</script>" for each in scripts) + "</body></html>\n"
 

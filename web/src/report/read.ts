@@ -10,10 +10,11 @@ const SVG = "http://www.w3.org/2000/svg";
 const [STANDS_OUT, NEAR] = [1.5, 1.02];
 const RADIUS = 4;
 
-interface Packed { readonly name: string; readonly colour: string; readonly x: string; readonly y: string }
+/** x is a number among what all curves stand over. */
+interface Packed { readonly name: string; readonly colour: string; readonly x: number; readonly y: string }
 interface Spot { readonly x: number; readonly text: string; readonly y?: number; readonly panel: number; readonly plays?: string }
 interface Frame { readonly box: [number, number, number, number]; readonly x: [number, number]; readonly y: [number, number]; readonly log: [boolean, boolean]; readonly name: string }
-interface Told { readonly along: string; readonly panels: (Frame & { readonly curves: Packed[] })[]; readonly spots: Spot[] }
+interface Told { readonly along: string; readonly over: string[]; readonly panels: (Frame & { readonly curves: Packed[] })[]; readonly spots: Spot[] }
 interface Curve { readonly name: string; readonly colour: string; readonly x: Float32Array; readonly y: Float32Array }
 
 const made = (kind: string, values: Readonly<Record<string, string | number>>): SVGElement => {
@@ -25,11 +26,9 @@ const made = (kind: string, values: Readonly<Record<string, string | number>>): 
 const signed = (value: number): string => written(value).replace("-", "−");
 
 class Panel {
-  readonly curves: Curve[];
   readonly cursor: SVGElement;
 
-  constructor(readonly frame: Frame, curves: readonly Packed[]) {
-    this.curves = curves.map((each) => ({ name: each.name, colour: each.colour, x: floats(each.x), y: floats(each.y) }));
+  constructor(readonly frame: Frame, readonly curves: readonly Curve[]) {
     const [, top, , height] = frame.box;
     this.cursor = made("line", { class: "cursor", y1: top, y2: top + height, visibility: "hidden" });
   }
@@ -86,7 +85,8 @@ class Reading {
   private kept: number | null = null;
 
   constructor(private readonly svg: SVGSVGElement, private readonly data: Told) {
-    this.panels = data.panels.map((each) => new Panel(each, each.curves));
+    const over = data.over.map(floats);
+    this.panels = data.panels.map((each) => new Panel(each, each.curves.map(({ name, colour, x, y }) => ({ name, colour, x: over[x]!, y: floats(y) }))));
     this.told.className = "reading";
     this.told.setAttribute("aria-live", "polite");
     this.rest();

@@ -15,6 +15,15 @@ _STRAIGHT = re.compile(r"[MLz\d.\s-]+")
 _STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
 _GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
 _STYLE = re.compile(r' style="([^"]+)"')
+_MARKS = re.compile(
+    r'<use href="#(?P<mark>[^"]+)" x="[^"]*" y="[^"]*"(?P<look>[^>]*)/>(?:<use href="#(?P=mark)" x="[^"]*" y="[^"]*"(?P=look)/>){2,}'
+)
+_PLACE = re.compile(r' x="([^"]*)" y="([^"]*)"')
+_PICTURE = re.compile(r"<svg .*?</svg>", re.DOTALL)
+_SHEET = re.compile(r"<style>([^<]*)</style>")
+_RULE = re.compile(r"\.([\w-]+)(\{[^}]*\})")
+_CLASS = re.compile(r' class="([\w-]+)"(?=[^<>]*>)')
+_REFERENCE = re.compile(r'(?: id="|href="#|url\(#)([\w-]+)(?=[^<>]*>)')
 SCENERY = "scenery"
 """Artists with this `gid` say their own `markup`, which comes under everything else of a figure."""
 
@@ -56,6 +65,26 @@ def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
     return buffer.getvalue()
 
 
+def share_styles(page: str) -> tuple[str, str]:
+    """A page of HTML whose pictures of `to_svg` share one style sheet, which comes beside it: equal rules once, all names short.
+
+    >>> one, other = (f'<svg ><style>.{name}-0{{fill:red}}</style><path class="{name}-0"/></svg>' for name in ("first", "second"))
+    >>> share_styles(one + other)
+    ('<svg ><path class="_0"/></svg><svg ><path class="_0"/></svg>', '._0{fill:red}')
+    """
+    classes: dict[str, str] = {}
+    names: dict[str, str] = {}
+
+    def shared(found: re.Match[str]) -> str:
+        rules = [rule for sheet in _SHEET.findall(found[0]) for rule in _RULE.findall(sheet)]
+        own = {name: classes.setdefault(rule, f"_{len(classes)}") for name, rule in rules}
+        text = _CLASS.sub(lambda tag: f' class="{own.get(tag[1], tag[1])}"', _SHEET.sub("", found[0]))
+        return _REFERENCE.sub(lambda tag: tag[0].replace(tag[1], names.setdefault(tag[1], f"_{len(names)}")), text)
+
+    told = _PICTURE.sub(shared, page)
+    return told, "".join(f".{name}{rule}" for rule, name in classes.items())
+
+
 def theme_colour(colour: str) -> str:
     """A colour as the page's variable, where it has one.
 
@@ -84,7 +113,7 @@ def compact_svg(text: str, name: str, description: str) -> str:
     body = _GEOMETRY.sub(lambda found: f'{found[1]}="{_shorten_numbers(found[2])}"', body)
     body = _STYLE.sub(lambda found: f' style="{_styling(found[1])}"', body)
     body = _drop_empty(re.sub(r">\s+<", "><", body))
-    body, classes = _classes(body, name)
+    body, classes = _classes(_join_marks(body), name)
     width = round(float(box.split()[2]) * 96.0 / 72.0)
     size = f"--width:{width}px;max-width:{width}px"
     head = f'<svg viewBox="{_shorten_numbers(box)}" role="img" aria-label="{_attribute(description)}" style="{size}">'
@@ -187,6 +216,21 @@ def _drop_empty(body: str) -> str:
         body = re.sub(r"<g>((?:(?!</?g\b).)*)</g>", r"\1", body, flags=re.DOTALL)
         body = re.sub(r"<defs>\s*</defs>|<defs/>|<g/>", "", body)
     return body
+
+
+def _join_marks(body: str) -> str:
+    """Runs of equal marks as one path, at whose points they stand; their look is the mark's own."""
+    numbers: dict[tuple[str, str], int] = {}
+
+    def path(found: re.Match[str]) -> str:
+        key, first = (found["mark"], found["look"]), (found["mark"], found["look"]) not in numbers
+        name = f"{found['mark']}-{numbers.setdefault(key, len(numbers))}"
+        mark = f'<use href="#{found["mark"]}"{found["look"]}/>'
+        made = f'<marker id="{name}" overflow="visible" markerUnits="userSpaceOnUse">{mark}</marker>' if first else ""
+        points = " ".join(f"{x} {y}" for x, y in _PLACE.findall(found[0]))
+        return f'{made}<path d="M{points}" style="fill:none;marker:url(#{name})"/>'
+
+    return _MARKS.sub(path, body)
 
 
 def _classes(body: str, name: str) -> tuple[str, str]:

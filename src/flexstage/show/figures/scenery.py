@@ -20,6 +20,8 @@ Colour: TypeAlias = tuple[float, ...]
 
 _NONE: Colour = (0.0, 0.0, 0.0, 0.0)
 _DASHES = (3.7, 1.6)
+_UNITS = 10.0
+"""Units of a picture's numbers in a point: steps of a tenth, 0.035 mm on paper, are less than what a printer or a screen resolves."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +35,14 @@ class Style:
 
     @property
     def rule(self) -> str:
-        """The same in a style sheet, lengths in hundredths of a point."""
+        """The same in a style sheet, lengths in tenths of a point."""
         said = [f"fill:{_colour(self.fill)}"]
         if 0.0 < self.fill[3] < 1.0:
             said.append(f"fill-opacity:{self.fill[3]:g};shape-rendering:crispEdges")  # or the seams between neighbours show
         if self.edge[3] > 0.0:
-            said.append(f"stroke:{_colour(self.edge)};stroke-width:{100.0 * self.width:g}")
+            said.append(f"stroke:{_colour(self.edge)};stroke-width:{_UNITS * self.width:g}")
         if self.dashed:
-            said.append("stroke-dasharray:" + ",".join(f"{100.0 * each * self.width:g}" for each in _DASHES))
+            said.append("stroke-dasharray:" + ",".join(f"{_UNITS * each * self.width:g}" for each in _DASHES))
         return ";".join(said)
 
 
@@ -81,11 +83,12 @@ class Scenery(Artist):
         drawn.draw(renderer)
 
     def markup(self, name: str) -> str:
-        """The strokes as SVG, in hundredths of a point; those of one style share a class, whose name begins with `name`."""
+        """The strokes as SVG, in tenths of a point; those of one style share a class, whose name begins with `name`."""
         axes: Any = self.axes
         counts = [len(each.points) for each in self.strokes]
-        points = axes.transData.transform(np.concatenate([each.points for each in self.strokes])) * 7200.0 / axes.figure.dpi
-        points[:, 1] = 7200.0 * axes.figure.get_figheight() - points[:, 1]
+        inch = 72.0 * _UNITS
+        points = axes.transData.transform(np.concatenate([each.points for each in self.strokes])) * inch / axes.figure.dpi
+        points[:, 1] = inch * axes.figure.get_figheight() - points[:, 1]
         places, start = np.rint(points).astype(int).tolist(), 0
         names: dict[Style, str] = {}
         drawn: list[str] = []
@@ -94,7 +97,7 @@ class Scenery(Artist):
             drawn.append(f'<path class="{names.setdefault(each.style, f"{name}-{len(names)}")}" d="{course}"/>')
             start += count
         rules = "".join(f".{own}{{{style.rule}}}" for style, own in names.items())
-        return f'<style>{rules}</style><g transform="scale(.01)" stroke-linejoin="round">{"".join(drawn)}</g>'
+        return f'<style>{rules}</style><g transform="scale(.1)" stroke-linejoin="round">{"".join(drawn)}</g>'
 
 
 def _path(stroke: Stroke) -> Path:
@@ -107,7 +110,7 @@ def _course(points: Sequence[Sequence[int]], ends: Sequence[tuple[int, int]] | N
     """An area, or lines between pairs of points, as steps; a line that begins where the last one ended goes on.
 
     >>> _course([(0, 0), (10, -10), (10, 20)], None), _course([(0, 0), (10, -10), (10, 20)], [(0, 1), (1, 2)])
-    ('M0 0l10-10 0 30z', 'M0 0l10-10l0 30')
+    ('M0 0l10-10 0 30z', 'M0 0l10-10 0 30')
     """
     if ends is None:
         steps = " ".join(f"{after[0] - here[0]} {after[1] - here[1]}" for here, after in pairwise(points))
@@ -116,8 +119,8 @@ def _course(points: Sequence[Sequence[int]], ends: Sequence[tuple[int, int]] | N
     last = -1
     for first, second in ends:
         here, after = points[first], points[second]
-        begun = "" if first == last else f"M{here[0]} {here[1]}"
-        pieces.append(f"{begun}l{after[0] - here[0]} {after[1] - here[1]}")
+        begun = " " if first == last else f"M{here[0]} {here[1]}l"
+        pieces.append(f"{begun}{after[0] - here[0]} {after[1] - here[1]}")
         last = second
     return "".join(pieces).replace(" -", "-")
 
