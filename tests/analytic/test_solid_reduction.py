@@ -9,11 +9,12 @@ import pytest
 from scipy.linalg import eigh
 
 from flexstage.solid.fea.bar import bar
+from flexstage.solid.fea.component import with_yielding_ends
 from flexstage.solid.fea.fineness import WARPS, Fineness, Hold, Reduction
 from flexstage.solid.fea.mesh import mesh_component
 from flexstage.solid.fea.piece import Medium
 from flexstage.solid.fea.reduce import reduce_mesh
-from flexstage.solid.fea.superelement import Superelement
+from flexstage.solid.fea.superelement import Superelement, hold_faces
 
 AXIAL = 100e6
 """E A / L of the bar [N/m]."""
@@ -75,3 +76,22 @@ def test_a_face_that_yields_lies_between() -> None:
     assert stiff < yielding < 1.0
     # The foot is held plane; so was the end, which is now free to contract: half of what was lost is back.
     assert 1.0 - yielding == pytest.approx(0.5 * (1.0 - stiff), rel=0.1)
+
+
+def test_a_face_that_yields_and_is_held_stays_plane() -> None:
+    """One reduction serves a unit in its stage and alone: with the warps nought it is that of the component whose end stays plane."""
+    plan = Reduction(Fineness(order=2), modes=4)
+    whole = reduce_mesh(with_yielding_ends(bar()), MESH, plan)
+    held, own = hold_faces(whole, [True]), reduce_mesh(bar(), MESH, plan)
+    assert (held.warps, held.size) == (0, own.size)
+    for name in ("stiffness", "inertia"):
+        mine, other = (_condensed(each, name) for each in (held, own))
+        np.testing.assert_allclose(mine, other, rtol=0, atol=1e-9 * np.abs(other).max())
+
+
+def _condensed(element: Superelement, name: str) -> np.ndarray:
+    """The end's stiffness, or the inertia of its static motions: what does not depend on the choice of internal coordinates."""
+    law = getattr(element, name)["bar"]
+    inner = np.linalg.solve(element.stiffness["bar"][6:, 6:], element.stiffness["bar"][6:, :6])
+    motion = np.vstack([np.eye(6), -inner])
+    return motion.T @ law @ motion

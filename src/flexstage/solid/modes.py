@@ -12,10 +12,11 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.fea.assemble import linear_model
-from flexstage.solid.fea.cache import Cache, find, key_of
-from flexstage.solid.fea.component import components
+from flexstage.solid.fea.cache import Cache, find
+from flexstage.solid.fea.component import Component, components
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.parts import Parts
+from flexstage.solid.fea.parts import as_joined, reduce_jobs
+from flexstage.solid.fea.superelement import Superelement
 from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarsen, read_solid
 from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, converge, estimates, reduction_of_order
 
@@ -53,12 +54,13 @@ def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
 
 def _from_cache(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> FeaModes | None:
     shape = with_drawn_parts(mechanism)
-    parts: Parts = ()
-    for part in components(shape):
-        element = find(cache, key_of(part, reduction), part.name).element
+    wholes, own = list[tuple[Component, Superelement]](), components(shape)
+    for job in reduce_jobs(own, reduction):
+        element = find(cache, job.key, job.name).element
         if element is None:
             return None
-        parts = (*parts, (part, element))
+        wholes.append((job.component, element))
+    parts = as_joined(own, wholes)
     order = reduction.fineness.order
     said = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
     model = linear_model(shape, expand(shape), parts, said)

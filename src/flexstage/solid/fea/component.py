@@ -122,6 +122,24 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
     return result
 
 
+def with_yielding_ends(component: Component) -> Component:
+    """The same component with the ends of its links on rigid bodies yielding too: what it is on elastic ones, where all else is equal.
+
+    A unit drawn alone ends on a rigid output, in its stage on an elastic platform; with all warps nought both are one.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
+    (False, True)
+    """
+    stacks = {piece.name for piece in component.pieces if isinstance(piece.form, Piezo)}
+    if not component.bodies:
+        return component
+    own = (item.footprint is None and item.joint.link not in stacks for item in component.interfaces)
+    return replace(
+        component, interfaces=tuple(replace(item, yields=item.yields or end) for item, end in zip(component.interfaces, own, strict=True))
+    )
+
+
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
     """The joints of a link: its first body at the end face towards -x of the link frame, its second at +x.
 

@@ -11,13 +11,13 @@ from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
 from flexstage.base.progress import Progress
 from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, key_of
-from flexstage.solid.fea.component import Component
-from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.component import Component, with_yielding_ends
+from flexstage.solid.fea.fineness import Hold, Reduction
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.reducing import Reduce, StoredJob
 from flexstage.solid.fea.remote import Limits, work_all
 from flexstage.solid.fea.store import from_bytes, versions
-from flexstage.solid.fea.superelement import Superelement
+from flexstage.solid.fea.superelement import Superelement, hold_faces
 
 Parts: TypeAlias = tuple[tuple[Component, Superelement], ...]
 """Components of a stage with their superelements; equal components share one."""
@@ -55,16 +55,36 @@ def reduce_parts(
     """
     jobs = reduce_jobs(parts, reduction, springs)
     elements, notices = obtain(jobs, SUPERELEMENTS, ways)
-    return ReducedParts(tuple((job.component, elements[job.key]) for job in jobs), notices)
+    return ReducedParts(as_joined(parts, [(job.component, elements[job.key]) for job in jobs]), notices)
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """A job a component.
+    """A job a component: what is reduced yields at the ends of its links, so that a unit alone and in its stage are one job.
 
     >>> reduce_jobs((), Reduction())
     []
     """
-    return [Reduce(key_of(part, reduction, springs.get(part.name)), part, reduction, springs.get(part.name)) for part in parts]
+    yields = reduction.hold is Hold.RIGID and not reduction.residual
+    wholes = [with_yielding_ends(part) if yields and part.name not in springs else part for part in parts]
+    own = [springs.get(part.name) for part in parts]
+    return [Reduce(key_of(whole, reduction, joined), whole, reduction, joined) for whole, joined in zip(wholes, own, strict=True)]
+
+
+def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
+    """Components with the superelements of their `reduce_jobs`, faces that end on what is rigid held; equal ones share one.
+
+    >>> as_joined((), ())
+    ()
+    """
+    made: dict[tuple[int, tuple[bool, ...]], Superelement] = {}
+    found: list[tuple[Component, Superelement]] = []
+    for part, (whole, element) in zip(parts, reduced, strict=True):
+        pairs = zip(part.interfaces, whole.interfaces, strict=True)
+        held = tuple(not own.yields for own, other in pairs if other.yields)
+        key = id(element), held
+        made.setdefault(key, hold_faces(element, held))
+        found.append((part, made[key]))
+    return tuple(found)
 
 
 def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str, Any], tuple[Finding, ...]]:

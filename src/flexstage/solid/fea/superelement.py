@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.solid.fea.fineness import WARPS
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,3 +63,28 @@ class Superelement:
     def size(self) -> int:
         """Number of coordinates."""
         return self.rigid.shape[0]
+
+
+def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
+    """A superelement with the warps of some of its yielding faces nought, those `held`, in order.
+
+    >>> bare = Skin(*[np.zeros((0, 20))] * 5)
+    >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)
+    >>> plane = hold_faces(whole, [True])
+    >>> plane.warps, plane.size, plane.stiffness["a"].shape
+    (0, 8, (8, 8))
+    """
+    if not any(held):
+        return element
+    kept = np.ones(element.size, dtype=bool)
+    kept[6 * element.interfaces : element.boundary_coordinates] = ~np.repeat(np.asarray(held, dtype=bool), WARPS)
+    last = ("bodies", "resultants", "strokes", "free_strokes", "seats")
+    return replace(
+        element,
+        warps=element.warps - WARPS * sum(held),
+        **{name: {key: law[np.ix_(kept, kept)] for key, law in getattr(element, name).items()} for name in ("stiffness", "inertia")},
+        **{name: {key: rows[..., kept] for key, rows in getattr(element, name).items()} for name in last},
+        rigid=element.rigid[kept],
+        carried=element.carried[kept],
+        skin=replace(element.skin, motion=element.skin.motion[..., kept], stress=element.skin.stress[..., kept]),
+    )
