@@ -1,4 +1,4 @@
-"""Polynomials along a flexure of unit length, rules of Gauss on it, and projections on what these rules integrate exactly."""
+"""Polynomials along and across a flexure of unit length and width, rules of Gauss, and projections on what these integrate exactly."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.polynomial import Legendre, legendre
 
 from flexstage.base.number import Array
 from flexstage.spatial.rotation import GAUSS_THREE
@@ -71,6 +71,33 @@ def slopes(count: int, places: Array) -> Array:
     [0.0, 2.0]
     """
     return np.array([2.0 * legendre.legval(2.0 * np.asarray(places) - 1.0, legendre.legder(row)) for row in np.eye(count)])
+
+
+@dataclass(frozen=True, eq=False)
+class Across:
+    """Integrals across the width b = 1 of shapes phi_j = P_j(2 z) / 12: phi phi, phi' phi', phi'' phi'', phi phi'', z phi'' and phi'."""
+
+    plain: Array
+    sloped: Array
+    curved: Array
+    mixed: Array
+    curling: Array
+    turning: Array
+
+
+@functools.cache
+def across(degrees: tuple[int, ...]) -> Across:
+    """Those of the shapes of such `degrees`.
+
+    >>> across((2,)).curved.round(12).tolist()
+    [[1.0]]
+    """
+    nodes, weights = legendre.leggauss(max(degrees) + 1)
+    half = 0.5 * weights
+    shapes = [Legendre.basis(degree, domain=[-0.5, 0.5]) / 12.0 for degree in degrees]
+    value, slope, curve = (np.array([shape.deriv(order)(0.5 * nodes) for shape in shapes]) for order in (0, 1, 2))
+    plain, sloped, curved, mixed = (one * half @ other.T for one, other in ((value, value), (slope, slope), (curve, curve), (value, curve)))
+    return Across(plain, sloped, curved, mixed, (curve * half) @ (0.5 * nodes), slope @ half)
 
 
 def project(values: Array, places: Array, weights: Array, size: int) -> Array:

@@ -10,11 +10,13 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Legendre, legendre
+from numpy.polynomial import Legendre
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.flexure.modes import FINE, gauss, polynomials
+from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials
 
+_DEGREES = (2, 4)
+"""Of the polynomials by which a bent leaf's section curves."""
 _TERMS = 30
 """Polynomials a field along the strip."""
 _CUT = 1e-14
@@ -36,25 +38,6 @@ class Fields:
     form: Array
     values: Array
     coupling: Array
-
-
-@dataclass(frozen=True, eq=False)
-class _Across:
-    """Integrals across the width over b: phi phi, phi' phi', phi'' phi'' and phi phi'', each (2, 2), for b = 1."""
-
-    plain: Array
-    sloped: Array
-    curved: Array
-    mixed: Array
-
-
-@functools.cache
-def _across() -> _Across:
-    shapes = [Legendre.basis(degree, domain=[-0.5, 0.5]) / 12.0 for degree in (2, 4)]
-    nodes, weights = legendre.leggauss(8)
-    value, slope, curve = (np.array([shape.deriv(order)(0.5 * nodes) for shape in shapes]) for order in (0, 1, 2))
-    weights = 0.5 * weights
-    return _Across(value * weights @ value.T, slope * weights @ slope.T, curve * weights @ curve.T, value * weights @ curve.T)
 
 
 @functools.cache
@@ -79,9 +62,14 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
     >>> form.shape, bool(np.allclose(form, form.T))
     ((120, 120), True)
     """
-    across = _across()
+    width_wise = across(_DEGREES)
     square = width * width
-    plain, sloped, curved, mixed = square * square * across.plain, square * across.sloped, across.curved, square * across.mixed
+    plain, sloped, curved, mixed = (
+        square * square * width_wise.plain,
+        square * width_wise.sloped,
+        width_wise.curved,
+        square * width_wise.mixed,
+    )
     shear = 5.0 * (1.0 - poisson) / (thickness * thickness) * plain
     torsion = 0.5 * (1.0 - poisson) * sloped
     value, slope, slope_value = _products()
@@ -140,9 +128,9 @@ def secant(beta: Number, poisson: Number, *, shapes: int = 2) -> Number:
     >>> round(float(secant(10.0, 0.3)), 4)
     1.0638
     """
-    across, squared = _across(), poisson * poisson
+    width_wise, squared = across(_DEGREES), poisson * poisson
     stretch = 12.0 * (1.0 - squared) * beta * beta * np.diag([STRETCH_TWO, STRETCH_FOUR])
-    form = (across.curved + stretch)[:shapes, :shapes]
+    form = (width_wise.curved + stretch)[:shapes, :shapes]
     pull = -poisson * np.array([1.0, 10.0 / 3.0])[:shapes]
     found = np.linalg.solve(form, pull)
     # energy by k at the fields that minimise it: D b (k + nu (a2 + 10/3 a4) + stretch of the fields)

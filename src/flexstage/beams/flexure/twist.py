@@ -6,10 +6,10 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Legendre, legendre
+from numpy.polynomial import Legendre
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.flexure.modes import FINE, gauss, polynomials, slopes
+from flexstage.beams.flexure.modes import FINE, across, gauss, polynomials, slopes
 
 _DEGREES = (3, 5, 7)
 """Of the polynomials by which a twisted leaf's section curls."""
@@ -55,28 +55,6 @@ def held_modes(count: int, places: Array, decay: Array) -> Modes:
     return Modes(plain - layer, rates - layer_slope)
 
 
-@dataclass(frozen=True, eq=False)
-class _Across:
-    """Integrals across the width for b = 1, phi_j = P_j(2 z) / 12: phi phi, phi' phi', phi'' phi'', phi phi'', z phi'' and phi'."""
-
-    plain: Array
-    sloped: Array
-    curved: Array
-    mixed: Array
-    curling: Array
-    turning: Array
-
-
-@functools.cache
-def _across() -> _Across:
-    nodes, weights = legendre.leggauss(max(_DEGREES) + 1)
-    shapes = [Legendre.basis(degree, domain=[-0.5, 0.5]) / 12.0 for degree in _DEGREES]
-    value, slope, curve = (np.array([shape.deriv(order)(0.5 * nodes) for shape in shapes]) for order in (0, 1, 2))
-    half = 0.5 * weights
-    plain, sloped, curved, mixed = (one * half @ other.T for one, other in ((value, value), (slope, slope), (curve, curve), (value, curve)))
-    return _Across(plain, sloped, curved, mixed, (curve * half) @ (0.5 * nodes), slope @ half)
-
-
 @functools.cache
 def _along() -> tuple[Array, Array, Array]:
     """(1 - u^2)^2 P_k and its first two derivatives by s at the fine points of [0, 1]."""
@@ -92,13 +70,13 @@ def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
     With w_xx = - k_x' z and w_xz = - k_x the plate also bends to a_j phi_j, j = 3, 5, 7, a and a' zero at the clamps, and its fields of
     least energy follow twist (docs/nonlinear.md, 9).
     """
-    across, weights = _across(), gauss(FINE).weights
+    width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, _ = _along()
     plain, sloped, curved, mixed = _products()
     square, shear = width * width, 2.0 * (1.0 - poisson)
     form = plain + square * (shear * sloped + poisson * mixed) + square * square * curved
-    load = poisson * np.kron(across.curling[:, None], value * weights @ twist.slopes.T)
-    load = width * (load + shear * np.kron(across.turning[:, None], slope * weights @ twist.values.T))
+    load = poisson * np.kron(width_wise.curling[:, None], value * weights @ twist.slopes.T)
+    load = width * (load + shear * np.kron(width_wise.turning[:, None], slope * weights @ twist.values.T))
     root = np.sqrt(np.diag(form))
     form, load = form / root / root[:, None], load / root[:, None]
     halves = [load[part].T @ np.linalg.lstsq(form[np.ix_(part, part)], load[part], rcond=_CUT)[0] for part in _PARTS]
@@ -108,9 +86,9 @@ def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
 @functools.cache
 def _products() -> tuple[Array, Array, Array, Array]:
     """The forms of a_j a_k, a_j' a_k', a_j'' a_k'' and a_j'' a_k, with their integrals across."""
-    across, weights = _across(), gauss(FINE).weights
+    width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, curve = _along()
-    mixed = np.kron(across.mixed, curve * weights @ value.T)
-    pairs = ((across.curved, value), (across.sloped, slope), (across.plain, curve))
+    mixed = np.kron(width_wise.mixed, curve * weights @ value.T)
+    pairs = ((width_wise.curved, value), (width_wise.sloped, slope), (width_wise.plain, curve))
     plain, sloped, curved = (np.kron(one, each * weights @ each.T) for one, each in pairs)
     return plain, sloped, curved, mixed + mixed.T
