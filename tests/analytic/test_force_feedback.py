@@ -94,8 +94,8 @@ def test_one_leg_reaches_its_closed_form(guide):
     stage = loads(ONE_LEG.format(guide=guide))
     model, felt, bare, _ = damped_by(stage, ForceFeedback(1.0, 1e-3, order=1))
     pairs = pair_zeros(model, felt)
-    place = int(np.argmax(pairs.frequencies / pairs.zeros))
-    w, z = pairs.frequencies[place], pairs.zeros[place]
+    place = int(np.argmax(pairs.frequencies / pairs.others))
+    w, z = pairs.frequencies[place], pairs.others[place]
     assert w / z == pytest.approx(np.sqrt((2.0 + guide) / guide), rel=1e-7)
 
     def least(gain):

@@ -35,6 +35,7 @@ HOMES = {
     "hysteresis.stack": "dump_hysteresis load_hysteresis stack_hysteresis",
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Following Notching StackKind",
+    "study.amplifiers": "ChargeSetup",
     "study.setup": (
         "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor FollowSetup GaugeSetup GoalSetup HystereticStacks LoopNumbers "
         "LoopSetup Motion NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"

@@ -85,6 +85,9 @@ from flexstage.control.stability import (
 from flexstage.control.stability_margins import (
     margins as margins,
 )
+from flexstage.control.study.amplifiers import (
+    ChargeSetup as ChargeSetup,
+)
 from flexstage.control.study.choices import (
     Axes as Axes,
     Axis as Axis,

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from flexstage.base.finding import refuse
+from flexstage.control.electronics import ChargeDrive
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.plants import Plant
-from flexstage.control.system import connect, rename, select
+from flexstage.control.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
 
 
@@ -15,7 +18,8 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
     """The plant behind the creep of its stacks: free strokes `<actuator>` go through y = g_0 u + sum_i g_i s_i first (Hammerstein).
 
     Hysteresis, which does not depend on time, stands before it, so that everything behind the hold stays linear and exactly sampled; creep
-    and amplifier lag are linear and may change places. Raises `DesignError` for as many axes as there are not actuators.
+    and amplifier lag are linear and may change places. Of stacks that are held at their charge what creeps, y - u, comes as far as charge
+    leaves it: (left + (1 - left) w_0/(s + w_0)) (y - u). Raises `DesignError` for as many axes as there are not actuators.
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
@@ -28,12 +32,25 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
     entering = given.coordinates.commands()
     crept = {name: f"crept.{name}" for name in given.actuators}
     first = creep.system(entering, tuple(Channel(name, "m") for name in crept.values()))
-    whole = connect([first, rename(given.system, crept)], {}, _inputs(given, entering), given.system.output_names)
-    states = (f"creep.{name}.{number + 1}" for name in given.actuators for number in range(creep.times.shape[1]))
+    systems, links = [first, rename(given.system, crept)], {}
+    states = [f"creep.{name}.{number + 1}" for name in given.actuators for number in range(creep.times.shape[1])]
+    held = {name: each.charge for name, each in given.hardware.amplifiers.items() if each.charge is not None and name in crept}
+    for name, drive in held.items():
+        systems.insert(1, _relieve(name, drive))
+        links |= {f"own.{name}": {crept[name]: 1.0, name: -1.0}, crept[name]: {name: 1.0, f"left.{name}": 1.0}}
+    states += [f"relief.{name}" for name in reversed(held)]
+    whole = connect(systems, links, _inputs(given, entering), given.system.output_names)
     note = f"{given.note}; creep by {creep.times.shape[1]} exponentials an actuator"
     return replace(
         given, system=select(whole, given.system.input_names, given.system.output_names), states=(*states, *given.states), note=note
     )
+
+
+def _relieve(name: str, drive: ChargeDrive) -> System:
+    """From what a stack creeps by itself [m] to what it does so held at its charge [m]."""
+    rate, left = 2.0 * np.pi * drive.corner, drive.left
+    one, entry, exit_ = np.eye(1), (Channel(f"own.{name}", "m"),), (Channel(f"left.{name}", "m"),)
+    return System(-rate * one, one, (1.0 - left) * rate * one, left * one, entry, exit_)
 
 
 def _inputs(given: Plant, strokes: tuple[Channel, ...]) -> tuple[Channel, ...]:

@@ -12,7 +12,7 @@ from flexstage.analysis.workspace.stroke import stacks, stroke_limits
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import CURRENT, FREQUENCY, TIME
-from flexstage.base.record import INNER
+from flexstage.base.record import INNER, VIEW
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts import amplifier
@@ -21,18 +21,34 @@ from flexstage.parts.gauge import Instrument
 
 
 @dataclass(frozen=True)
+class ChargeHold:
+    """What an amplifier of charge does to a stack of that electromechanical `coupling` k: far above a corner it holds charge, not volts.
+
+    The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C). `left` is
+    the share of hysteresis and creep that the stroke keeps by charge.
+    """
+
+    coupling: float
+    left: float
+    corner: float | None = None
+    leakage: float | None = None
+
+
+@dataclass(frozen=True)
 class AmplifierSettings(amplifier.Amplifier):
     """What a design file does not say of an amplifier; what is absent limits nothing.
 
     Besides what every amplifier has, `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before
     its lag, `bits` of the converter before it. Of voice coils it drives the current: `bandwidth`, `current` and `bits` count, its noise is
-    `current_noise` [A/Hz^(1/2)].
+    `current_noise` [A/Hz^(1/2)]. With `charge` it holds the charge of its stack; commands, range, slew, noise and steps are then those of
+    the volts that would give the same charge to a stack free of load.
     """
 
     slew: float | None = None
     noise_density: float | None = None
     bits: int | None = None
     current_noise: float | None = None
+    charge: ChargeHold | None = None
 
 
 @dataclass(frozen=True)
@@ -51,12 +67,33 @@ class GaugeSettings:
 
 
 @dataclass(frozen=True)
+class ChargeDrive:
+    """A stack of that `coupling` k held at its charge above a `corner` [Hz]; `left` is the share of hysteresis and creep that is left."""
+
+    coupling: float
+    corner: Annotated[float, FREQUENCY]
+    left: float
+
+    @property
+    def stiffening(self) -> Annotated[float, VIEW]:
+        """Axial stiffness at constant charge over that at constant volts, 1/(1 - k^2).
+
+        Preumont, Vibration Control of Active Structures, 2018, ch. 4: a stack with open electrodes.
+
+        >>> round(ChargeDrive(0.6, 0.1, 0.2).stiffening, 12)
+        1.5625
+        """
+        return 1.0 / (1.0 - self.coupling**2)
+
+
+@dataclass(frozen=True)
 class Amplifier:
     """One actuator's amplifier, converter and stack, all counted as free stroke from the bias; of a force actuator in its input, A or N.
 
     `low` to `high` [m] the stroke it can command, `slew` [m/s] how fast (the lesser of current x gain / capacitance and the amplifier's own
     slew x gain, the gain being free stroke per volt), `bandwidth` [Hz] of the lag behind the hold, `noise_density` [m/Hz^(1/2)] of free
-    stroke before that lag (None: not stated), `step` [m] of the converter (0: none). Infinite: no limit.
+    stroke before that lag (None: not stated), `step` [m] of the converter (0: none). Infinite: no limit. `charge` is what it does where it
+    holds charge, its corner known.
     """
 
     low: float = -np.inf
@@ -65,6 +102,7 @@ class Amplifier:
     bandwidth: float = np.inf
     noise_density: float | None = None
     step: float = 0.0
+    charge: ChargeDrive | None = None
 
 
 @dataclass(frozen=True)
@@ -171,7 +209,13 @@ def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, h
         bandwidth=float(setting.cutoff(np.array(capacitance))),
         noise_density=None if setting.noise_density is None else setting.noise_density * gain,
         step=0.0 if setting.bits is None else (high - low) / 2**setting.bits,
+        charge=None if setting.charge is None else _charge_drive(setting.charge, capacitance),
     )
+
+
+def _charge_drive(held: ChargeHold, capacitance: float) -> ChargeDrive:
+    corner = held.corner if held.leakage is None else 0.5 / (np.pi * held.leakage * capacitance)
+    return ChargeDrive(held.coupling, float(corner or 0.0), held.left)
 
 
 def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:
@@ -194,6 +238,8 @@ def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
 
 
 def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
+    if setting.charge is not None:
+        yield Finding(name, "its amplifier holds the charge of a stack, and this one drives a force actuator", "Leave kind out")
     for key in ("resistance", "slew", "noise_density"):
         if getattr(setting, key) is not None:
             what = f"{key} is of the volts of a stack's amplifier, and this one drives a force actuator"
@@ -248,8 +294,9 @@ def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedAct
     if setting.resistance is not None and setting.bandwidth is not None:
         what = f"bandwidth {setting.bandwidth:g} Hz and resistance {setting.resistance:g} ohm are both given"
         yield Finding(name, what, "Give the one that limits")
-    for key in ("resistance", "current"):
-        if getattr(setting, key) is not None and piezo.capacitance is None:
+    stated = {"resistance": setting.resistance, "current": setting.current, "leakage": setting.charge and setting.charge.leakage}
+    for key, value in stated.items():
+        if value is not None and piezo.capacitance is None:
             yield Finding(name, f"{key} needs its stack's capacitance, which is not stated", 'Add for example capacitance = "0.5 uF"')
     if setting.current_noise is not None:
         yield Finding(name, "current_noise is that of a voice coil's amplifier", "State the noise of a stack's amplifier in volts")

@@ -18,7 +18,18 @@ from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.stacks import Sweep
 from flexstage.control.study.study import LoopStudy
-from flexstage.control.tables import count_modes, law_table, loop_table, margin_table, step_table, tracking_table
+from flexstage.control.tables import (
+    charge_table,
+    count_modes,
+    damping_table,
+    heat_table,
+    law_table,
+    learning_table,
+    loop_table,
+    margin_table,
+    step_table,
+    tracking_table,
+)
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
@@ -33,7 +44,8 @@ def loop_section(found: LoopStudy) -> Section | None:
     """The loop at a glance: facts, block diagram, what it is made of."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
     caption = "The loop of Fig. 9 of Shin & Moon. Shaded: what the computer does, sample by sample."
-    blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found), law_table(found)]
+    blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found)]
+    blocks += [charge_table(found), damping_table(found), law_table(found)]
     return section("The loop", blocks)
 
 
@@ -85,7 +97,7 @@ def diagram_of(found: LoopStudy) -> Diagram:
     power = tuple(plant.hardware.amplifiers.values())
     analogue = (
         Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
-        Box("amplifier", _bandwidth_text(power)),
+        Box("amplifier", _bandwidth_text(power) if found.charge is None else f"charge\n{_bandwidth_text(power)}"),
         Box("coils", "linear") if found.settled.kinematics.thrusts else Box("PZT", _stacks(found)),
     )
     onto = [("floor", "stage")] if found.settled.floor else []
@@ -193,7 +205,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 def time_section(found: LoopStudy) -> Section | None:
     """Steps and trajectories."""
-    blocks = [step_table(found.runs), tracking_table(found.runs)]
+    blocks = [step_table(found.runs), tracking_table(found.runs), learning_table(found.runs), heat_table(found.runs)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:

@@ -21,6 +21,7 @@ from flexstage.show.table import Cell, Column, Content, Mark, Table, field_colum
 
 _SMALL, _NOTHING = 1e-12, 1e-16
 _LEAST_DAMPED = 0.01
+_MOVED = 1e-3
 _FORCE_NOTE = (
     "Without stacks: frequency z without their axial stiffness. Most: (w - z)/(2 z), of one leg or decoupled ones. Alone: by this gain, "
     "no other mode near and none of its own damping."
@@ -110,6 +111,24 @@ def damping_table(found: LoopStudy) -> Table | None:
         f"Static stiffness left at rest: {rest}. Left at least, below the first mode: {least}.",
     ]
     return make_table("Force feedback in the legs", heads, rows, notes=notes)
+
+
+def charge_table(found: LoopStudy) -> Table | None:
+    """What holding the stacks' charge does to the modes of the plant; `None` where volts are driven."""
+    held = found.charge
+    if held is None:
+        return None
+    moved = [pair for pair in zip(held.by_volts, held.by_charge, strict=True) if pair[1] / pair[0] - 1.0 > _MOVED]
+    rows = [(Cell(number(volts, 4), Mark.STRONG), number(charge, 4), percent(charge / volts - 1.0, 3)) for volts, charge in moved]
+    stacks = ", ".join(
+        f"{name} {number(stiffer, 4)} times above {number(corner, 3)} Hz"
+        for name, stiffer, corner in zip(held.actuators, held.stiffer, held.corners, strict=True)
+    )
+    notes = [
+        f"Stacks are stiffer by 1/(1 - k^2) while their charge is held: {stacks}. Far below, and at rest, they are on volts.",
+        f"Modes that move by {percent(_MOVED)} and less are left out. Of hysteresis and creep {percent(float(np.max(held.left)))} is left.",
+    ]
+    return make_table("Charge drive", [Column("mode on volts", "Hz"), Column("on charge", "Hz"), "higher by"], rows, notes=notes)
 
 
 def heat_table(runs: Sequence[Run]) -> Table | None:

@@ -231,8 +231,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     }
     asked = _override(given, options)
     require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware)])
-    outputs = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
-    mechanism = open_design(design, changes, outputs)
+    written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
+    mechanism = open_design(design, changes, written)
     stands = footing(mechanism, place(at, load, hold, temperature), asked.model)
     if compare:
         _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
@@ -456,6 +456,7 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
 
 def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.loop_table(found)
+    yield tables.charge_table(found)
     yield tables.damping_table(found)
     yield tables.law_table(found)
     yield tables.margin_table(found)

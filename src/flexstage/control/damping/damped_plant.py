@@ -74,7 +74,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 
     Their strokes are added before the amplifiers. Inputs `sensed.<actuator>` [N] are what the sensors hear besides the tension.
     """
-    signs = _signs(given, legs)
+    signs = tension_signs(given, legs)
     entries = {each.actuator: f"entry.{each.actuator}" for each in legs}
     stage = rename(given.system, entries)
     inner = [law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"given.{each.actuator}", "m")) for each in legs]
@@ -114,7 +114,7 @@ def _direct(given: Plant, forces: System) -> Array:
     return np.diag(forces.D + forces.C[:, fast] @ gains)
 
 
-def _signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
+def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
     """Which sign of a link's force is tension: a stroke that pushes takes it down."""
     static = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs]).transfer(np.zeros(1))[0].real
     return [-float(np.sign(value)) for value in np.diag(static)]
@@ -171,7 +171,7 @@ def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tupl
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []
     for frequency, ratio, pole in zip(given.frequencies, given.ratios, poles, strict=True):
-        zero = float(pairs.zeros[np.argmin(np.abs(pairs.frequencies - frequency))])
+        zero = float(pairs.others[np.argmin(np.abs(pairs.frequencies - frequency))])
         alone = damping_of_pair(law, float(frequency), zero)
         modes.append(
             DampedMode(

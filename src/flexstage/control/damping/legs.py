@@ -35,11 +35,12 @@ class Leg:
     lag: float | None = None
 
 
-def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = ()) -> tuple[Leg, ...]:
+def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
     """The legs of all actuators that impose a stroke along their link; `gauges`: strain gauges in them, else each stack has a sensor.
 
     A strain gauge on a stack reads its free stroke too, which is taken off as it is commanded; elsewhere in the leg it reads tension alone.
-    Raises `DesignError` for stages without stacks, models that tell no forces of links, gauges that are on no link of a leg.
+    Raises `DesignError`, headed by what was `asked` for, for stages without stacks, models that tell no forces of links, gauges that are on
+    no link of a leg.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -48,7 +49,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = ())
     """
     assembly, outputs = expand(mechanism), {each.name for each in model.outputs}
     strokes = assembly.strokes
-    require(_findings(assembly, model, outputs))
+    require(_findings(assembly, model, outputs, asked))
     placed = _places(mechanism)
     require(_gauge_findings(gauges, placed))
     found = {name: Leg(name, link, link, _axial(model, link)) for name, link in strokes.items()}
@@ -90,10 +91,10 @@ def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Frequencies [Hz] of modes (k,) and of what they become without the legs' axial stiffness, `zeros` (k,)."""
+    """Frequencies [Hz] of modes (k,) and of what they are by another model (k,)."""
 
     frequencies: Array
-    zeros: Array
+    others: Array
 
 
 def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
@@ -103,15 +104,20 @@ def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
     >>> from flexstage.models.lumped import lumped
     >>> model = lumped(parallelogram())
     >>> pairs = pair_zeros(model, legs(parallelogram(), model))
-    >>> pairs.frequencies[:2].round(1).tolist(), pairs.zeros[:2].round(1).tolist()
+    >>> pairs.frequencies[:2].round(1).tolist(), pairs.others[:2].round(1).tolist()
     ([875.4, 1674.4], [875.4, 190.0])
     """
-    stiff, soft = eigen(model), eigen(without_stiffness(model, found))
+    return pair_modes(model, without_stiffness(model, found))
+
+
+def pair_modes(model: LinearModel, other: LinearModel) -> Pairs:
+    """Modes of a model and of another of the same masses, each by the shape that is most like its own (kinetic energy)."""
+    stiff, soft = eigen(model), eigen(other)
     alike = (stiff.shapes.T @ model.inertia_matrix @ soft.shapes) ** 2
     rows, columns = scipy.optimize.linear_sum_assignment(-alike)
     frequencies = np.sqrt(stiff.values) / (2.0 * np.pi)
-    zeros = np.sqrt(np.maximum(soft.values, 0.0)) / (2.0 * np.pi)
-    return Pairs(frequencies[rows], zeros[columns])
+    others = np.sqrt(np.maximum(soft.values, 0.0)) / (2.0 * np.pi)
+    return Pairs(frequencies[rows], others[columns])
 
 
 def _axial(model: LinearModel, link: str) -> float:
@@ -129,24 +135,19 @@ def _places(mechanism: Mechanism) -> Mapping[str, str]:
     return {name: link for group in pairs for name, link in group}
 
 
-def _findings(assembly: Assembly, model: LinearModel, outputs: set[str]) -> Iterator[Finding]:
+def _findings(assembly: Assembly, model: LinearModel, outputs: set[str], asked: str) -> Iterator[Finding]:
     if not assembly.strokes:
-        yield Finding(
-            "damping",
-            "no stack is in a leg: nothing gives way at the rate of a force",
-            "Leave damping out, and take a PID for force actuators",
-        )
+        what = "no stack is in a leg: nothing gives way at the rate of a force"
+        yield Finding(asked, what, f"Leave {asked} out, and take a PID for force actuators")
         return
     untold = [name for name, link in assembly.strokes.items() if link not in model.stiffness or f"{link}.fx" not in outputs]
     if untold:
         what = f"the model tells no forces in the legs of {', '.join(untold)}"
-        yield Finding("damping", what, 'Take model = "lumped", as drawn')
+        yield Finding(asked, what, 'Take model = "lumped", as drawn')
     for name, link in assembly.strokes.items():
         along = np.asarray(assembly.actuator(name).free_deformation)
         if link in model.stiffness and np.any(np.abs(along[..., 1:]) > 0.0):
-            yield Finding(
-                "damping", f"{name} moves across its link, not along it", "Force feedback is worked out for strokes along their link"
-            )
+            yield Finding(asked, f"{name} moves across its link, not along it", "It is worked out for strokes along their link")
 
 
 def _gauge_findings(gauges: tuple[str, ...], placed: Mapping[str, str]) -> Iterator[Finding]:

@@ -12,7 +12,21 @@ from flexstage.control.simulation.machine import Machine
 class Actuation:
     """The actuators of a machine as they run: holds the strokes last given, the hysteresis and its inverse; at the bias at first."""
 
-    __slots__ = ("_bias", "_compensator", "_convert", "_gain", "_hysteresis", "_last", "_limit", "_modelled", "_plain", "_rest", "_volts")
+    __slots__ = (
+        "_bias",
+        "_compensator",
+        "_convert",
+        "_gain",
+        "_hysteresis",
+        "_last",
+        "_leaked",
+        "_limit",
+        "_modelled",
+        "_plain",
+        "_relief",
+        "_rest",
+        "_volts",
+    )
 
     def __init__(self, given: Machine) -> None:
         bias, model, compensation = given.amplifiers.bias, given.hysteresis, given.compensation
@@ -25,6 +39,7 @@ class Actuation:
         self._modelled = bias if compensation is None else compensation.step(compensation.start(bias), bias)[1]
         self._hysteresis = None if model is None else model.stepper(model.start(bias))
         self._rest = bias if model is None else model.step(model.start(bias), bias)[1]
+        self._relief, self._leaked = given.relief, np.zeros(len(given.actuators))
 
     def __call__(self, command: Array, asked: Array, given: Array, stroke: Array) -> None:
         """Take the command (m,) of the next sample; write what is asked of the amplifiers, what they give, and the free stroke [m].
@@ -60,3 +75,7 @@ class Actuation:
             np.copyto(stroke, given)
         else:
             np.subtract(self._hysteresis(volts, stroke), self._rest, out=stroke)
+        if self._relief is not None:
+            own = stroke - given
+            stroke += (1.0 - self._relief.left) * (self._leaked - own)
+            self._leaked += self._relief.leak * (own - self._leaked)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.analysis.workspace.drive import Drive
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
+from flexstage.control.electronics import Amplifier
 from flexstage.control.hysteresis.inverse import inverse_findings
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.protocol import Hysteresis
@@ -35,6 +36,17 @@ class Amplifiers:
 
 
 @dataclass(frozen=True, eq=False)
+class Relief:
+    """What holding charge leaves of a stack's own way, hysteresis less its mean slope (m,): the share `left`, and all that is slow.
+
+    `leak` (m,) is the share of what is missing that a sample adds, 1 - exp(-2 pi f T) of the drives' corners f.
+    """
+
+    left: Array
+    leak: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Machine:
     """A sampled loop as a simulation computes it.
 
@@ -42,8 +54,8 @@ class Machine:
     instead of one that is no finite number or beyond `half_range` (g,) [m] (absent: unlimited) the last good one of its gauge; pose =
     `pose` (f, g) y; error = reference - pose; the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
     `applied.<actuator>`; outputs `command.<actuator>`); volts by the inverse of `compensation`, or proportional; `amplifiers`; free
-    stroke by `hysteresis` of the volts, or proportional; then the states of both for k + 1. `applied` is what the amplifiers gave less
-    what they were asked for: nought but where they are at a limit.
+    stroke by `hysteresis` of the volts (less what `relief` takes), or proportional; then the states of both for k + 1. `applied` is what
+    the amplifiers gave less what they were asked for: nought but where they are at a limit.
 
     `plant` is sampled; its inputs are named as `actuators`, all others are disturbances; strokes reach no gauge in the same sample.
     """
@@ -59,6 +71,7 @@ class Machine:
     hysteresis: Hysteresis | None = None
     compensation: PrandtlIshlinskii | None = None
     half_range: Array | None = None
+    relief: Relief | None = None
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -159,7 +172,17 @@ def machine(
         hysteresis=hysteresis,
         compensation=compensation,
         half_range=np.array([np.inf if each is None else each.half_range for each in senses]),
+        relief=None if hysteresis is None else _relief(power, given.hardware.step or np.nan),
     )
+
+
+def _relief(powers: Sequence[Amplifier | None], step: float) -> Relief | None:
+    drives = [None if each is None else each.charge for each in powers]
+    if all(each is None for each in drives):
+        return None
+    left = np.array([1.0 if each is None else each.left for each in drives])
+    corners = np.array([0.0 if each is None else each.corner for each in drives])
+    return Relief(left, -np.expm1(-2.0 * np.pi * corners * step))
 
 
 def without_limits(given: Machine) -> Machine:
@@ -179,7 +202,7 @@ def without_limits(given: Machine) -> Machine:
         step=np.zeros(count),
     )
     resolution = np.zeros(len(given.gauges))
-    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None)
+    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None, relief=None)
 
 
 def _findings(given: Machine) -> Iterator[Finding]:
@@ -226,5 +249,7 @@ def _electric(given: Machine) -> Iterator[Finding]:
         for actuator, gain in zip(given.actuators, given.amplifiers.gain, strict=True):
             if np.isnan(gain):
                 yield Finding(actuator, f"{name} takes volts, and its stack states no voltage range", 'Add for example voltage_low = "0 V"')
+    if given.compensation is not None and given.relief is not None:
+        yield Finding("compensation", "it is that of stacks on volts, and their charge is held", "Leave it out")
     if given.compensation is not None:
         yield from inverse_findings(given.compensation)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from flexstage.base.finding import Finding
@@ -13,14 +13,17 @@ from flexstage.base.quantity import (
     FREQUENCY,
     NOT_NEGATIVE,
     POSITIVE,
+    RATIO,
     RESISTANCE,
     SLEW,
     VOLTAGE_NOISE,
+    Bound,
 )
 from flexstage.base.register import Register
-from flexstage.control.electronics import AmplifierSettings
+from flexstage.control.electronics import AmplifierSettings, ChargeHold
 
 _MOST_BITS = 32
+_COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=1.0)
 
 
 class AmplifierForm:
@@ -80,5 +83,40 @@ class AmplifierSetup(AmplifierForm):
             yield Finding("amplifier.bits", f"found {self.bits}", f"Give between 1 and {_MOST_BITS}")
 
 
-AMPLIFIERS: Register[type[AmplifierForm]] = Register("flexstage.amplifiers", {AmplifierSetup.kind: AmplifierSetup})
+@dataclass(frozen=True)
+class ChargeSetup(AmplifierSetup):
+    """Amplifiers that hold the charge of stacks: what voltage amplifiers have, counted in the volts that a stack free of load would have.
+
+    `coupling` is k of the stack (k33 of its ceramic at most, 0.7 of soft PZT): at constant charge it is stiffer by 1/(1 - k^2). Below the
+    `corner`, stated or that of the `leakage` resistance beside the stack, 1/(2 pi R C), the drive is one of volts. `left` is the share of
+    hysteresis and creep that the stroke keeps above it: one fifth (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996) 209, by
+    Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
+    """
+
+    kind: ClassVar[str] = "charge"
+    coupling: Annotated[float, RATIO, _COUPLED] | None = None
+    corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
+    leakage: Annotated[float, RESISTANCE, POSITIVE] | None = None
+    left: Annotated[float, RATIO, _LEFT] = 0.2
+
+    @property
+    def settings(self) -> AmplifierSettings:
+        """As stated, charge held."""
+        held = ChargeHold(self.coupling or 0.0, self.left, self.corner, self.leakage)
+        return replace(super().settings, charge=held)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """No coupling, no corner, or two of them, besides what voltage amplifiers may have wrong."""
+        yield from super().faults
+        if self.coupling is None:
+            advice = "Write for example coupling = 0.7: by strokes and capacitances of data sheets, d^2 k / C, it comes out too high"
+            yield Finding("amplifier.coupling", "charge is held, and how far the stack couples it to its length is not stated", advice)
+        if (self.corner is None) == (self.leakage is None):
+            given = "are both given" if self.corner is not None else "are both missing"
+            advice = 'Give one of them: no drive holds charge for ever. Write for example corner = "0.1 Hz"'
+            yield Finding("amplifier", f"its corner and its leakage {given}", advice)
+
+
+AMPLIFIERS: Register[type[AmplifierForm]] = Register("flexstage.amplifiers", {each.kind: each for each in (AmplifierSetup, ChargeSetup)})
 """Kinds of amplifiers by the `kind` of a set-up file; a table without one is that of voltage amplifiers."""

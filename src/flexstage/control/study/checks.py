@@ -192,6 +192,9 @@ def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
 
 
 def _compensation(setup: LoopSetup) -> Iterator[Finding]:
+    if Compensation.HYSTERESIS in setup.compensate and setup.amplifier.settings.charge is not None:
+        what = "the inverse is that of stacks on volts, and their charge is held"
+        yield Finding("compensate", what, "Leave hysteresis out: what charge leaves of it is another loop")
     if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
         yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Give [hysteresis], a file or a width")
     for each in dict.fromkeys(setup.compensate):

@@ -53,4 +53,4 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
 def _lowest_zero(plant: Plant, pairs: Pairs) -> float:
     """The lowest frequency [Hz] without the legs' stiffness, of the modes that the loop feels most."""
     felt = np.argsort(-resonances(plant))[: len(plant.coordinates.names)]
-    return float(min(pairs.zeros[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt]))
+    return float(min(pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt]))

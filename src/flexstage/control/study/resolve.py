@@ -13,9 +13,10 @@ from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
+from flexstage.control.damping.charge import ChargedStacks, at_constant_charge, describe_charge, leak_charge
 from flexstage.control.damping.damped_plant import ActiveDamping
-from flexstage.control.damping.legs import legs
-from flexstage.control.electronics import GaugeSettings, Hardware, hardware
+from flexstage.control.damping.legs import Leg, legs
+from flexstage.control.electronics import ChargeDrive, GaugeSettings, Hardware, hardware
 from flexstage.control.measured_plant import measured_plant
 from flexstage.control.plants import Plant, plant
 from flexstage.control.reduction import reduce_modes
@@ -47,7 +48,8 @@ class ResolvedSetup:
     `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
     brought somewhere, where it has already sagged; `loaded` what its dead load changes as drawn, whose model it is where that is felt.
-    Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have.
+    Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have;
+    `charge` what amplifiers of charge do, which they have too, while `model` is that at constant volts, which counts at rest.
     """
 
     mechanism: Mechanism
@@ -62,6 +64,7 @@ class ResolvedSetup:
     predicted: Plant | None = None
     damping: ActiveDamping | None = None
     loaded: LoadEffect | None = None
+    charge: ChargedStacks | None = None
 
     @property
     def rate(self) -> float:
@@ -92,16 +95,22 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     require(_force_findings(kinematics, setup))
     setup = _settle(setup, forced=bool(kinematics.thrusts))
-    highest = highest_platform_mode(mechanism, model, len(kinematics.coordinates))
+    held = _charges(mechanism, model, setup)
+    moving = model if held is None else held.model
+    highest = highest_platform_mode(mechanism, moving, len(kinematics.coordinates))
     rate = setup.rate if setup.rate is not None else default_rate(highest)
     delay = setup.delay if setup.delay is not None else 1.0 / rate
     require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
     given = _hardware(mechanism, setup, rate, delay)
-    sensed = () if setup.damping is None else legs(mechanism, model, setup.damping.gauges)
-    links = tuple(each.sensed for each in sensed)
-    whole = plant(model, kinematics, given, links=links)
-    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(model, kinematics, given, modes=setup.modes, links=links)
-    damped = None if setup.damping is None else damp(found, whole, model, sensed, setup.damping)
+    sensed = () if setup.damping is None else legs(mechanism, moving, setup.damping.gauges)
+    kept = tuple(each.sensed for each in sensed)
+    links = tuple(dict.fromkeys((*kept, *(each.link for each in (() if held is None else held.legs)))))
+    whole = plant(moving, kinematics, given, links=links)
+    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(moving, kinematics, given, modes=setup.modes, links=links)
+    charge = None if held is None else describe_charge(found, model, moving, held.drives)
+    if held is not None:
+        found, whole = (leak_charge(each, held.legs, held.drives, kept) for each in (found, whole))
+    damped = None if setup.damping is None else damp(found, whole, moving, sensed, setup.damping)
     return ResolvedSetup(
         mechanism=mechanism,
         setup=setup,
@@ -114,7 +123,27 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
         displaced=there is not None,
         damping=None if damped is None else damped.found,
         loaded=loaded,
+        charge=charge,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Charges:
+    """The legs that are held at their charge, their drives, and the model as stiff as they then are."""
+
+    legs: tuple[Leg, ...]
+    drives: Mapping[str, ChargeDrive]
+    model: LinearModel
+
+
+def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> _Charges | None:
+    """What amplifiers of charge hold; `None` where there are none."""
+    if setup.amplifier.settings.charge is None:
+        return None
+    powers = hardware(mechanism, amplifiers=setup.amplifier.settings).amplifiers
+    drives = Table({name: each.charge for name, each in powers.items() if each.charge is not None})
+    held = tuple(each for each in legs(mechanism, model, asked="amplifier") if each.actuator in drives)
+    return _Charges(held, drives, at_constant_charge(model, held, drives))
 
 
 def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
@@ -149,6 +178,9 @@ def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Findin
     """What is asked of stacks where forces drive the stage."""
     if kinematics.thrusts and setup.hysteresis is not None:
         yield Finding("hysteresis", f"forces drive the stage ({', '.join(kinematics.thrusts)}), and it has no stacks", "Leave it out")
+    if kinematics.thrusts and setup.amplifier.settings.charge is not None:
+        what = f"it holds the charge of stacks, and forces drive the stage ({', '.join(kinematics.thrusts)})"
+        yield Finding("amplifier.kind", what, "Leave kind out: amplifiers of coils drive the current")
     if kinematics.thrusts and Compensation.LOAD in setup.compensate:
         what = "what loads take of the forces is not worked out"
         yield Finding("compensate", what, "Leave load out: the controller's integrator carries it")

@@ -35,7 +35,7 @@ from flexstage.parts.actuator import ThrustActuator
 
 _TIME_CONSTANTS = 8.0
 _SHORTEST, _LONGEST = 0.02, 2.0
-_RINGING, _GONE = 0.1, 1e-6
+_RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 _BAND = 0.02
 _STILL, _FEWEST, _MOST = 5.0, 5_000, 50_000
 _REPEATED = 6
@@ -258,7 +258,7 @@ def _simulated_time(course: Course, rest: float) -> float:
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     """How long [s] the loop is given to settle: eight times the time constant of its slowest pole, at most 2 s.
 
-    Poles that ring count only where they are set `ringing`, by commands that pass the controller by.
+    Poles that ring count only where they are set `ringing`, by commands that pass the controller by; charge that leaks away is not awaited.
 
     >>> from flexstage.control.example import integral_loop
     >>> rest_time(integral_loop(gain=300.0))
@@ -266,8 +266,10 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     """
     poles = closed.system.poles
     rates = np.log(poles[np.abs(poles) > _GONE].astype(complex)) * closed.plant.hardware.rate
+    leaks = [_LEAKED * 2.0 * np.pi * each.charge.corner for each in closed.plant.hardware.amplifiers.values() if each.charge is not None]
+    rates = rates[-rates.real > max(leaks, default=-np.inf)]
     calm = -rates.real[-rates.real > _RINGING * np.abs(rates)]
-    slowest = float(np.min(calm)) if len(calm) and not ringing else -closed.system.growth
+    slowest = float(np.min(calm)) if len(calm) and not ringing else float(np.min(-rates.real)) if leaks else -closed.system.growth
     wanted = float(np.clip(_TIME_CONSTANTS / slowest, _SHORTEST, _LONGEST))
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * (1.0 - 1e-9)))

@@ -20,6 +20,7 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.base.threads import one_thread
 from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.curves import Curves, curves
+from flexstage.control.damping.charge import ChargedStacks
 from flexstage.control.damping.damped_plant import ActiveDamping
 from flexstage.control.disk import DiskMargin, disk_margins
 from flexstage.control.measured_margins import MeasuredMargins, coherence_findings, measured_margins
@@ -94,6 +95,11 @@ class LoopStudy(InNotebook):
     def damping(self) -> Annotated[ActiveDamping | None, VIEW]:
         """What force feedback in the legs does, which the plant then has; null where there is none."""
         return self.settled.damping
+
+    @property
+    def charge(self) -> Annotated[ChargedStacks | None, VIEW]:
+        """What amplifiers of charge do, which the plant then has; null where volts are driven."""
+        return self.settled.charge
 
     @property
     def loaded(self) -> Annotated[LoadEffect | None, VIEW]:
@@ -251,6 +257,10 @@ def _cautions(given: ResolvedSetup) -> list[Finding]:
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
             found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))
+    if given.setup.hysteresis is not None and given.charge is not None:
+        left, corner = 100.0 * float(np.max(given.charge.left)), float(np.max(given.charge.corners))
+        what = f"of stacks held at their charge {left:.3g} % of it is simulated above {corner:.3g} Hz, all of it far below"
+        found.append(Finding("hysteresis", what, "A stack alone is shown on volts; state what a record on charge leaves as amplifier.left"))
     if given.setup.hysteresis is not None:
         what = "margins, noise and poles are those of stacks without it, and without creep"
         found.append(Finding("hysteresis", what, "See the simulations for what it does"))

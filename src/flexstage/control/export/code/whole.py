@@ -59,7 +59,11 @@ def _stack(given: Machine) -> tuple[list[str], tuple[State, ...]]:
     if model is None:
         return [], ()
     lines, state = hysteresis_step("stack", model, bias)
-    return [*lines, *table("unmoved", model.step(model.start(bias), bias)[1])], (state,)
+    lines += table("unmoved", model.step(model.start(bias), bias)[1])
+    if given.relief is None:
+        return lines, (state,)
+    lines += [*table("relieved", 1.0 - given.relief.left), *table("leak", given.relief.leak)]
+    return lines, (state, State("leaked", (len(given.actuators),)))
 
 
 def _gauges(given: Machine) -> list[str]:
@@ -69,6 +73,9 @@ def _gauges(given: Machine) -> list[str]:
 def _sample(given: Machine, linear: Parts) -> Code:
     gauges, actuators, states = len(given.gauges), len(given.actuators), len(linear.A)
     moved = "stack_move(state->stack[j], j, out->volts[j]) - unmoved[j]" if given.hysteresis is not None else "out->given[j]"
+    moving = [f"for (j = 0; j < {actuators}; j++) out->stroke[j] = {moved} + in->added[j];"]
+    if given.relief is not None:
+        moving = [f"for (j = 0; j < {actuators}; j++) {{", f"    double own = {moved} - out->given[j];", *_RELIEF, "}"]
     disturbed = "in->disturbance"
     seen = [(linear.reading, "state->x"), (linear.reading_w, disturbed), (np.eye(gauges), "in->noise")]
     motions = [(linear.motion, "state->x"), (linear.motion_f, "out->stroke"), (linear.motion_w, disturbed)]
@@ -80,11 +87,15 @@ def _sample(given: Machine, linear: Parts) -> Code:
         + statements("{")
         + controller_part(given, linear, "out->rounded")
         + statements("}")
-        + statements(f"for (j = 0; j < {actuators}; j++) out->stroke[j] = {moved} + in->added[j];")
+        + statements(*moving)
         + product("moved", "out->motion", motions, len(linear.motion))
         + product("plant", "x", following, states)
         + statements(f"for (j = 0; j < {states}; j++) state->x[j] = x[j];")
     )
 
 
+_RELIEF = (
+    "    out->stroke[j] = out->given[j] + own + relieved[j] * (state->leaked[j] - own) + in->added[j];",
+    "    state->leaked[j] += leak[j] * (own - state->leaked[j]);",
+)
 _ROUNDED = "if (resolution[j] > 0.0) out->rounded[j] = rint(out->rounded[j] / resolution[j]) * resolution[j];"

@@ -1,0 +1,106 @@
+"""Stacks held at their charge: stiffer than at constant volts, down to the corner below which the charge leaks away."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY, SHARE
+from flexstage.base.record import INNER, Along, Heading
+from flexstage.control.damping.damped_plant import tension_signs
+from flexstage.control.damping.legs import Leg, pair_modes
+from flexstage.control.electronics import ChargeDrive
+from flexstage.control.plants import Plant
+from flexstage.control.system import System, connect, rename, select
+from flexstage.models.linear.model import Channel, LinearModel
+
+
+@dataclass(frozen=True, eq=False)
+class ChargedStacks:
+    """The `actuators` whose stacks are held at their charge, each `stiffer` by 1/(1 - k^2) (n,) above its corner.
+
+    `corners` (n,) [Hz] are those below which the drive is one of volts, `left` (n,) the shares of hysteresis and creep above them. The
+    plant's modes are at `by_volts` (k,) [Hz] with volts held, and at `by_charge` (k,) [Hz] with charge.
+    """
+
+    actuators: tuple[str, ...]
+    stiffer: Annotated[Array, Along("actuators"), Heading("stiffer", digits=5)]
+    corners: Annotated[Array, FREQUENCY, Along("actuators"), Heading("corner", digits=4)]
+    left: Annotated[Array, SHARE, Along("actuators"), Heading("hysteresis left", digits=3)]
+    by_volts: Annotated[Array, FREQUENCY]
+    by_charge: Annotated[Array, FREQUENCY]
+    drives: Annotated[Mapping[str, ChargeDrive], INNER]
+
+
+def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive]) -> LinearModel:
+    """The model with the stacks of those legs as stiff as at constant charge, k / (1 - kappa^2).
+
+    Of elongation u, tension F, volts V and charge Q of a stack u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active
+    Structures, 2018, ch. 4); with kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q: stiffer, with the same free stroke for the charge
+    that those volts give a stack without load.
+    """
+    stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
+    for each in legs:
+        part = stiffness[each.link]
+        law = np.array(part.law, dtype=float)
+        added = np.zeros(law.shape[-1])
+        added[0] = law[0, 0] * (drives[each.actuator].stiffening - 1.0)
+        law[0, 0] += added[0]
+        stiffness[each.link] = replace(part, law=law)
+        row = model.output_index((f"{each.link}.fx",))[0]
+        output[row] += added @ np.asarray(part.operator)
+        through[row] -= added @ np.asarray(model.imposed[each.link])
+    return replace(model, stiffness=stiffness, output=output, feedthrough=through)
+
+
+def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive], kept: tuple[str, ...] = ()) -> Plant:
+    """The plant of stacks at constant charge whose charge leaks away below a corner w_0: exact for every frequency.
+
+    The drive lets the current I = (s C + 1/R) v of a stack without load pass, whatever its volts become (Fleming & Leang, Design, Modeling
+    and Control of Nanopositioning Systems, 2014, ch. 12), hence u = F/k (1 - kappa^2 s/(s + w_0)) + d v, w_0 = 1/(R C). To the stroke at
+    constant charge that adds kappa^2 w_0/(s + w_0) F/k. `legs` have the stiffness k at constant volts; of the links' forces, which `given`
+    has, it has those `kept`.
+    """
+    entries = {each.actuator: f"entry.{each.actuator}" for each in legs}
+    stage = rename(given.system, entries)
+    links: dict[str, dict[str, float]] = {entries[each.actuator]: {each.actuator: 1.0, f"leaked.{each.actuator}": 1.0} for each in legs}
+    for each, sign in zip(legs, tension_signs(given, legs), strict=True):
+        links[f"tension.{each.actuator}"] = {f"{each.link}.fx": sign}
+    passing = {name: {name: 1.0} for name in stage.input_names if name not in entries.values()}
+    gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}
+    outputs = tuple(name for name in given.system.output_names if name not in gone)
+    whole = connect([stage, *(_leak(each, drives[each.actuator]) for each in legs)], links | passing, given.system.inputs, outputs)
+    return replace(
+        given,
+        system=select(whole, given.system.input_names, outputs),
+        states=(*given.states, *(f"charge.{each.actuator}" for each in legs)),
+        note=f"{given.note}; stacks of {', '.join(each.actuator for each in legs)} at constant charge above their leakage",
+    )
+
+
+def _leak(leg: Leg, drive: ChargeDrive) -> System:
+    """From tension [N] to what the stroke gains as charge leaks away [m]: kappa^2 w_0 / (s + w_0) / k."""
+    rate = 2.0 * np.pi * drive.corner
+    gain = np.full((1, 1), drive.coupling**2 * rate / leg.stiffness)
+    entry, exit_ = Channel(f"tension.{leg.actuator}", "N"), Channel(f"leaked.{leg.actuator}", "m")
+    return System(np.full((1, 1), -rate), np.eye(1), gain, np.zeros((1, 1)), (entry,), (exit_,))
+
+
+def describe_charge(given: Plant, model: LinearModel, charged: LinearModel, drives: Mapping[str, ChargeDrive]) -> ChargedStacks:
+    """What holding charge does to the modes of a plant, `model` being at constant volts, `charged` at constant charge."""
+    pairs = pair_modes(charged, model)
+    place = [int(np.argmin(np.abs(pairs.frequencies - each))) for each in given.frequencies]
+    every = drives.values()
+    return ChargedStacks(
+        actuators=tuple(drives),
+        stiffer=np.array([each.stiffening for each in every]),
+        corners=np.array([each.corner for each in every]),
+        left=np.array([each.left for each in every]),
+        by_volts=pairs.others[place],
+        by_charge=pairs.frequencies[place],
+        drives=drives,
+    )
