@@ -74,6 +74,7 @@ HOMES = {
     "analysis.stroke": "stroke",
     "analysis.stance": "stance",
     "analysis.misalign": "misalign",
+    "analysis.load_cases": "critical_factors",
     "analysis.workspace.workspace": "workspace",
     "analysis.workspace.reach": "reach",
     "analysis.inner_stage": "amplified",

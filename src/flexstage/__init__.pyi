@@ -12,6 +12,9 @@ from flexstage.analysis.deflection import (
 from flexstage.analysis.drift import (
     drift as drift,
 )
+from flexstage.analysis.load_cases import (
+    critical_factors as critical_factors,
+)
 from flexstage.analysis.lost_motion import (
     lost_motion as lost_motion,
 )

@@ -13,12 +13,13 @@ from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.judge import judge
+from flexstage.analysis.load_cases import CaseFactors, critical_factors, path_cases
 from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.measures import stroke
 from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Sense, Verdict, requirements
+from flexstage.analysis.requirements import Sense, Verdict, asked_factor, requirements
 from flexstage.analysis.response import response, transmissibility
 from flexstage.analysis.standing import require_standing, standing
 from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
@@ -54,9 +55,10 @@ class Analysis:
     the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. `loaded` says what
     the dead load changes; where it is felt, statics, modes, responses (`felt`), lost motion, drift, error budget and their verdicts are
     those of the loaded stage, all else and `linear` are of the drawn one. `second_order` is the error of small displacements over the
-    required strokes, or those reached. The error budget is that of the required strokes, or of all single-axis strokes at once, and of one
-    kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of the platform
-    belong to the statics.
+    required strokes, or those reached. `ends` is what loads the stage against what it bears at the ends of the paths that it states, as far
+    as that is asked for; None where it states none. The error budget is that of the required strokes, or of all single-axis strokes at
+    once, and of one kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of
+    the platform belong to the statics.
     """
 
     mechanism: Mechanism
@@ -81,6 +83,7 @@ class Analysis:
     mass: MassMatrix | None = None
     loaded: LoadEffect | None = None
     second_order: SecondOrder | None = None
+    ends: CaseFactors | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -162,8 +165,16 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
         second_order=_second_order(mechanism, kinematics, command if command or reach is None else reach.command),
+        ends=attempt.of_ground("ends", hinged, _UNLUMPED, lambda _: _ends(mechanism)) if mechanism.paths else None,
         missing=Table(attempt.missing),
     )
+
+
+def _ends(mechanism: Mechanism) -> CaseFactors:
+    """Load cases at the ends of paths, followed as far as a factor is asked for."""
+    cases = [each for name in mechanism.paths for each in path_cases(mechanism, name)]
+    demand = asked_factor(mechanism)
+    return critical_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
 
 
 def _second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:

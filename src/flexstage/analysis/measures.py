@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.analysis.bench import Bench
+from flexstage.analysis.load_cases import REST, LoadCase, case_critical, path_cases
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
@@ -41,7 +42,7 @@ from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import design, designs, step_size
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.nonlinear.critical import WEIGHT, critical
+from flexstage.models.nonlinear.critical import WEIGHT, NothingGivesWayError
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport
@@ -491,7 +492,22 @@ path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural freq
 @_each_design
 def buckling_factor(bench: Bench, _: Measure) -> float:
     """How many times its own weight and payloads the stage bears, at large displacements."""
-    return critical(bench.nonlinear, {WEIGHT: 1.0}, weight=0.0, tolerance=1e-9).factor  # slopes are taken of it
+    return _borne(bench, LoadCase(WEIGHT, REST, {WEIGHT: 1.0}))
+
+
+@partial(MeasureKind, "<path>.buckling", RATIO, along=True)
+@_each_design
+def path_buckling(bench: Bench, asked: Measure) -> float:
+    """How many times its weight, and what loads it, the stage bears at the ends of a path, at large displacements; the least."""
+    places = None if asked.place is None else {"there": asked.place}
+    return min((_borne(bench, each) for each in path_cases(bench.mechanism, asked.name, places)), default=np.inf)
+
+
+def _borne(bench: Bench, asked: LoadCase) -> float:
+    try:
+        return case_critical(bench.nonlinear, asked, tolerance=1e-9).factor  # slopes are taken of it
+    except NothingGivesWayError:
+        return np.inf
 
 
 def over(kind: MeasureKind) -> MeasureKind:

@@ -10,7 +10,18 @@ from enum import Enum
 import numpy as np
 
 from flexstage.analysis.course import drive_quantity
-from flexstage.analysis.measures import MEASURES, Measure, MeasureKind, direction_of, measure_kind, over
+from flexstage.analysis.measures import (
+    MEASURES,
+    Measure,
+    MeasureKind,
+    buckling,
+    buckling_factor,
+    direction_of,
+    measure_kind,
+    over,
+    path_buckling,
+    safety,
+)
 from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, Quantity
@@ -65,6 +76,18 @@ class Verdict:
     def passed(self) -> Array:
         """Whether the requirement is met (...); rounding to a billionth counts as met, a missing value as not."""
         return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
+
+
+def asked_factor(mechanism: Mechanism) -> float:
+    """The factor that a design asks for: the largest of its lines `buckling.factor` and `buckling`, else of `safety`; 1 where it has none.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> asked_factor(parallelogram())
+    2.0
+    """
+    lines = [line for line in requirements(mechanism) if line.sense is Sense.AT_LEAST]
+    own = [line.limit for line in lines if line.kind in (buckling_factor, buckling, path_buckling)]
+    return max(own or [line.limit for line in lines if line.kind is safety], default=1.0)
 
 
 def known_keys(mechanism: Mechanism) -> tuple[str, ...]:

@@ -109,6 +109,15 @@ def stance(
     )
 
 
+def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping[str, float], hold: Sequence[str]) -> None:
+    """Refuse places, loads and locks that contradict one another, with all that is wrong.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_consistent(nonlinear(parallelogram()), {"platform.x": 1e-4}, {"platform.fy": 1.0}, [])
+    """
+    require(_contradictions(_Asked(model, dict(at), dict(loads), tuple(dict.fromkeys(hold)))))
+
+
 @dataclass(frozen=True, eq=False)
 class _Asked:
     """What is asked of a model: `at` in coordinates and inputs, `loads`, and what stays locked."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 import flexstage
+from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors
 from flexstage.analysis.misalign import Misaligned, Misalignments
 from flexstage.analysis.stroke import Stroke
 from flexstage.base.digest import digest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import Critical
+from flexstage.models.nonlinear.critical import Kind
 from flexstage.models.nonlinear.path import Path
 from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
@@ -47,25 +48,65 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
     return _page(mechanism, "A stroke at large displacements", found.provenance, (Headline(to_typography(text), good), sections), data)
 
 
-def buckling_report(mechanism: Mechanism, found: Critical, load: str) -> str:
-    """What gives way under a load, as a page of HTML in which it moves so, about its last stable state."""
-    seen, data = scene(mechanism), buckling_data(mechanism, found, to_typography(load))
-    facts = [
-        Fact("factor on the load", format_value(found.factor, "1"), to_typography(load)),
-        Fact("kind", found.kind.value, "the load cannot pass it" if found.kind.value == "limit" else "it leaves into another motion"),
-        *([Fact("by itself", found.link, "a flexure, its ends at rest")] if found.link else []),
-    ]
-    largest = np.max(np.abs(found.shape), initial=0.0) or 1.0  # as the terminal tells it
-    shape = Matrix(found.shape / largest, found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
+def buckling_report(mechanism: Mechanism, found: CaseFactors) -> str:
+    """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first."""
+    seen, least = scene(mechanism), found.least
+    known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
+    data = buckling_data(mechanism, known) if known else still_data(mechanism)
+    moves = "The shape has no size of its own: it is drawn as large as the slider says."
     sections = (
-        stage_section(seen, motion="state buckling", said="The shape has no size of its own: it is drawn as large as the slider says."),
-        section("What gives way", [Facts(tuple(facts)), matrix_table("Shape", shape)]),
-        caveat_section(mechanism),
+        stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
+        section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
+        caveat_section(mechanism, found.cautions),
         drawing_section(mechanism, seen),
     )
-    good = found.factor > 1.0
-    headline = Headline(to_typography(f"{load}: gives way at {format_value(found.factor, '1', 4)} times the load"), good)
-    return _page(mechanism, "What gives way", found.state.model.provenance, (headline, sections), data)
+    good = least is None or least.factor >= max(1.0, found.demand)
+    headline = Headline(to_typography(_buckling_text(found)), good)
+    return _page(mechanism, "What gives way", found.provenance, (headline, sections), data)
+
+
+def _buckling_facts(case: CaseFactor) -> Facts:
+    by_itself = case.found.link if case.found is not None else ""
+    passes = "the load cannot pass it" if case.kind == Kind.LIMIT.value else "it leaves into another motion"
+    facts = [
+        Fact("factor on the load", format_value(case.factor, "1"), to_typography(f"{case.load}, {case.place}")),
+        Fact("kind", case.kind, passes),
+        *([Fact("by itself", by_itself, "a flexure, its ends at rest")] if by_itself else []),
+    ]
+    return Facts(tuple(facts))
+
+
+def _buckling_text(found: CaseFactors) -> str:
+    least = found.least
+    if least is None:
+        return f"{len(found.cases)} load cases and stroke ends: nothing gives way"
+    where = "" if least.place == REST else f", {least.place}"
+    text = f"{least.load}{where}: gives way at {format_value(least.factor, '1', 4)} times the load"
+    return text if len(found.cases) == 1 else f"{text}, the least of {len(found.cases)} load cases and stroke ends"
+
+
+def buckling_tables(found: CaseFactors) -> list[Table]:
+    """Load cases and stroke ends with their factors; how the least gives way."""
+    heads = ["load", "place", Column("factor"), "kind", "gives way"]
+    rows = [[case.load, case.place, _factor_text(case), case.kind, case.gives_way or case.why] for case in found.cases]
+    note = "Each load by itself, all else stays, the place too, where the stage counts as free under the force that brings it there."
+    table = make_table("Load cases and stroke ends", heads, rows, notes=[note])
+    least = found.least
+    if least is None:
+        return [table]
+    return [table, matrix_table(f"Shape: {least.load}, {least.place}", shape_of(least))]
+
+
+def _factor_text(case: CaseFactor) -> str:
+    return format_value(case.factor, "1") if np.isfinite(case.factor) else "-"
+
+
+def shape_of(case: CaseFactor) -> Matrix:
+    """How bodies move as a stage gives way, the largest number 1; without rows where nothing does."""
+    if case.found is None:
+        return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
+    shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
+    return Matrix(shape, case.found.bodies, COMPONENTS, (TWIST_UNITS,) * len(case.found.bodies))
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:

@@ -78,6 +78,7 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "workspace": analysis.workspace,
         **({} if analysis.reach is None else {"reach": analysis.reach}),
         "buckling": analysis.buckling,
+        **({} if analysis.ends is None else {"ends": analysis.ends}),
         "drift": analysis.drift,
         "budget": analysis.error_budget,
         "units": analysis.units,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -9,33 +10,35 @@ import numpy as np
 import typer
 
 from flexstage.analysis.course import Course, course, drive_quantity
+from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
 from flexstage.analysis.misalign import Misalignments, critical_misalignments
 from flexstage.analysis.misalign import misalign as misaligned
+from flexstage.analysis.requirements import asked_factor
+from flexstage.analysis.stance import require_consistent
 from flexstage.analysis.stroke import stroke as over_stroke
-from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import ANGLE, LENGTH, RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import WEIGHT, Critical, critical
+from flexstage.models.nonlinear.critical import WEIGHT
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import Load, loads_of
+from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.displaced import (
     buckling_report,
+    buckling_tables,
     misalign_report,
     misalignment_tables,
     misalignments_report,
+    shape_of,
     stroke_report,
 )
 from flexstage.show.table import result_tables
-from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
-
-_ENOUGH = 1e-4
-"""How closely a critical factor is printed."""
+from flexstage.spatial.frame import COMPONENTS
 
 
 def stroke(  # noqa: PLR0913 (its options)
@@ -102,22 +105,29 @@ def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int,
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body."""
+    """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body.
+
+    `cases` are all load cases and stroke ends that were asked for, the first of them this one.
+    """
 
     load: str
     factor: Annotated[float, RATIO]
     kind: str
     link: str
     shape: Matrix
+    cases: tuple[CaseFactor, ...]
 
 
-def buckle(
+def buckle(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     load: Annotated[
         list[str] | None,
-        text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: the weight.'),
+        text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: every load case.'),
     ] = None,
+    at: At = None,
+    hold: Held = None,
+    temperature: Warmth = None,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
@@ -127,16 +137,45 @@ def buckle(
     """How far a load may grow until the stage gives way.
 
     At large displacements: a limit, which the load cannot pass, or a bifurcation into another motion. All else stays, the weight too.
+    Without --load and --at of every load case (weight, stated forces, what paths hold) at rest and at every end of paths and strokes.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    model = nonlinear(mechanism)
-    found = (
-        critical(model, loads_of(model, load), tolerance=_ENOUGH) if load else critical(model, {WEIGHT: 1.0}, weight=0.0, tolerance=_ENOUGH)
-    )
-    told = _buckling(", ".join(load or [WEIGHT]), found)
+    asked = place(at, load, hold, temperature)
+    cases = (_case(mechanism, asked),) if load or at or hold else load_cases(mechanism)
+    found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
+    require(_unanswered(found))
+    told = _buckling(found)
     if report is not None:
-        save(report, buckling_report(mechanism, found, told.load), "--report")
-    answer("buckle", mechanism, lambda: told, lambda: result_tables(told), json=json, csv=csv, xlsx=xlsx, beside=(report,))
+        save(report, buckling_report(mechanism, found), "--report")
+    answer(
+        "buckle",
+        mechanism,
+        lambda: told,
+        lambda: buckling_tables(found),
+        json=json,
+        csv=csv,
+        xlsx=xlsx,
+        cautions=found.cautions,
+        beside=(report,),
+    )
+
+
+def _case(mechanism: Mechanism, asked: Place) -> LoadCase:
+    """What the options name: the load that grows, else the weight, and where."""
+    model = nonlinear(mechanism)
+    grows, there = loads_of(model, asked.load), asked.brought(model)
+    require_consistent(model, there, grows, asked.locked)
+    text, where = (", ".join(asked.load) or WEIGHT), ", ".join([*asked.at, *(f"{name} locked" for name in asked.locked)])
+    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, at=there, locked=asked.locked)
+
+
+def _unanswered(found: CaseFactors) -> Iterator[Finding]:
+    """Why there is no answer at all: nothing loads the stage, or the one case that was asked for has no factor."""
+    if not found.cases:
+        what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
+        yield Finding("stage", what, 'Name a load: --load "platform.fz=-20 N"')
+    elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor):
+        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another place")
 
 
 def misalign(  # noqa: PLR0913 (its options)
@@ -197,7 +236,6 @@ def _axis(about: str, shift: str) -> str:
     return axis if shift else f"r{axis}"
 
 
-def _buckling(load: str, found: Critical) -> Buckling:
-    size = np.max(np.abs(found.shape))
-    shape = Matrix(found.shape / (size or 1.0), found.bodies, COMPONENTS, (TWIST_UNITS,) * len(found.bodies))
-    return Buckling(load, found.factor, found.kind.value, found.link, shape)
+def _buckling(found: CaseFactors) -> Buckling:
+    first = found.cases[0]
+    return Buckling(first.load, first.factor, first.kind, "" if first.found is None else first.found.link, shape_of(first), found.cases)

@@ -9,7 +9,7 @@ from enum import Enum
 import numpy as np
 import scipy
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.condense import system
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
@@ -20,6 +20,8 @@ from flexstage.models.nonlinear.summed import negative_pivots
 
 WEIGHT = "weight"
 """The load that is the stage's own weight, payloads included."""
+STATED = "stated forces"
+"""The load that is all stated forces and preloads."""
 _FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
 _NEAR = Effort(halvings=0, iterations=12, arcs=0)
 """Each state starts from one beside it."""
@@ -27,6 +29,10 @@ _ROUGH = 1e-6
 """How far a count is bisected where no stiffness goes through zero."""
 _SEEN = 1e-6
 """Work of the load on the motion, over their sizes, below which it does none."""
+
+
+class NothingGivesWayError(DesignError):
+    """The stage bears as much of a load as was looked at."""
 
 
 class Kind(Enum):
@@ -58,63 +64,75 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
     holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
     """
     whole = _system(state)
-    first = whole.residual.shape[-1] - len(state.held)
-    kept = [*range(first), *(first + place for place, name in enumerate(state.held) if locked is None or name in locked)]
+    kept = _kept(state, whole, state.held if locked is None else locked)
     count = _descents(whole, kept, state.model.freedoms) - (len(kept) - state.model.freedoms)
     for bent in whole.bent:
         count = count + np.sum(_negative(_indefinite(system(bent.tangent))) - 6, axis=0)
     return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
 
 
-def critical(
+def critical(  # noqa: PLR0913 (what stays, one by one)
     model: Nonlinear,
     load: Mapping[str, float],
     *,
     rest: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    locked: Sequence[str] | None = None,
     weight: float = 1.0,
+    stated: float = 1.0,
+    known: State | None = None,
     most: float = _MOST,
     tolerance: float = 1e-9,
 ) -> Critical:
     """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
 
-    Loads are named as in `equilibrium`; `weight` names the stage's own, which then counts as a load alone if `weight` is zero.
+    Loads are named as in `equilibrium`; `weight` names the stage's own, which then counts as a load alone if `weight` is zero, and `stated
+    forces` those of the description with its preloads, likewise. Coordinates in `hold` stay at their values; those that are not `locked`
+    too (absent: all are) count as free under the force that holds them there.
 
-    The factor doubles from 0.001, each state from the one before; the change of `unstable_motions` is then found, to `tolerance`, as a
-    zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Raises `DesignError` for a load that is nothing, for a stage that is
-    unstable without it, and where nothing gives way up to `most`.
+    The factor doubles from 0.001, or from 1 where the state under the whole load is `known`, each state from the one before; the change of
+    `unstable_motions` is then found, to `tolerance`, as a zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Raises
+    `DesignError` for a load that is nothing and for a stage that is unstable where that begins, `NothingGivesWayError` where nothing gives
+    way up to `most`.
     """
     if not any(load.values()):
         raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
-    search = _Search(model, dict(load), dict(rest or {}), weight)
-    last, low, high = search.at(0.0, None), 0.0, _FIRST
+    held = dict(hold or {})
+    search = _Search(model, dict(load), dict(rest or {}), held, tuple(held if locked is None else locked), (weight, stated))
+    low, high = (0.0, _FIRST) if known is None else (1.0, _GROWTH)
+    last = search.at(low, known)
     if search.motions(last) != 0:
-        raise refuse("stage", "it is not stable, or has no equilibrium, without the load", "Look at its weight and its stated forces")
-    while high <= most:
+        under = "with" if low else "without"
+        raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Look at its weight and its stated forces")
+    while low < most:
+        high = min(high, most)
         found = search.at(high, last)
         if search.motions(found) != 0:
             return _close(search, low, high, last, tolerance)
         last, low, high = found, high, _GROWTH * high
-    raise refuse("load", f"nothing gives way up to {most:g} times the load", "Name a larger load, or another one")
+    what = f"nothing gives way up to {most:g} times the load"
+    raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
 
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """A load to be scaled, and what stays."""
+    """A load to be scaled, and what stays: loads, coordinates, of which some are locked, and shares of weight and stated forces."""
 
     model: Nonlinear
     load: Mapping[str, float]
     rest: Mapping[str, float]
-    weight: float
+    hold: Mapping[str, float]
+    locked: tuple[str, ...]
+    shares: tuple[float, float]
 
     def at(self, factor: float, start: State | None) -> State:
         scaled = {name: factor * value for name, value in self.load.items()}
-        weight = self.weight + scaled.pop(WEIGHT, 0.0)
+        weight, stated = (share + scaled.pop(name, 0.0) for share, name in zip(self.shares, (WEIGHT, STATED), strict=True))
         together = {name: scaled.get(name, 0.0) + self.rest.get(name, 0.0) for name in {**self.rest, **scaled}}
-        return equilibrium(self.model, together, weight=weight, start=start, effort=_NEAR)
+        return equilibrium(self.model, together, hold=self.hold, weight=weight, stated=stated, start=start, effort=_NEAR)
 
-    @staticmethod
-    def motions(state: State) -> int:
-        return int(unstable_motions(state))
+    def motions(self, state: State) -> int:
+        return int(unstable_motions(state, locked=self.locked))
 
 
 def _close(search: _Search, low: float, high: float, last: State, tolerance: float) -> Critical:
@@ -141,7 +159,7 @@ def _zero(search: _Search, low: float, high: float, start: State, tolerance: flo
 
     def lowest(factor: float) -> float:
         found = search.at(factor, start)
-        return float(_lowest(found)[0]) if bool(found.converged) else np.nan
+        return float(_lowest(found, search.locked)[0]) if bool(found.converged) else np.nan
 
     ends = [lowest(factor) for factor in (low, high)]
     if not np.all(np.isfinite(ends)) or ends[0] * ends[1] >= 0.0:
@@ -152,10 +170,11 @@ def _zero(search: _Search, low: float, high: float, start: State, tolerance: flo
         return None
 
 
-def _lowest(state: State) -> tuple[float, Array]:
-    """The lowest scaled stiffness among motions that keep what is held, and its motion (n,)."""
-    whole = _system(state)
-    matrix, freedoms = whole.stiffness[0], state.model.freedoms
+def _lowest(state: State, locked: Sequence[str]) -> tuple[float, Array]:
+    """The lowest scaled stiffness among motions that keep what is `locked`, and its motion (n,)."""
+    whole, freedoms = _system(state), state.model.freedoms
+    kept = _kept(state, whole, locked)
+    matrix = whole.stiffness[0][np.ix_(kept, kept)]
     scale = _scale(state.model)
     stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
     free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
@@ -176,9 +195,10 @@ def _inside(state: State) -> str:
 
 def _told(search: _Search, factor: float, state: State, own: str) -> Critical:
     model = search.model
-    _, motion = _lowest(state)
+    _, motion = _lowest(state, search.locked)
     gravity = search.load.get(WEIGHT, 0.0) * model.gravity[None]
-    pushed = model.dead(replace(state.loads, inputs=_inputs(search), gravity=gravity, constant=0.0 * state.loads.constant))
+    stated = search.load.get(STATED, 0.0) * np.ones_like(state.loads.constant)
+    pushed = model.dead(replace(state.loads, inputs=_inputs(search), gravity=gravity, constant=stated))
     work = _work(model, state, pushed, motion)
     return Critical(factor, model.bodies, motion.reshape(-1, 6), Kind.LIMIT if work > _SEEN else Kind.BIFURCATION, own, state)
 
@@ -201,6 +221,12 @@ def _work(model: Nonlinear, state: State, dead: Array, motion: Array) -> float:
 
 def _scale(model: Nonlinear) -> Array:
     return np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+
+
+def _kept(state: State, whole: System, locked: Sequence[str]) -> list[int]:
+    """The rows of the system without those that hold what is not `locked`."""
+    first = whole.residual.shape[-1] - len(state.held)
+    return [*range(first), *(first + place for place, name in enumerate(state.held) if name in locked)]
 
 
 def _descents(whole: System, kept: list[int], freedoms: int) -> Array:

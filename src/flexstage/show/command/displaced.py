@@ -56,6 +56,27 @@ class Place:
         return bool(self.at or self.load or self.hold or self.temperature)
 
     @property
+    def warmth(self) -> float:
+        """The change of temperature [K]."""
+        return 0.0 if self.temperature is None else parse(self.temperature, TEMPERATURE, where="--temperature")
+
+    @property
+    def locked(self) -> tuple[str, ...]:
+        """The coordinates that stay locked. Raises `DesignError` for a value among them, and for what is given twice."""
+        held = tuple(name.strip() for name in self.hold)
+        require(
+            Finding(f"--hold {name}", "what stays locked has no value here", f'Write --at "{name}" --hold {name.partition("=")[0]}')
+            for name in held
+            if "=" in name
+        )
+        require(Finding(f"--hold {name}", "it is given twice", "Say it once") for name in dict.fromkeys(held) if held.count(name) > 1)
+        return held
+
+    def brought(self, model: Nonlinear) -> dict[str, float]:
+        """Where the stage is brought, in SI units."""
+        return _values(self.at, "--at", lambda name: quantity_of(model, name))
+
+    @property
     def options(self) -> str:
         """The options that were given."""
         given = {"--at": self.at, "--load": self.load, "--hold": self.hold, "--temperature": self.temperature}
@@ -118,16 +139,8 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
     if model is not Model.LUMPED:
         raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
     known = nonlinear(mechanism)
-    brought = _values(asked.at, "--at", lambda name: quantity_of(known, name))
-    held = [name.strip() for name in asked.hold]
-    require(
-        Finding(f"--hold {name}", "what stays locked has no value here", f'Write --at "{name}" --hold {name.partition("=")[0]}')
-        for name in held
-        if "=" in name
-    )
-    require(Finding(f"--hold {name}", "it is given twice", "Say it once") for name in dict.fromkeys(held) if held.count(name) > 1)
-    warmth = 0.0 if asked.temperature is None else parse(asked.temperature, TEMPERATURE, where="--temperature")
-    return Footing(mechanism, model, stance(mechanism, brought, loads=loads_of(known, asked.load), hold=held, temperature=warmth))
+    there = stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), hold=asked.locked, temperature=asked.warmth)
+    return Footing(mechanism, model, there)
 
 
 def _stance_tables(found: Stance) -> Iterator[Table]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.analysis.load_cases import REST, CaseFactor
 from flexstage.analysis.misalign import Misaligned
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.stance import Stance
@@ -60,12 +61,18 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
 
 
-def buckling_data(mechanism: Mechanism, found: Critical, said: str, *, text: str = "") -> StageData:
-    """A stage as it gives way under a load, `said`, drawn about its last stable state."""
-    still = still_data(mechanism, text=text)
-    label = f"{found.kind.value}  × {format_value(found.factor, '1', 4)}"
-    told = _about(still, found.state, critical_motion(found), [_Label("buckling", to_typography(label), said)])
+def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor]) -> StageData:
+    """A stage as it gives way in load cases, drawn about its last stable state in each: one motion a case."""
+    still = still_data(mechanism)
+    told = [motion for number, case in enumerate(cases) if case.found is not None for motion in _gives_way(still, case, case.found, number)]
     return replace(still, motions=tuple(told))
+
+
+def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int) -> Iterator[Motion]:
+    place = "" if case.place == REST else f"  {case.place}"
+    label = to_typography(f"{case.kind}  × {format_value(case.factor, '1', 4)}{place}")
+    name = "buckling" if number == 0 else f"buckling {number + 1}"
+    yield from _about(still, found.state, critical_motion(found), [_Label(name, label, to_typography(f"{case.load}, {case.place}"))])
 
 
 def modes_at_data(mechanism: Mechanism, there: Stance, found: Modes, said: str, *, count: int = 12) -> StageData:

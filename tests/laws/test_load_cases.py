@@ -1,0 +1,98 @@
+"""Laws of load cases and stroke ends: what the stage bears at a place is where its stiffness there vanishes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import flexstage as fs
+from flexstage.analysis.complete import analyse
+from flexstage.analysis.judge import judge
+from flexstage.analysis.load_cases import REST, LoadCase, case_critical, critical_factors, load_cases
+from flexstage.models.nonlinear.critical import STATED, WEIGHT
+from flexstage.show.tables.overview import closing_text
+
+STAGE = fs.case("long-travel-xy")
+MODEL = fs.nonlinear(STAGE)
+AWAY = LoadCase(WEIGHT, "away", {WEIGHT: 1.0}, at={"platform.x": 5e-3})
+
+
+def test_where_the_free_stage_gives_way_its_stiffness_against_the_drive_vanishes() -> None:
+    """The load's share of a place's stiffness: 2e-3 less than the factor some is left, 2e-3 more and the stage pushes on."""
+    factor = case_critical(MODEL, AWAY, tolerance=1e-6).factor
+    place = fs.equilibrium(MODEL).displacement()[0] + 5e-3
+
+    def slope(share: float) -> float:
+        held = fs.equilibrium(MODEL, hold={"platform.x": place + np.array([-1e-5, 1e-5])}, weight=share * factor)
+        return float(np.diff(held.reactions[:, 0])[0])
+
+    assert slope(1.0 - 2e-3) > 0.0 > slope(1.0 + 2e-3)
+
+
+def test_a_locked_drive_bears_more_than_a_free_one_and_none_at_rest_is_as_asked_alone() -> None:
+    """A constraint more never takes stability; the case at rest is what `critical` finds of the weight."""
+    free, locked = (case_critical(MODEL, each).factor for each in (AWAY, replace(AWAY, locked=("platform.x",))))
+    rest = case_critical(MODEL, LoadCase(WEIGHT, REST, {WEIGHT: 1.0})).factor
+    assert locked > 2.0 * free
+    assert rest == fs.critical(MODEL, {WEIGHT: 1.0}, weight=0.0, tolerance=1e-4).factor
+
+
+def test_less_than_the_load_that_it_has_is_a_factor_below_one() -> None:
+    """A load twice the critical one has the factor one half; a stage that it has pressed down bears nothing besides."""
+    borne = fs.critical(MODEL, {"platform.fz": -9.80665}).factor
+    pressed = LoadCase("pressed", "away", {"platform.fz": -9.80665 * 2.0 * borne}, at={"platform.x": 1e-6})
+    assert case_critical(MODEL, pressed, tolerance=1e-6).factor == pytest.approx(0.5, rel=1e-3)
+    with pytest.raises(fs.DesignError, match=r"not stable, or has no equilibrium|no equilibrium was found"):
+        case_critical(MODEL, replace(pressed, grows={"platform.fx": 1.0}, stays=pressed.grows))
+
+
+def test_stated_forces_grow_as_the_same_wrench() -> None:
+    """All stated forces, scaled, are the wrench that they are, scaled."""
+    pushed = replace(STAGE, forces={"push": fs.Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, -5.0))}, paths={})
+    own = case_critical(fs.nonlinear(pushed), LoadCase(STATED, REST, {STATED: 1.0}), tolerance=1e-6)
+    assert own.factor == pytest.approx(fs.critical(MODEL, {"platform.fz": -5.0}, tolerance=1e-6).factor, rel=1e-5)
+    assert own.kind == fs.critical(MODEL, {"platform.fz": -5.0}).kind
+    assert [(each.load, each.place) for each in load_cases(pushed)][:2] == [(WEIGHT, REST), (STATED, REST)]
+
+
+OUT = replace(STAGE, paths={"out": fs.StrokePath("platform.x", ("0 mm", "5 mm"), hold={"platform.z": "-2 N"})})
+PUSH = "platform.fz = -2 N"
+
+
+def test_every_end_of_a_path_is_a_case_with_what_the_path_holds() -> None:
+    """The weight at rest without it; at both ends the weight beside it, and what it holds beside the weight."""
+    cases = {(each.load, each.place): each for each in load_cases(OUT)}
+    ends = ("platform.x = 0 mm", "platform.x = 5 mm")
+    assert set(cases) == {(WEIGHT, REST), *((PUSH, end) for end in ends), *((WEIGHT, end) for end in ends)}
+    assert cases[WEIGHT, ends[1]].stays == {"platform.fz": -2.0}
+    assert cases[PUSH, ends[1]].shares == (1.0, 1.0)
+
+
+def test_a_requirement_asks_for_what_a_path_bears_and_less_is_warned_of() -> None:
+    """The weight beside what the path holds; below what is asked for the place is told."""
+    (verdict,) = judge(replace(OUT, requirements={"out.buckling at 0 mm": "at least 3"}))
+    rest = fs.critical(MODEL, {WEIGHT: 1.0}, rest={"platform.fz": -2.0}, weight=0.0, tolerance=1e-4).factor
+    assert verdict.value == pytest.approx(rest, rel=1e-3)
+    assert not verdict.passed
+    told = critical_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).cautions
+    assert [each.where for each in told] == ["platform.x = 0 mm"]
+    assert f"it bears {rest:.3g}" in told[0].what
+
+
+@pytest.mark.full
+def test_the_verdict_of_an_analysis_warns_of_ends_that_bear_too_little() -> None:
+    """The least of them is told beside the requirements, at the end that it has."""
+    found = analyse(replace(OUT, requirements={"buckling.factor": "at least 3"}))
+    assert found.ends is not None
+    assert found.ends.demand == 3.0
+    assert found.ends.least is not None
+    assert f"Beware: {found.ends.least.place}: it bears" in closing_text(found, whole=True)
+
+
+def test_what_hangs_bears_any_weight() -> None:
+    """Nothing gives way: the factor is infinite, requirements on it are met, and nothing is warned of."""
+    hangs = replace(STAGE, gravity=(0.0, 0.0, -1e-9), paths={}, requirements={"buckling.factor": "at least 3"})
+    assert np.isinf(critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cases[0].factor)
+    assert not critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cautions
