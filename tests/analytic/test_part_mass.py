@@ -106,3 +106,11 @@ def test_parts_without_shape():
     np.testing.assert_array_equal(np.diag(found), [1.5, 1.5, 1.5, 0.0, 0.0, 0.0] * 2)
     assert not mass(Joint(), None).any()
     assert not mass(Restricted(Rod("m", length=1.0, diameter=0.1), elastic=()), BEAM).any()
+
+
+def test_what_is_known_of_a_part_is_kept_by_content_but_not_of_a_batch():
+    one, same, other = (Leaf("m", length=0.1, thickness=thickness, width=0.01) for thickness in (1e-3, 1e-3, 2e-3))
+    many = Leaf("m", length=0.1, thickness=np.array([1e-3, 2e-3]), width=0.01)
+    assert mass(one, BEAM) is mass(same, BEAM)
+    assert mass(many, BEAM) is not mass(many, BEAM)
+    assert np.allclose(mass(many, BEAM), [mass(one, BEAM), mass(other, BEAM)], rtol=1e-14)

@@ -11,6 +11,7 @@ from flexstage.analysis.modes import modes
 from flexstage.analysis.random_response import Spectrum, random_response
 from flexstage.analysis.response import default_frequencies
 from flexstage.mechanism.mechanism import ModalDamping
+from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -139,3 +140,12 @@ def test_modes_that_repeat_are_integrated_over_once() -> None:
     for each in found[1:]:
         np.testing.assert_allclose(each.frequencies, found[0].frequencies, rtol=1e-9)
         np.testing.assert_allclose(each.rms, found[0].rms, rtol=1e-9)
+
+
+def test_modes_of_one_model_are_solved_once_and_cannot_be_written_to() -> None:
+    model = beside_oscillators(4, 10.0)
+    found = eigen(model)
+    assert eigen(model) is found
+    assert eigen(replace(model)) is not found
+    with pytest.raises(ValueError, match="read-only"):
+        found.shapes[0, 0] = 0.0

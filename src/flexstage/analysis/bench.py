@@ -21,6 +21,7 @@ from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.reach import ForceReach, input_limits, reach
+from flexstage.analysis.workspace.small import SmallMotion, small_motion
 from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
@@ -103,6 +104,11 @@ class Bench:
     def kinematics(self) -> Kinematics:
         """The ideal model."""
         return kinematics(self.mechanism)
+
+    @cached_property
+    def small_motion(self) -> SmallMotion:
+        """How much of the range of small motion the ideal motions take."""
+        return small_motion(self.mechanism, self.kinematics)
 
     @cached_property
     def drawn(self) -> LinearModel:

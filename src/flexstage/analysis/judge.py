@@ -9,7 +9,6 @@ import numpy as np
 from flexstage.analysis.bench import Bench
 from flexstage.analysis.measures import Measure, corner, stroke
 from flexstage.analysis.requirements import Requirement, Sense, Verdict, requirements
-from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
@@ -103,7 +102,7 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
         asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
     else:
         return ""
-    doubt = small_motion(bench.mechanism, bench.kinematics).doubt(asked)
+    doubt = bench.small_motion.doubt(asked)
     return f"withheld: {doubt}" if doubt else ""
 
 

@@ -214,17 +214,23 @@ def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Arr
     """
     shapes, moving = np.array(solved.shapes), list[int]()
     own = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
+    alone = np.max(first_design(own * (platform @ shapes), 2) ** 2, axis=0) > _EQUAL**2 * np.max(
+        first_design(weights[:, None] * shapes, 2) ** 2, axis=0
+    )
     for group in groups:
+        if len(group) == 1:
+            moving.append(int(alone[group[0]]))
+            continue
         seen, every = own * (platform @ shapes[..., group]), weights[:, None] * shapes[..., group]
         size = float(np.max(np.sum(first_design(every, 2) ** 2, axis=1)))
         leading = np.sort(_leading(first_design(seen, 2), _EQUAL**2 * size, np.eye(len(group))))
         moving.append(len(leading))
-        if len(group) > 1:
-            rows = seen[..., leading, :]
-            rest = np.linalg.qr(first_design(rows, 2).T, mode="complete")[0][:, len(leading) :]
+        rows = seen[..., leading, :]
+        if len(leading) < len(group):
+            rest = np.linalg.qr(first_design(rows, 2).T, mode="complete")[0][:, len(leading) :] if len(leading) else np.eye(len(group))
             rows = np.concatenate([rows, every[..., _leading(first_design(every, 2), 0.0, rest), :]], axis=-2)
-            turn, upper = np.linalg.qr(np.swapaxes(rows, -1, -2))
-            shapes[..., group] = shapes[..., group] @ turn * np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)[..., None, :]
+        turn, upper = np.linalg.qr(np.swapaxes(rows, -1, -2))
+        shapes[..., group] = shapes[..., group] @ turn * np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)[..., None, :]
     return Eigen(solved.values, shapes), moving
 
 
@@ -266,7 +272,7 @@ def _together(bodies: tuple[str, ...], energies: Array, components: Array, group
     Of each group, so many of its first modes move the platform: where they are the platform's own, their components stay apart.
     """
     energies, components = energies.copy(), components.copy()
-    for group, count in groups:
+    for group, count in (each for each in groups if len(each[0]) > 1):
         main = _main(bodies, np.mean(energies[:, group[:count]], axis=1, keepdims=True))[0] if count else -1
         own = main >= 0 and bodies[main] == _PLATFORM
         if own:

@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from flexstage.base.digest import keep
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array, first_design
 from flexstage.beams import LAWS
@@ -146,6 +147,7 @@ def law_of(part: Part) -> PartLaw | None:
     return LAWS.get(inner(part).kind)
 
 
+@keep
 def beam_of(part: Part, material: Material | None) -> Beam:
     """The part as a straight beam; raises `DesignError` where it needs a material and has none, and where it is not known as a beam.
 

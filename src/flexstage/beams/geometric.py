@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.digest import keep
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of, law_of
@@ -35,6 +36,7 @@ class Geometric:
     half: Array
 
 
+@keep
 def geometric(part: Part, material: Material | None) -> Geometric:
     """Geometric stiffness of any part; one without a drawn length (a given matrix, a joint) is taken as a point.
 

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from flexstage.base.digest import keep
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import Law, beam_of, held_modes, law, law_of
@@ -16,6 +17,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Elastic, Part, Restricted, inner
 
 
+@keep
 def mass(part: Part, material: Material | None) -> Array:
     """Mass (..., 12, 12) of a part for the twists of its first and its second end, both taken at its centre, in the link frame [SI].
 
@@ -40,6 +42,7 @@ def mass(part: Part, material: Material | None) -> Array:
     return _with_modes(beam, consistent_mass(beam), held_modes(part, material))
 
 
+@keep
 def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
     """Law and mass of a part, its beam integrated once for both; as `law` and `mass` give them.
 

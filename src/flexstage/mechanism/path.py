@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 from flexstage.base.digest import KEY
@@ -55,12 +56,19 @@ def has_member(value: Any, name: str) -> bool:
         return name in value
     if isinstance(value, tuple):
         return 0 <= _index(name) < len(value)
-    return is_dataclass(value) and any(name in (field.name, field.metadata.get(KEY)) for field in fields(value))
+    return name in _field_names(type(value))
 
 
 def _field_name(value: Any, name: str) -> str:
     """The field that a file calls so, where its word is one of Python's own (`from`)."""
-    return next((field.name for field in fields(value) if field.metadata.get(KEY) == name), name) if is_dataclass(value) else name
+    return _field_names(type(value)).get(name, name)
+
+
+@cache
+def _field_names(kind: type) -> Mapping[str, str]:
+    """The fields of a class, by their names and by what a file calls them; none of what is no description."""
+    own = fields(kind) if is_dataclass(kind) else ()
+    return {field.name: field.name for field in own} | {field.metadata[KEY]: field.name for field in own if KEY in field.metadata}
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
@@ -74,10 +82,10 @@ def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
     if not is_dataclass(value):
         return ()
     found: list[tuple[str, ...]] = []
-    for field in fields(value):
-        inner = getattr(value, field.name)
+    for own in dict.fromkeys(_field_names(type(value)).values()):
+        inner = getattr(value, own)
         if isinstance(inner, Mapping) or is_dataclass(inner):
-            found += [(field.name, *rest) for rest in completions(inner, name)]
+            found += [(own, *rest) for rest in completions(inner, name)]
     return tuple(found)
 
 

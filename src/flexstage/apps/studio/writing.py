@@ -29,18 +29,20 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
 def written(text: str, file: str, address: str, value: str | float) -> Written:
     """The same, with what was set."""
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
-    quick = "" if isinstance(value, str) else _in_its_line(text, file, address, stated)
-    found = quick or patch(text, {address: stated}, where=file)
-    is_followed = design(found, file) == set_text(design(text, file), address, stated)
-    return Written(found, stated if is_followed else "")
+    quick = "" if isinstance(value, str) else _in_its_line(text, address, stated)
+    with contextlib.suppress(DesignError):
+        if quick and design(quick, file) == set_text(design(text, file), address, stated):
+            return Written(quick, stated)
+    patched = patch(text, {address: stated}, where=file)
+    is_followed = design(patched, file) == set_text(design(text, file), address, stated)
+    return Written(patched, stated if is_followed else "")
 
 
-def _in_its_line(text: str, file: str, address: str, stated: str) -> str:
-    """The text with another value between the quotes behind its key; nothing where that is not the design with this number set.
+def _in_its_line(text: str, address: str, stated: str) -> str:
+    """The text with another value between the quotes behind its key; nothing where its line is not so. It may be another value's.
 
     It is what `patch` writes of a value in its shown unit, sooner; that finds its way in any layout and takes out tags.
     """
-    found = design(text, file)
     line = line_of(address, line_numbers(text))
     rows = text.split("\n")
     key = re.escape(address.rpartition(".")[2])
@@ -49,11 +51,7 @@ def _in_its_line(text: str, file: str, address: str, stated: str) -> str:
         return ""
     start, end = quoted[0].span(1)
     rows[line - 1] = rows[line - 1][:start] + stated + rows[line - 1][end:]
-    written = "\n".join(rows)
-    with contextlib.suppress(DesignError):
-        if design(written, file) == set_text(found, address, stated):
-            return written
-    return ""
+    return "\n".join(rows)
 
 
 def _tidy(text: str, file: str, address: str, value: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,10 +19,14 @@ ALL_MODES = 900
 
 @dataclass(frozen=True, eq=False)
 class Eigen:
-    """Eigenvalues lambda = omega^2 (..., k) ascending and mass-normalised shapes (..., n, k) of K phi = lambda M phi."""
+    """Eigenvalues lambda = omega^2 (..., k) ascending and mass-normalised shapes (..., n, k) of K phi = lambda M phi, read-only."""
 
     values: Array
     shapes: Array
+
+    def __post_init__(self) -> None:
+        self.values.setflags(write=False)
+        self.shapes.setflags(write=False)
 
 
 def eigen(model: LinearModel) -> Eigen:
@@ -36,6 +41,18 @@ def eigen(model: LinearModel) -> Eigen:
     >>> (eigen(mapped(double_triangle())).values[:3] ** 0.5 / (2 * np.pi)).round(2).tolist()
     [110.91, 110.91, 135.15]
     """
+    if model.stiffness_matrix.ndim > 2 or model.inertia_matrix.ndim > 2 or len(model.coordinates) > ALL_MODES:
+        return _solve(model)
+    return _kept(model)
+
+
+@lru_cache(maxsize=2)
+def _kept(model: LinearModel) -> Eigen:
+    """Of one design, kept for what asks the same model next: modes, frequencies of a response, the response itself."""
+    return _solve(model)
+
+
+def _solve(model: LinearModel) -> Eigen:
     return solve(model.stiffness_matrix, model.inertia_matrix, sign_weights(model.coordinates))
 
 
