@@ -27,13 +27,14 @@ from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.run import simulate
 from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import bandwidths, margins, peaks
-from flexstage.control.study.choices import Criterion
+from flexstage.control.study.choices import ControllerKind, Criterion
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, resolve
 from flexstage.control.study.runs import StepAnswer, driven_machine, runs
 from flexstage.control.study.setup import (
     AmplifierSetup,
     ControllerSetup,
+    DampingSetup,
     Floor,
     GaugeSetup,
     GoalSetup,
@@ -45,7 +46,7 @@ from flexstage.control.study.setup import (
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.goal import Kind, Tuning
-from flexstage.control.tuning.search import Field, Found, Joint, Variant
+from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.wish import Wish
 
@@ -195,6 +196,36 @@ def test_the_budget_is_what_a_simulation_comes_to_that_is_long_enough_to_tell():
     half = scipy.special.stdtrit(len(squares) - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(len(squares))
     assert np.all(0.5 * half / mean < 0.02), half / mean
     assert budget.rms == pytest.approx(np.sqrt(mean), rel=0.05)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("kind", [ControllerKind.PI, ControllerKind.PID])
+def test_damped_legs_leave_loops_without_a_mode_to_notch(kind):
+    """Loops searched together need not have the same notches; what stands out at 2 kHz of modes below 180 Hz says nothing of a loop."""
+    floor = VibrationSetup(criterion=Criterion.VC_D)
+    controller = ControllerSetup(kind=kind, goal=GoalSetup())
+    given = resolve(double_triangle(), LoopSetup(floor=Floor(floor, floor, floor), controller=controller, damping=DampingSetup()))
+    tuned = make_controller(given, given.plant.coordinates.strokes).tuning
+    wired = closed(given.plant, tuned, 0.0)
+    assert peaks(wired, Cut.POSE).sensitivity.value <= 2.0
+    assert np.min(bandwidths(wired).rejection) > 90.0
+
+
+def test_starts_of_loops_that_are_searched_together_stand_beside_one_another():
+    few, many = [np.array([zero]) for zero in (1.0, 2.0)], [np.array([zero]) for zero in range(8)]
+    found = beside_one_another([few, many])
+    assert [(one.item(), other.item()) for one, other in found] == [(1.0 + (place >= 4), place) for place in range(8)]
+
+
+@pytest.mark.full
+def test_pid_rejects_at_least_as_far_as_pi_where_it_begins():
+    given, gains = shipped(ControllerSetup(goal=GoalSetup()))
+    far = []
+    for kind in (ControllerKind.PI, ControllerKind.PID):
+        asked = replace(given.setup, controller=ControllerSetup(kind=kind, goal=GoalSetup()))
+        tuned = make_controller(replace(given, setup=asked), gains).tuning
+        far.append(bandwidths(closed(given.plant, tuned, 0.0)).rejection)
+    assert np.all(far[1] > 0.98 * far[0])
 
 
 @pytest.mark.full

@@ -54,9 +54,9 @@ def resolvent(system: System) -> Resolvent:
     >>> bool(np.allclose(resolvent(system).at(far), system.transfer(far)))
     True
     """
+    if not np.any(np.tril(system.A, -1)):  # laws of one loop are triangles as they stand
+        return Resolvent(system, system.A.astype(complex), system.B.astype(complex), system.C.astype(complex))
     balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
-    if not len(balanced):
-        return Resolvent(system, balanced.astype(complex), system.B.astype(complex), system.C.astype(complex))
     found: Any = scipy.linalg.schur(balanced.astype(complex), output="complex")
     triangle, vectors = found
     return Resolvent(system, triangle, vectors.conj().T @ (system.B / scale[:, None]), (system.C * scale) @ vectors)

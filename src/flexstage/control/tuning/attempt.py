@@ -199,12 +199,13 @@ def _candidates(
     filters = [notch.system(seen.step) for notch in notches]
     filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
     notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
-    for law in laws(kind, Place(frequency, notched, static, first), seen.step):
-        response = _sampled_response(law, seen)
-        if response is not None:
-            whole = response * filtered
-            nominal = _score(seen.frequencies, whole * seen.own[:1, :, loop], frequency)
-            yield _Chosen(law, notches, whole, nominal, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
+    known = [(law, _sampled_response(law, seen)) for law in laws(kind, Place(frequency, notched, static, first), seen.step)]
+    possible = [(law, response * filtered) for law, response in known if response is not None]
+    if not possible:
+        return
+    nominal = _scores(seen.frequencies, np.stack([whole for _, whole in possible]) * seen.own[0, :, loop], frequency)
+    for (law, whole), score in zip(possible, nominal.tolist(), strict=True):
+        yield _Chosen(law, notches, whole, score, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
 
 
 def _product(responses: list[Array]) -> Array:
@@ -221,12 +222,27 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
-    """Peak of S of a single loop (v, f), far above any for one that encircles -1 or passes 1 elsewhere first."""
-    if abs(crossing_frequency(frequencies, np.abs(gains[0])) / frequency - 1.0) > _AGREES:
+    """Peak of S of a single loop (v, f), the worst wherever its modes lie; where it crosses is asked of the first alone."""
+    if _crosses_elsewhere(frequencies, gains[0], frequency):
         return 2.0 * _WRONG
     returned = 1.0 + gains
-    turned = np.unwrap(np.angle(returned), axis=-1)[:, -1]
-    return _WRONG * bool(np.any(np.abs(turned) > 1.0)) + float(1.0 / np.min(np.abs(returned)))
+    return _WRONG * bool(np.any(_encircles(returned))) + float(1.0 / np.min(np.abs(returned)))
+
+
+def _scores(frequencies: Array, gains: Array, frequency: float) -> Array:
+    """Peaks of S (l,) of single loops (l, f), far above any for those that encircle -1 or pass 1 elsewhere first."""
+    returned = 1.0 + gains
+    peaks = _WRONG * _encircles(returned) + 1.0 / np.min(np.abs(returned), axis=-1)
+    return np.where([_crosses_elsewhere(frequencies, each, frequency) for each in gains], 2.0 * _WRONG, peaks)
+
+
+def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bool:
+    return abs(crossing_frequency(frequencies, np.abs(gains)) / frequency - 1.0) > _AGREES
+
+
+def _encircles(returned: Array) -> Array:
+    """Whether curves (..., f) of 1 + L turn about 0."""
+    return np.abs(np.unwrap(np.angle(returned), axis=-1)[..., -1]) > 1.0
 
 
 def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:

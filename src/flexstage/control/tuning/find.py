@@ -19,7 +19,7 @@ from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Judgement, Kind, Tuning
 from flexstage.control.tuning.judge import closed_growth, judge_loop
 from flexstage.control.tuning.outcome import Outcome, bench, outcome
-from flexstage.control.tuning.search import Field, Found, coupled_sensitivities, excess, field, rejects_to, search, variants
+from flexstage.control.tuning.search import Field, Found, coupled_sensitivities, excess, field, rejects_to, search, tighten, variants
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import View, view
 from flexstage.control.tuning.weigh import Regulated, weigh
@@ -70,9 +70,10 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     require(_growth_findings(seen))
     if asked.kind is Kind.LQG:
         return _find_weights(seen, asked)
+    found = None
     for tighter in _TIGHTER:
         within = field(seen, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0)), asked.floor)
-        found = search(seen, within, asked.kind)
+        found = search(seen, within, asked.kind) if found is None else tighten(within, found)
         if found is None:
             break
         controller = _controller(loops, within, found, asked)

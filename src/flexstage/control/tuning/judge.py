@@ -8,10 +8,12 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System, connect
+from flexstage.control.system import System
 from flexstage.control.tuning.goal import Judgement
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
+
+_ROUNDING = 1e-9
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
@@ -29,15 +31,14 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
     """
     gains = open_gains(seen, control) if gains is None else gains
     poses = seen.loops.coordinates.scale[:, None] * np.linalg.inv(seen.loops.sense)
-    peaks = [_peak(each, poses) for each in gains]
+    peaks = [highest_gain(poses @ np.linalg.inv(np.eye(gains.shape[-1]) + each) @ np.linalg.inv(poses)) for each in gains]
     growths = [closed_growth(system, control) for system in seen.systems]
-    worst = int(np.argmax(growths)) if max(growths) >= 0.0 else int(np.argmax([np.max(each) for each in peaks]))
-    place = int(np.argmax(peaks[worst]))
+    worst = int(np.argmax(growths)) if max(growths) >= 0.0 else int(np.argmax([peak for peak, _ in peaks]))
     count = len(seen.loops.names)
     return Judgement(
         bandwidths=tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(count)),
-        peak=float(np.max(peaks)),
-        frequency=float(seen.frequencies[place]),
+        peak=max(peak for peak, _ in peaks),
+        frequency=float(seen.frequencies[peaks[worst][1]]),
         growth=float(max(growths)),
         offset=seen.offsets[worst],
     )
@@ -74,16 +75,32 @@ def closed_growth(plant: System, control: System) -> float:
     >>> abs(closed_growth(pose_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
     True
     """
-    links = {name: {} for name in control.input_names if name.startswith(("reference.", "applied."))}
-    links |= {name: {name.replace("error.", "pose."): -1.0} for name in control.input_names if name.startswith("error.")}
-    return connect([plant, control], links, (), plant.output_names).growth
+    rows = dict(zip(plant.output_names, np.eye(len(plant.outputs)), strict=True))
+    sources = {**rows, **{name.replace("pose.", "error."): -row for name, row in rows.items()}}
+    back = np.array([sources.get(name, np.zeros(len(plant.outputs))) for name in control.input_names])
+    given = [control.output_names.index(name) for name in plant.input_names]
+    entered, direct, out = control.B @ back, control.D[given] @ back, control.C[given]
+    solve = np.linalg.inv(np.eye(len(given)) - direct @ plant.D)
+    C, D = solve @ direct @ plant.C, solve @ out
+    A = np.block([[plant.A + plant.B @ C, plant.B @ D], [entered @ (plant.C + plant.D @ C), control.A + entered @ plant.D @ D]])
+    none = System(A, np.zeros((len(A), 0)), np.zeros((0, len(A))), np.zeros((0, 0)), (), (), plant.step)
+    return none.growth
 
 
-def _peak(gains: Array, poses: Array) -> Array:
-    """Largest singular values (f,) of S, poses as lengths."""
-    sensitivity = poses @ np.linalg.inv(np.eye(gains.shape[-1]) + gains) @ np.linalg.inv(poses)
-    product = np.conj(np.swapaxes(sensitivity, -1, -2)) @ sensitivity
-    return np.sqrt(np.linalg.eigvalsh(product)[:, -1])
+def highest_gain(matrices: Array) -> tuple[float, int]:
+    """The largest singular value of all matrices (f, k, k), and which of them has it.
+
+    One has none above the largest sum of a row of |M^H M|, and one at least as large as its longest column: most need no eigenvalues.
+
+    >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
+    (5.0, 1)
+    """
+    squares = np.conj(np.swapaxes(matrices, -1, -2)) @ matrices
+    sizes = np.abs(squares)
+    reached = np.max(np.einsum("fkk->fk", sizes))
+    places = np.flatnonzero(np.max(np.sum(sizes, axis=-1), axis=-1) >= reached * (1.0 - _ROUNDING))
+    values = np.linalg.eigvalsh(squares[places])[:, -1]
+    return float(np.sqrt(np.max(values))), int(places[np.argmax(values)])
 
 
 def crossing_frequency(frequencies: Array, gains: Array) -> float:

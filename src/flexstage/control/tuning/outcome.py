@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
+from flexstage.control.tuning.judge import highest_gain
 from flexstage.control.tuning.search import Field
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
@@ -77,8 +78,9 @@ def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
     """
     within, count = tried.field, len(tried.seen.loops.names)
     responses, eye = resolvent(_entered(tried.seen, control)), np.eye(count)
-    every = gain * responses.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, 2 * count)
-    opened = tried.plants @ every[..., :count]
+    back = replace(responses, system=_first_inputs(responses.system, count), entry=responses.entry[:, :count])
+    every = gain * back.at(within.frequencies.ravel()).reshape(*within.frequencies.shape, -1, count)
+    opened = tried.plants @ every
     left = np.linalg.inv(eye + opened)
     slow = gain * responses.at(within.lines[1:])
     following = np.linalg.solve(eye + tried.slow @ slow[..., :count], tried.slow @ slow[..., count:])
@@ -90,7 +92,7 @@ def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
     own = np.einsum("vfkk->vfk", left)
     far = np.array([[_first_rise(np.abs(own[v, :, k]), within.frequencies[v]) for k in range(count)] for v in spread])
     return Outcome(
-        peaks=np.max(np.linalg.norm(lengths @ left @ np.linalg.inv(lengths), 2, axis=(-2, -1)), axis=-1),
+        peaks=np.array([highest_gain(each)[0] for each in lengths @ left @ np.linalg.inv(lengths)]),
         rejection=np.stack([far[0], np.min(far, axis=0)]),
         noise=np.sqrt(shaken + heard),
         floor=np.sqrt(shaken),
@@ -98,6 +100,10 @@ def outcome(tried: Bench, control: System, gain: float = 1.0) -> Outcome:
         overshoot=np.max(steps, axis=(0, 1)) - 1.0,
         delay_margin=np.array([_delay_margin(1.0 / own[0, :, k] - 1.0, within.frequencies[0]) for k in range(count)]),
     )
+
+
+def _first_inputs(system: System, count: int) -> System:
+    return replace(system, B=system.B[:, :count], D=system.D[:, :count], inputs=system.inputs[:count])
 
 
 def _entered(seen: View, control: System) -> System:

@@ -37,7 +37,10 @@ A loop that crosses at f with one time constant, 1/(2 pi f), is within 2 % after
 ring ten times as long. Loops of the shipped stage that were found settle in 3/f to 6/f.
 """
 _NEAR, _MOST_NOTCHES = 4.0, 3
-"""Modes that get notches: up to so many times the first that stands out, and so many. Beyond, PI at the first mode has fallen below 1/4."""
+"""Modes that get notches: up to so many times the first that stands out, and so many. Beyond, PI at the first mode has fallen below 1/4.
+
+Where what stands out lies beyond so many times the platform's highest mode, as of legs that are damped, none is notched.
+"""
 _ABOVE = 1.6
 """Where a second notch begins in a loop with one mode, times the mode: another pair of zeros and poles, free to go where it serves."""
 _ZEROS, _POLE_DAMPINGS, _ZERO_DAMPINGS = (0.2, 0.8), (0.8, 2.4), (0.04, 0.12)
@@ -58,6 +61,8 @@ _NEARLY = 0.03
 """Excess of bounds within which a start counts as calm: noise is bounded by such starts alone."""
 _LEFT = 0.015
 """Of the overshoot, what is left to rounding of gauges and to samples of steps that lie beside the top."""
+_FIRST_DERIVATIVE = 0.01
+"""k_d k_i / k_p^2 where PID begins, from PI: its zeros are then PI's and one a hundred times as fast, so that all bounds are still kept."""
 _SLOWEST = 0.1
 """Least k_i/k_p over the first mode's omega: slower integrators leave a tail that the band of 2 % does not see and statics do."""
 _COUPLED = 0.5
@@ -219,11 +224,15 @@ def _first_alike(plants: Array, loop: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a search found, by loop: shape, point, and the frequency `reached` [Hz] to which the aim was brought, 0 where it is none."""
+    """What a search found, by loop: shape, point, and the frequency `reached` [Hz] to which the aim was brought, 0 where it is none.
+
+    `noises` are the rms at rest with the loops of other blocks open, where that is known.
+    """
 
     shapes: tuple[Shape, ...]
     points: tuple[Array, ...]
     reached: tuple[float, ...]
+    noises: tuple[float, ...] = ()
 
     def responses(self, frequencies: Array) -> Array:
         """C (..., k) of the loops at frequencies (...)."""
@@ -244,24 +253,63 @@ class Found:
 def search(seen: View, within: Field, kind: Kind) -> Found | None:
     """The best loops, those that are coupled together, then all at once; `None` where none is stable.
 
-    The search is the same every time: no random numbers, starts on a grid.
+    PID begins where PI comes to. The search is the same every time: no random numbers, starts on a grid.
     """
+    found = _by_blocks(seen, within, Kind.PI, None)
+    if found is not None and kind is not Kind.PI:
+        found = _by_blocks(seen, within, kind, found)
+    return None if found is None else tighten(within, found)
+
+
+def tighten(within: Field, found: Found) -> Found:
+    """All loops at once, from what was found in a field, or in one that is less strict."""
+    return _together(replace(within, allowed=found.noises), found)
+
+
+def _by_blocks(seen: View, within: Field, kind: Kind, begun: Found | None) -> Found | None:
+    """The best loops, those that are coupled together, the others open: from a grid of starts, or on from where another kind came to."""
     shapes = tuple(_shape(seen, kind, loop) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
-    reached, allowed = [0.0] * len(shapes), [np.inf] * len(shapes)
+    reached, noises = [0.0] * len(shapes), [np.inf] * len(shapes)
     for block in _blocks(within):
-        grids = [_grid(shapes[loop], _places(seen, loop), _first_place(seen, loop)) for loop in block]
-        least = [_AMBITION * _first_place(seen, loop) for loop in block]
-        found = _best(_part(within, block), tuple(shapes[loop] for loop in block), list(zip(*grids, strict=True)), least)
+        part, own = _part(within, block), tuple(shapes[loop] for loop in block)
+        if begun is None:
+            grids = [list(_grid(shapes[loop], _places(seen, loop), _first_place(seen, loop))) for loop in block]
+            found = _best(part, own, beside_one_another(grids), [_AMBITION * _first_place(seen, loop) for loop in block])
+        else:
+            found = _on_from(replace(part, allowed=tuple(begun.noises[loop] for loop in block)), own, begun, block)
         if found is None:
             return None
-        noises = _noises(_part(within, block), found)
+        quiet = _noises(part, found)
         for place, loop in enumerate(block):
             first = within.alike[loop]
-            points[first], reached[first], allowed[first] = found.points[place], found.reached[place], noises[place]
-    for loop, first in enumerate(within.alike):
-        points[loop], reached[loop], allowed[loop] = points[first], reached[first], allowed[first]
-    return _together(replace(within, allowed=tuple(allowed)), Found(shapes, tuple(points), tuple(reached)))
+            points[first], reached[first], noises[first] = found.points[place], found.reached[place], quiet[place]
+    points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
+    return Found(shapes, tuple(points), tuple(reached), tuple(noises))
+
+
+def _on_from(within: Field, shapes: tuple[Shape, ...], begun: Found, block: tuple[int, ...]) -> Found:
+    """Some loops brought on from those of proportional and integral control, with next to no derivative."""
+    points = tuple(_with_derivative(shape, begun.shapes[loop], begun.points[loop]) for shape, loop in zip(shapes, block, strict=True))
+    reached = [begun.reached[loop] for loop in block]
+    return _climb(within, [Found(shapes, _shared(within, points), tuple(reached))], reached)
+
+
+def _shared(within: Field, points: tuple[Array, ...]) -> tuple[Array, ...]:
+    """The same array for loops that are the same: places around are counted by it."""
+    return tuple(points[first] for first in within.alike)
+
+
+def _with_derivative(shape: Shape, plain: Shape, point: Array) -> Array:
+    law = plain.law(point)
+    derivative = _FIRST_DERIVATIVE * law.proportional**2 / law.integral
+    return shape.point(PID(law.proportional, law.integral, derivative, shape.corner or 0.0), plain.notches(point))
+
+
+def beside_one_another(grids: list[list[Array]]) -> list[tuple[Array, ...]]:
+    """Starts of loops that are searched together; one without notches has fewer, each beside several of the others."""
+    most = max(map(len, grids))
+    return list(zip(*([grid[place * len(grid) // most] for place in range(most)] for grid in grids), strict=True))
 
 
 def _blocks(within: Field) -> list[tuple[int, ...]]:
@@ -542,7 +590,8 @@ def _shape(seen: View, kind: Kind, loop: int) -> Shape:
 
 def _places(seen: View, loop: int) -> list[float]:
     """Frequencies [Hz] where notches begin: the first modes that stand out of a loop; of one mode alone also a place above it."""
-    found = [each.frequency for each in resonances(seen, loop)]
+    highest = _NEAR * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+    found = [each.frequency for each in resonances(seen, loop) if each.frequency < highest]
     near = [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
     return [*near, _ABOVE * near[0]] if len(near) == 1 and (seen.step is None or _ABOVE * near[0] < _OF_RATE / seen.step) else near
 

@@ -60,9 +60,12 @@ class Regulated:
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
     def outcome(self, point: Array) -> Outcome | None:
-        """What it comes to; `None` where there is no design, or one that is unstable for the model or at the ends of the modes' offsets."""
+        """What it comes to; `None` where there is no design, or one that is unstable at the ends of the modes' offsets.
+
+        For the model itself every design is stable: regulator and observer are, each by itself.
+        """
         seen = self.tried.seen
-        ends = {min(seen.offsets), 0.0, max(seen.offsets)}
+        ends = {min(seen.offsets), max(seen.offsets)}
         try:
             system = self.controller(point).system(seen.step)
         except DesignError:
