@@ -19,11 +19,14 @@ from __future__ import annotations
 import os
 
 os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # installed programs do not translate their modules at every start
 
 import asyncio
+import contextlib
 import sys
 import tempfile
 import time
+from collections.abc import AsyncIterator
 from pathlib import Path
 
 import psutil
@@ -72,11 +75,19 @@ async def measured(folder: Path, links: int) -> None:
     """Everything, one after another."""
     stage = folder / "stage.toml"
     stage.write_text(dumps(case("double-triangle")), encoding="utf-8")
+    async with started(stage) as (_, url):
+        await (await opened(url)).until(lambda message: isinstance(message, say.Cautions))  # all modules are translated then
+    async with started(stage) as (studio, url):
+        await measure(studio, url, stage, links)
+
+
+@contextlib.asynccontextmanager
+async def started(stage: Path) -> AsyncIterator[tuple[psutil.Process, str]]:
+    """A studio of a file: its process and its address."""
     command = (sys.executable, "-m", "flexstage", "studio", str(stage), "--no-browser")
     process = await asyncio.create_subprocess_exec(*command, stderr=asyncio.subprocess.PIPE)
     try:
-        line = (await process.stderr.readline()).decode()
-        await measure(psutil.Process(process.pid), line.split()[-1], stage, links)
+        yield psutil.Process(process.pid), (await process.stderr.readline()).decode().split()[-1]
     finally:
         process.terminate()
         await process.wait()
