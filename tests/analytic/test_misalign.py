@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.misalign import critical_misalignments, misalign, seated
+from flexstage.analysis.misalign import critical_misalignments, misalign, misalignments, seated
 from flexstage.beams.section import rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
-from flexstage.show.displaced import misalign_report
+from flexstage.show.displaced import misalign_report, misalignments_report
 from flexstage.show.viewer.course import misalign_data
 from flexstage.spatial.rotation import exponential
 from tests.laws.test_nonlinear import guide
@@ -59,6 +59,17 @@ def test_what_is_not_held_twice_follows_freely():
     free = misalign(single, "left", "ry", 1e-3, points=2)
     assert abs(free.along.at("2", "load")) < 1e-9
     assert np.isnan(free.critical)
+
+
+def test_of_all_copies_the_loads_are_told_and_the_first_to_give_way_is_played():
+    """M = E I_y phi / (2 L) of either leaf at a size that all bear; the worst goes to where it gives way."""
+    found = misalignments(slender(), ("ry",), size=0.1 * limit())
+    moment = 200e9 * rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.1 * limit() / (2.0 * SLENDER.length)
+    assert found.load.values[:, 0] == pytest.approx([moment, moment], rel=1e-3)
+    assert found.worst is not None
+    assert found.worst.along.values[-1, 0] == found.worst.critical == np.min(found.critical.values)
+    assert "path left ry" in misalignments_report(slender(), found)
+    assert found.stress.values[0, 0] < np.max(found.worst.strained.stress)
 
 
 def test_copies_stand_on_the_ground():

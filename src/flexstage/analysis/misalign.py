@@ -57,10 +57,24 @@ class Misaligned(InNotebook):
 
 
 @dataclass(frozen=True, eq=False)
-class Misalignments:
-    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where it does not up to 0.1 rad."""
+class Misalignments(InNotebook):
+    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where it does not up to 0.1 rad.
+
+    `load` is what forces the copy to `size` [rad, m], `stress` the largest of a flexure then [Pa]; null where no equilibrium was found.
+    `worst` is the copy and axis that give way first, or where none does bear the largest stress, from none to its critical size, or to
+    `size`; None where no copy joins the ground.
+    """
 
     critical: Matrix
+    size: float
+    load: Matrix
+    stress: Matrix
+    worst: Misaligned | None
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory in the worst of them."""
+        return () if self.worst is None else self.worst.cautions
 
 
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
@@ -104,6 +118,42 @@ def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONE
     values = [[_forced(mechanism, copy, axis).critical() for axis in axes] for copy in rows]
     units = tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes)
     return Matrix(np.array(values).reshape(len(rows), len(axes)), rows, axes, (units,) * len(rows))
+
+
+def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
+    """What every copy (or link) that joins the ground bears, misaligned alone along or about `axes` of its own frame.
+
+    Axes are rotations or translations, not both, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = misalignments(parallelogram(), ("ry",))
+    >>> found.load.rows, found.worst.axis
+    (('B', 'left', 'right'), 'ry')
+    """
+    critical = critical_misalignments(mechanism, axes)
+    there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
+    values = np.array(there).reshape(len(critical.rows), len(axes), 2)
+    units = tuple(WRENCH_UNITS[COMPONENTS.index(axis)] for axis in axes)
+    load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
+    stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
+    return Misalignments(critical, size, load, stress, _worst(mechanism, critical, stress, size))
+
+
+def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
+    """The load that forces a copy to a size, and the largest stress then."""
+    state = forced.at(np.array([size]))
+    stress = np.max(strains(state).stress, axis=-1, initial=0.0)
+    return float((state.reactions @ forced.direction)[0]), float(stress[0]) if bool(state.converged[0]) else np.nan
+
+
+def _worst(mechanism: Mechanism, critical: Matrix, stress: Matrix, size: float) -> Misaligned | None:
+    if not critical.values.size:
+        return None
+    bears = np.where(np.isnan(critical.values), np.inf, critical.values)
+    ranks = bears if np.isfinite(bears).any() else -np.nan_to_num(stress.values)
+    row, column = np.unravel_index(int(np.argmin(ranks)), ranks.shape)
+    to = float(bears[row, column])
+    return misalign(mechanism, critical.rows[row], critical.columns[column], to if np.isfinite(to) else size)
 
 
 def seated(mechanism: Mechanism) -> tuple[str, ...]:

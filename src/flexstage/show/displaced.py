@@ -18,7 +18,7 @@ from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure
 from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, page, section
-from flexstage.show.scene.stage import scene
+from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, make_table, matrix_table, result_tables
@@ -112,35 +112,61 @@ def shape_of(case: CaseFactor) -> Matrix:
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
     seen, data = scene(mechanism), misalign_data(mechanism, found)
-    curves = curves_of(found.along)
-    beyond = found.along.values[:, -1] != 0.0
-    kind = "about" if found.axis.startswith("r") else "along"
-    words = f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
-    figure = to_svg(stroke_figure(curves, beyond), "misalign", "What a misalignment does")
     sections = (
-        stage_section(seen, motion=f"path {data.motions[0].name}", said="Flexures lie as it bends them. Red is beyond a limit."),
-        section("Over the misalignment", [Picture(figure, to_typography(f"{words}. Shaded: the stage gives way."))]),
+        _misaligned_stage(seen, data),
+        _misaligned_curves(found),
         caveat_section(mechanism, found.cautions),
         section("Point by point", [*result_tables(found)]),
         drawing_section(mechanism, seen),
     )
-    good = not bool(np.any(beyond))
-    return _page(mechanism, "A misalignment", found.provenance, (Headline(to_typography(words), good), sections), data)
+    headline = Headline(to_typography(_misaligned_text(found)), not bool(np.any(_beyond(found))))
+    return _page(mechanism, "A misalignment", found.provenance, (headline, sections), data)
+
+
+def _misaligned_stage(seen: Scene, data: StageData) -> Section | None:
+    return stage_section(seen, motion=f"path {data.motions[0].name}", said="Flexures lie as it bends them. Red is beyond a limit.")
+
+
+def _misaligned_curves(found: Misaligned) -> Section | None:
+    figure = to_svg(stroke_figure(curves_of(found.along), _beyond(found)), "misalign", "What a misalignment does")
+    return section("Over the misalignment", [Picture(figure, to_typography(f"{_misaligned_text(found)}. Shaded: the stage gives way."))])
+
+
+def _beyond(found: Misaligned) -> Array:
+    return found.along.values[:, -1] != 0.0
+
+
+def _misaligned_text(found: Misaligned) -> str:
+    kind = "about" if found.axis.startswith("r") else "along"
+    return f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
-    """What each copy bears, as a page of HTML."""
-    seen, borne = scene(mechanism), found.critical.values[~np.isnan(found.critical.values)]
-    least = f"the first gives way at {format_value(float(min(borne)), 'rad', 4)}" if len(borne) else "none gives way up to 0.1 rad"
-    words = f"{len(found.critical.rows)} copies misaligned one by one: {least}"
+    """What each copy bears, as a page of HTML; the worst of them is played."""
+    seen, worst = scene(mechanism), found.worst
+    data = still_data(mechanism) if worst is None else misalign_data(mechanism, worst)
     sections = (
-        stage_section(seen),
+        stage_section(seen) if worst is None else _misaligned_stage(seen, data),
         section("Copy by copy", misalignment_tables(found)),
-        caveat_section(mechanism),
+        None if worst is None else _misaligned_curves(worst),
+        caveat_section(mechanism, found.cautions),
+        None if worst is None else section("The worst, point by point", [*result_tables(worst)]),
         drawing_section(mechanism, seen),
     )
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
-    return _page(mechanism, "Misalignments", provenance, (Headline(to_typography(words)), sections), still_data(mechanism))
+    return _page(mechanism, "Misalignments", provenance, (Headline(to_typography(misalignments_text(found))), sections), data)
+
+
+def misalignments_text(found: Misalignments) -> str:
+    """How many copies there are, and which gives way first."""
+    count, worst = len(found.critical.rows), found.worst
+    if worst is None:
+        return "no copy and no link joins the ground"
+    if np.isnan(worst.critical):
+        told = f"none gives way; {worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]} is stressed most"
+    else:
+        told = f"{_misaligned_text(worst)}, the first"
+    return f"{count} misaligned one by one: {told}"
 
 
 def critical_text(found: Misaligned) -> str:
@@ -151,14 +177,25 @@ def critical_text(found: Misaligned) -> str:
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
-    """What each copy bears about its axes, as far as it gives way at all."""
-    rows = [
-        [copy, *("-" if np.isnan(each) else format_value(float(each), "rad", 4) for each in values)]
-        for copy, values in zip(found.critical.rows, found.critical.values, strict=True)
+    """What each copy bears along or about its axes: where it gives way, what forces it to a size, and the stress then."""
+    unit = "rad" if found.critical.columns[0].startswith("r") else "m"
+    size = format_value(found.size, unit, 4)
+    alone = "Of one copy alone, in its own frame"
+    return [
+        _by_copy("Misalignment at which the stage gives way", found.critical, f"{alone}. -: it does not give way up to a tenth."),
+        _by_copy(f"Load that forces it to {size}", found.load, f"{alone}, about its origin, of a link its middle."),
+        _by_copy(f"Largest stress of a flexure at {size}", found.stress, "Von Mises; weight included."),
     ]
-    note = "Of one copy alone, about the axes of its own frame. -: it does not give way up to 0.1 rad."
-    heads = ["copy", *(Column(f"about {axis[-1]}") for axis in found.critical.columns)]
-    return [make_table("Misalignment at which the stage gives way", heads, rows, notes=[note])]
+
+
+def _by_copy(title: str, found: Matrix, note: str) -> Table:
+    units = found.unit if not isinstance(found.unit, str) else ((found.unit,) * len(found.columns),) * len(found.rows)
+    rows = [
+        [copy, *("-" if np.isnan(each) else format_value(float(each), unit, 4) for each, unit in zip(values, own, strict=True))]
+        for copy, values, own in zip(found.rows, found.values, units, strict=True)
+    ]
+    heads = ["copy", *(Column(f"{'about' if axis.startswith('r') else 'along'} {axis[-1]}") for axis in found.columns)]
+    return make_table(title, heads, rows, notes=[note])
 
 
 def _flags(said: tuple[str, ...]) -> Array:

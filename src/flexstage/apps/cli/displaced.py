@@ -11,8 +11,8 @@ import typer
 
 from flexstage.analysis.course import Course, course, drive_quantity
 from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
-from flexstage.analysis.misalign import Misalignments, critical_misalignments
 from flexstage.analysis.misalign import misalign as misaligned
+from flexstage.analysis.misalign import misalignments
 from flexstage.analysis.requirements import asked_factor
 from flexstage.analysis.stance import require_consistent
 from flexstage.analysis.stroke import stroke as over_stroke
@@ -34,6 +34,7 @@ from flexstage.show.displaced import (
     misalign_report,
     misalignment_tables,
     misalignments_report,
+    misalignments_text,
     shape_of,
     stroke_report,
 )
@@ -181,8 +182,10 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
 def misalign(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    copy: Annotated[str, text_option("--copy", "NAME", "A copy of a unit, or a link on the ground. Default: all, by their limits.")] = "",
-    about: Annotated[str, text_option("--about", "AXIS", "Axis of its own frame about which it is turned: x, y or z. Default: y.")] = "",
+    copy: Annotated[str, text_option("--copy", "NAME", "A copy of a unit, or a link on the ground. Default: each of them.")] = "",
+    about: Annotated[
+        str, text_option("--about", "AXIS", "Its own axis about which it is turned: x, y or z. Default: y; without --copy all.")
+    ] = "",
     shift: Annotated[str, text_option("--along", "AXIS", "Axis along which it is shifted instead: x, y or z.")] = "",
     size: Annotated[str, text_option("--size", "VALUE", 'How far it is misaligned: "1 mrad", "10 um". Default: 1 mrad, 0.1 mm.')] = "",
     points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points from none to all of it.")] = 11,
@@ -195,22 +198,33 @@ def misalign(  # noqa: PLR0913 (its options)
     """What a misaligned copy does to an over-constrained stage.
 
     A copy or link is forced into a seat on the ground that is turned, or shifted: the loads that this leaves in all flexures, the
-    stage's frequencies over it, and the misalignment at which the stage gives way. Without --copy: that one, copy by copy, about all axes.
+    stage's frequencies over it, and the misalignment at which the stage gives way. Without --copy: where it gives way, load and stress copy
+    by copy, about all axes or the one that is named; the worst of them is played in the report.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    if not copy:
-        if ignored := next((option for option, given in (("--about", about), ("--along", shift), ("--size", size)) if given), ""):
-            raise refuse(ignored, "it says how one copy is misaligned, and none is named", "Name it: --copy NAME")
-        told = Misalignments(critical_misalignments(mechanism))
-        if report is not None:
-            save(report, misalignments_report(mechanism, told), "--report")
-        answer("misalign", mechanism, lambda: told, lambda: misalignment_tables(told), json=json, csv=csv, xlsx=xlsx, beside=(report,))
-        return
     axis = _axis(about, shift)
     quantity = ANGLE if axis.startswith("r") else LENGTH
     wanted = parse(size, quantity, where="--size") if size else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
         raise refuse("--size", "a misalignment of zero does nothing", "Give it a size")
+    if not copy:
+        told = misalignments(mechanism, (axis,) if about or shift else COMPONENTS[3:], size=wanted)
+        if told.worst is None:
+            raise refuse("stage", "no copy of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
+        if report is not None:
+            save(report, misalignments_report(mechanism, told), "--report")
+        answer(
+            "misalign",
+            mechanism,
+            lambda: told,
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --copy NAME."],
+            json=json,
+            csv=csv,
+            xlsx=xlsx,
+            cautions=told.cautions,
+            beside=(report,),
+        )
+        return
     found = misaligned(mechanism, copy, axis, wanted, points=points)
     if report is not None:
         save(report, misalign_report(mechanism, found), "--report")
