@@ -20,11 +20,12 @@ from flexstage.experiment.record import Channel, Record, Responses, Role
 BLOCKS = 40
 """Into how many blocks a record is divided: their scatter gives the intervals."""
 _TAPER, _SKIPPED = 0.15, 2
-_ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 24
+_ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 36
 _FADED = 0.08
 _HIGHEST = 18
 _RATIO, _MARGIN = 1.4, 0.4
-_CLOSE, _SURE = 0.3, 6.0
+_SURE = 6.0
+_SINGULAR = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +46,11 @@ class Shaken:
 class Band:
     """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, turning with `low` Hz less; the part searched is `sweep`.
 
-    Outputs are times `scale` (p,).
+    `weighed` (lags, p, p) are those of the band without a taper, of all blocks. Outputs are times `scale` (p,).
     """
 
     covariances: Array
+    weighed: Array
     step: float
     low: float
     sweep: Sweep
@@ -67,25 +69,27 @@ def band_covariances(record: Record, low: float, high: float, tell: Tell | None 
     every = _divide(low, high)
     lags = 2 * _rows(len(chosen.channels), 1e-9) + _SKIPPED + 1
     parts: list[list[Array]] = [[] for _ in every]
+    weighed: list[Array] = [np.zeros(()) for _ in every]
     power = np.zeros((size // 2 + 1, len(chosen.channels)))
     for number in range(BLOCKS):
         values = chosen.samples.read(number * size, (number + 1) * size)
         lines = np.fft.rfft(values - np.mean(values, axis=0), axis=0) / np.sqrt(size)
         power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
         for place, sweep in enumerate(every):
-            parts[place].append(_covariances(lines, _lines(sweep, record.rate / size, len(lines)), lags))
+            found, whole = _covariances(lines, _lines(sweep, record.rate / size, len(lines)), lags)
+            parts[place].append(found)
+            weighed[place] = weighed[place] + whole / BLOCKS
         if tell is not None:
             tell((number + 1) / BLOCKS)
-    found = []
-    for sweep, each in zip(every, parts, strict=True):
+    bands = []
+    for sweep, each, whole in zip(every, parts, weighed, strict=True):
         first, last = _lines(sweep, record.rate / size, size // 2 + 1)
         covariances = np.array(each)
         scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(np.mean(covariances[:, 0], axis=0))), 1e-300))
-        found.append(
-            Band(covariances * scale[:, None] * scale, size / record.rate / (last - first), first * record.rate / size, sweep, scale)
-        )
+        step, sizes = size / record.rate / (last - first), scale[:, None] * scale
+        bands.append(Band(covariances * sizes, whole * sizes, step, first * record.rate / size, sweep, scale))
     lines = np.fft.rfftfreq(size, 1.0 / record.rate)
-    return found, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
+    return bands, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
 
 
 def _divide(low: float, high: float) -> list[Sweep]:
@@ -104,13 +108,15 @@ def _lines(sweep: Sweep, resolution: float, count: int) -> tuple[int, int]:
     return max(1, int(sweep.low / resolution)), min(count, int(np.ceil(sweep.high / resolution)))
 
 
-def _covariances(lines: Array, extent: tuple[int, int], lags: int) -> Array:
+def _covariances(lines: Array, extent: tuple[int, int], lags: int) -> tuple[Array, Array]:
+    """Of a band by lags: tapered at its ends, and as it is."""
     inside = lines[extent[0] : extent[1]]
     count = len(inside)
     taper = np.minimum(np.minimum(np.arange(count), count - 1 - np.arange(count)) / (_TAPER * count), 1.0)
-    power = inside[:, :, None] * np.conj(inside[:, None, :]) * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None]
-    found = np.fft.ifft(power, axis=0)[:lags]
-    return found / (1.0 - np.arange(len(found)) / count)[:, None, None]
+    power = inside[:, :, None] * np.conj(inside[:, None, :])
+    whole = np.fft.ifft(power, axis=0)[:lags]
+    found = np.fft.ifft(power * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None], axis=0)[:lags]
+    return found / (1.0 - np.arange(len(found)) / count)[:, None, None], whole
 
 
 def hankel(covariances: Array, rows: int, first: int) -> Array:
@@ -124,12 +130,26 @@ def hankel(covariances: Array, rows: int, first: int) -> Array:
     return covariances[places].transpose(0, 2, 1, 3).reshape(rows * outputs, rows * outputs)
 
 
+def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
+    """W and its inverse, W T W = 1 for the block Toeplitz matrix T (rows p, rows p) of covariances R(i - j)."""
+    outputs = covariances.shape[1]
+    both = np.concatenate([np.conj(covariances[rows - 1 : 0 : -1]).swapaxes(1, 2), covariances[:rows]])
+    places = rows - 1 + np.arange(rows)[:, None] - np.arange(rows)
+    values, vectors = np.linalg.eigh(both[places].transpose(0, 2, 1, 3).reshape(rows * outputs, rows * outputs))
+    sizes = np.sqrt(np.maximum(values, _SINGULAR * values[-1]))
+    turned = np.conj(vectors.T)
+    return (vectors / sizes) @ turned, (vectors * sizes) @ turned
+
+
 def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
     """The modes of a band, and the stabilisation diagram: H = O Z of rising order, poles by O(shifted) = O A.
 
-    Van Overschee & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. Deviations:
-    the equations are projected onto the signal subspace of the whole record, U^H H(shifted) V = Lambda U^H H V, and perturbed to first
-    order by what each block has of covariances (Doehler & Mevel, MSSP 38 (2013) 346), blocks taken as independent.
+    H is weighted with the roots of the covariances of what comes and what went, W H V, so that its singular values are canonical
+    correlations: what the floor hardly drives weighs as much as what it drives most. Van Overschee & De Moor, Subspace Identification for
+    Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. Modes and deviations are those of the highest order, which has
+    poles to spare for tails of modes beyond the band: the equations are projected onto the signal subspace of the whole record,
+    U^H W H(shifted) V = Lambda U^H W H V, and perturbed to first order by what each block has of covariances (Doehler & Mevel, MSSP 38
+    (2013) 346), blocks taken as independent.
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
@@ -140,15 +160,16 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
 
 def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
     mean = np.mean(band.covariances, axis=0)
-    left, values, right = np.linalg.svd(hankel(mean, rows, _SKIPPED))
-    orders = range(2, min(len(values) // 2, _HIGHEST) + 1)
-    poles = tuple(_poles(band, left[:, :order] * np.sqrt(values[:order]), order, mean.shape[1]) for order in orders)
+    (weight, inverse), (before, _) = _roots(band.weighed, rows), _roots(np.conj(band.weighed.swapaxes(1, 2)), rows)
+    left, values, right = np.linalg.svd(weight @ hankel(mean, rows, _SKIPPED) @ before)
+    highest = min(len(values) // 2, _HIGHEST)
+    found = inverse @ left[:, :highest] * np.sqrt(values[:highest])
+    poles = tuple(_poles(band, found[:, :order], order, mean.shape[1]) for order in range(2, highest + 1))
     diagram, candidates = stabilisation(poles, highest_damping)
     inside = [each for each in candidates if band.sweep.first <= each.pole.imag <= band.sweep.last]
     if not inside:
         return diagram, []
-    order = _order(poles, inside)
-    return diagram, _perturbed(band, left[:, :order], np.conj(right[:order].T), inside)
+    return diagram, _perturbed(band, weight @ left[:, :highest], before @ np.conj(right[:highest].T), inside)
 
 
 def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
@@ -160,18 +181,6 @@ def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
     kept = np.flatnonzero(np.real(values) < 0.0)
     kept = kept[np.argsort(np.imag(values)[kept])]
     return Poles(order, values[kept], shapes[kept] / np.linalg.norm(shapes[kept], axis=1, keepdims=True))
-
-
-def _order(poles: Sequence[Poles], candidates: Sequence[Candidate]) -> int:
-    """The lowest order that has all candidates to a part of their half-widths, else the one that is nearest."""
-
-    def away(each: Poles) -> float:
-        if len(each.values) < len(candidates):
-            return np.inf
-        distance = [np.min(np.abs(each.values / (2.0 * np.pi) - one.pole)) / -one.pole.real for one in candidates]
-        return float(np.max(distance))
-
-    return next((each.order for each in poles if away(each) < _CLOSE), min(poles, key=away).order)
 
 
 def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[Shaken]:
