@@ -19,9 +19,10 @@ from flexstage.base.quantity import DISPLACEMENT, RATIO
 from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import STATED, WEIGHT, Critical, NothingGivesWayError, critical, unstable_motions
+from flexstage.models.nonlinear.critical import Critical, NothingGivesWayError, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import STATED, WEIGHT
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 REST = "at rest"

@@ -42,7 +42,8 @@ from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import design, designs, step_size
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.nonlinear.critical import WEIGHT, NothingGivesWayError
+from flexstage.models.nonlinear.critical import NothingGivesWayError
+from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport

@@ -110,7 +110,8 @@ def _columns(path: Path, about: LinearModel, strained: Strains, rest: State | No
     yield from (
         (f"platform.{name}", (twist[..., place], units[name])) for place, name in enumerate(COMPONENTS) if f"platform.{name}" != path.drive
     )
-    frequencies = np.sqrt(eigenvalues(about)) / (2.0 * np.pi)
+    with np.errstate(invalid="ignore"):  # of what is not stable
+        frequencies = np.sqrt(eigenvalues(about)) / (2.0 * np.pi)
     yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
     yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
     yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")

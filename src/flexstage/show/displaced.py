@@ -26,6 +26,12 @@ from flexstage.show.viewer.course import buckling_data, curves_of, limits, misal
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
+_MEANING = {
+    Kind.LIMIT.value: "the load cannot pass it",
+    Kind.BIFURCATION.value: "it leaves into another motion",
+    Kind.BEND.value: "it bends off into another motion, beside where a symmetric stage would branch",
+}
+
 
 def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
     """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
@@ -48,16 +54,20 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
     return _page(mechanism, "A stroke at large displacements", found.provenance, (Headline(to_typography(text), good), sections), data)
 
 
-def buckling_report(mechanism: Mechanism, found: CaseFactors) -> str:
-    """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first."""
+def buckling_report(mechanism: Mechanism, found: CaseFactors, after: tuple[Path, Stroke] | None = None) -> str:
+    """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first.
+
+    `after` is the path from where the least gives way.
+    """
     seen, least = scene(mechanism), found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
-    data = buckling_data(mechanism, known) if known else still_data(mechanism)
+    data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     moves = "The shape has no size of its own: it is drawn as large as the slider says."
     sections = (
         stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
-        caveat_section(mechanism, found.cautions),
+        None if after is None else _beyond_section(after[1]),
+        caveat_section(mechanism, found.cautions if after is None else (*found.cautions, *after[1].cautions)),
         drawing_section(mechanism, seen),
     )
     good = least is None or least.factor >= max(1.0, found.demand)
@@ -67,10 +77,9 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors) -> str:
 
 def _buckling_facts(case: CaseFactor) -> Facts:
     by_itself = case.found.link if case.found is not None else ""
-    passes = "the load cannot pass it" if case.kind == Kind.LIMIT.value else "it leaves into another motion"
     facts = [
         Fact("factor on the load", format_value(case.factor, "1"), to_typography(f"{case.load}, {case.place}")),
-        Fact("kind", case.kind, passes),
+        Fact("kind", case.kind, _MEANING[case.kind]),
         *([Fact("by itself", by_itself, "a flexure, its ends at rest")] if by_itself else []),
     ]
     return Facts(tuple(facts))
@@ -85,8 +94,8 @@ def _buckling_text(found: CaseFactors) -> str:
     return text if len(found.cases) == 1 else f"{text}, the least of {len(found.cases)} load cases and stroke ends"
 
 
-def buckling_tables(found: CaseFactors) -> list[Table]:
-    """Load cases and stroke ends with their factors; how the least gives way."""
+def buckling_tables(found: CaseFactors, after: tuple[Path, Stroke] | None = None) -> list[Table]:
+    """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
     heads = ["load", "place", Column("factor"), "kind", "gives way"]
     rows = [[case.load, case.place, _factor_text(case), case.kind, case.gives_way or case.why] for case in found.cases]
     note = "Each load by itself, all else stays, the place too, where the stage counts as free under the force that brings it there."
@@ -94,7 +103,8 @@ def buckling_tables(found: CaseFactors) -> list[Table]:
     least = found.least
     if least is None:
         return [table]
-    return [table, matrix_table(f"Shape: {least.load}, {least.place}", shape_of(least))]
+    beyond = [] if after is None else [matrix_table("Beyond", after[1].along)]
+    return [table, matrix_table(f"Shape: {least.load}, {least.place}", shape_of(least)), *beyond]
 
 
 def _factor_text(case: CaseFactor) -> str:
@@ -107,6 +117,11 @@ def shape_of(case: CaseFactor) -> Matrix:
         return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
     shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
     return Matrix(shape, case.found.bodies, COMPONENTS, (TWIST_UNITS,) * len(case.found.bodies))
+
+
+def _beyond_section(found: Stroke) -> Section | None:
+    picture = to_svg(stroke_figure(curves_of(found.along), _flags(limits(found))), "beyond", "What the stage does beyond what gives way")
+    return section("Beyond", [Picture(picture, "Equilibria from where the least gives way, by the factor on its load.")])
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:

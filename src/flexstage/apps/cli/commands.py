@@ -83,7 +83,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("stroke", _ANALYSE, "Force, stiffness, parasitic motion, frequencies over a stroke.", f"{_CLI}.displaced:stroke",
             'flexstage stroke stage.toml --drive platform.x --to "50 um" --points 3'),
     Command("buckle", _ANALYSE, "How far a load may grow until the stage gives way.", f"{_CLI}.displaced:buckle",
-            'flexstage buckle stage.toml --load "platform.fz=-100 kN"'),
+            'flexstage buckle stage.toml --load "platform.fz=-100 kN" --beyond 3'),
     Command("misalign", _ANALYSE, "What a misaligned copy does to an over-constrained stage.", f"{_CLI}.displaced:misalign",
             "flexstage misalign stage.toml --copy B4 --about y --points 3"),
     Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_CLI}.accuracy:workspace",

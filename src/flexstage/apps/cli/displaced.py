@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from typing import Annotated
 
 import numpy as np
@@ -15,14 +16,17 @@ from flexstage.analysis.misalign import misalign as misaligned
 from flexstage.analysis.misalign import misalignments
 from flexstage.analysis.requirements import asked_factor
 from flexstage.analysis.stance import require_consistent
+from flexstage.analysis.stroke import Stroke
 from flexstage.analysis.stroke import stroke as over_stroke
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import ANGLE, LENGTH, RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import WEIGHT
+from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
@@ -104,6 +108,13 @@ def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int,
     return Course(drive, np.linspace(low, high, more[0]), more[1], (), 1.0)
 
 
+class Side(Enum):
+    """The two ways of a branch: with the shape that gives way, or the other way."""
+
+    ALONG = "along"
+    AGAINST = "against"
+
+
 @dataclass(frozen=True, eq=False)
 class Buckling:
     """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body.
@@ -117,6 +128,8 @@ class Buckling:
     link: str
     shape: Matrix
     cases: tuple[CaseFactor, ...]
+    beyond: Matrix | None = None
+    """Equilibria from there on, a row a point, along the factor."""
 
 
 def buckle(  # noqa: PLR0913 (its options)
@@ -129,6 +142,12 @@ def buckle(  # noqa: PLR0913 (its options)
     at: At = None,
     hold: Held = None,
     temperature: Warmth = None,
+    beyond: Annotated[
+        int, typer.Option("--beyond", metavar="N", min=0, help="Points to follow from where the least gives way, on its branch or on.")
+    ] = 0,
+    side: Annotated[
+        Side, typer.Option("--side", help="Which way the branch goes: along the shape that is told, or against it.")
+    ] = Side.ALONG,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
@@ -137,7 +156,8 @@ def buckle(  # noqa: PLR0913 (its options)
 ) -> None:
     """How far a load may grow until the stage gives way.
 
-    At large displacements: a limit, which the load cannot pass, or a bifurcation into another motion. All else stays, the weight too.
+    At large displacements: a limit, which the load cannot pass, a bifurcation into another motion, or a sharp bend of the path beside one.
+    All else stays, the weight too.
     Without --load and --at of every load case (weight, stated forces, what paths hold) at rest and at every end of paths and strokes.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
@@ -145,20 +165,35 @@ def buckle(  # noqa: PLR0913 (its options)
     cases = (_case(mechanism, asked),) if load or at or hold else load_cases(mechanism)
     found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
-    told = _buckling(found)
+    after = _beyond(found, cases, side, beyond) if beyond else None
+    told = _buckling(found, after)
     if report is not None:
-        save(report, buckling_report(mechanism, found), "--report")
+        save(report, buckling_report(mechanism, found, after), "--report")
     answer(
         "buckle",
         mechanism,
         lambda: told,
-        lambda: buckling_tables(found),
+        lambda: buckling_tables(found, after),
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        cautions=found.cautions if after is None else (*found.cautions, *after[1].cautions),
         beside=(report,),
     )
+
+
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: int) -> tuple[Path, Stroke]:
+    """From where the least case gives way on; refused where that needs something held."""
+    least = found.least
+    if least is None or least.found is None:
+        raise refuse("--beyond", "nothing gives way", "Leave it out, or name a larger load")
+    if least.found.state.held:
+        raise refuse(
+            "--beyond", f"the least factor is that of {least.load} at {least.place}, where force holds the stage", "Leave out --at"
+        )
+    grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
+    path = follow(least.found, grows, side=1.0 if side is Side.ALONG else -1.0, points=points)
+    return path, over_stroke(path)
 
 
 def _case(mechanism: Mechanism, asked: Place) -> LoadCase:
@@ -250,6 +285,7 @@ def _axis(about: str, shift: str) -> str:
     return axis if shift else f"r{axis}"
 
 
-def _buckling(found: CaseFactors) -> Buckling:
-    first = found.cases[0]
-    return Buckling(first.load, first.factor, first.kind, "" if first.found is None else first.found.link, shape_of(first), found.cases)
+def _buckling(found: CaseFactors, after: tuple[Path, Stroke] | None) -> Buckling:
+    first, along = found.cases[0], None if after is None else after[1].along
+    link = "" if first.found is None else first.found.link
+    return Buckling(first.load, first.factor, first.kind, link, shape_of(first), found.cases, along)

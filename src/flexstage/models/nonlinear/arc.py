@@ -19,6 +19,8 @@ _PROBE = 1e-3
 """Change of the factor by which its effect is told where more than inputs changes: along flexures weight is not linear in it."""
 _STRIDE, _LEAST = 0.1, 1e-3
 """Of the motion so far: the length of a step towards a whole load, and the least, quarter by quarter, that is tried."""
+_BEYOND, _TRIES = 1.01, 60
+"""Times the factor where it may have turned: passed that, it has not. And steps that are tried till then."""
 _FAR = 20.0
 """Times the length of a step that a correction may have."""
 
@@ -67,15 +69,39 @@ class Point:
 def follow_course(course: Course, begin: Point, length: float, points: int, *, into: Array | None = None) -> Iterator[Point]:
     """Up to `points` equilibria beyond `begin`, `length` apart in the motion of bodies, over the stage's size and in radians.
 
-    The first goes where the factor grows, or along the motion `into` (n,). Ends where none is found.
+    The first goes where the factor grows, or along the motion `into` (n,). Steps are shorter where a path bends so sharply that none is
+    found. Ends where none is found at a thousandth of the length.
     """
-    last = begin
-    for number in range(points):
-        after = _next(course, last, length, into if number == 0 else None)
+    last, width, found = begin, length, 0
+    while found < points and width >= _LEAST * length:
+        after = _next(course, last, width, None if found else into)
         if after is None:
-            return
-        last = after
-        yield last
+            width *= 0.25
+        else:
+            last, width, found = after, min(2.0 * width, length), found + 1
+            yield last
+
+
+def follow_to_turn(course: Course, begin: Point) -> tuple[Point, bool]:
+    """The point beyond `begin` from which the factor falls, with the step after it; or, and false, one well beyond, or the last."""
+    last, length = begin, _LEAST * begin.factor * float(np.linalg.norm(_rate(course, begin)))
+    for _ in range(_TRIES):
+        after = _next(course, last, length, None)
+        if after is None:
+            length *= 0.25
+        elif after.factor < last.factor:
+            return replace(last, step=after.step), True
+        elif after.factor > _BEYOND * begin.factor:
+            return after, False
+        else:
+            last, length = after, 2.0 * length
+    return last, False
+
+
+def _rate(course: Course, point: Point) -> Array:
+    """How bodies move (n,) by the factor at a point, lengths over the model's."""
+    system = assemble(course.model, point.found.pose, *course.at(point.factor))
+    return course.scale * _directions(course, point.found.pose, point.factor, system)[1]
 
 
 def _next(course: Course, last: Point, length: float, into: Array | None) -> Point | None:
@@ -128,9 +154,9 @@ def _one(pose: Pose, iterations: int, gap: float) -> Found:
     return Found(pose, np.array([Status.CONVERGED]), np.array([iterations]), np.array([gap]), np.ones(1))
 
 
-def first_point(course: Course, pose: Pose, factor: float) -> Point:
-    """A known equilibrium to begin from."""
-    return Point(_one(pose, 0, 0.0), factor, np.zeros(len(course.scale)))
+def first_point(pose: Pose, factor: float) -> Point:
+    """A known equilibrium of one case to begin from."""
+    return Point(_one(pose, 0, 0.0), factor, np.zeros(6 * (pose.position.shape[1] - 1) + pose.held.shape[1]))
 
 
 def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
@@ -147,10 +173,10 @@ def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Eff
 def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
     """One case: its load is followed from the share that was reached."""
     course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, effort)
-    last = first_point(course, found.pose, float(found.reached[0]))
+    last = first_point(found.pose, float(found.reached[0]))
     stride = _STRIDE
     for _ in range(effort.arcs):
-        after = next(follow_course(course, last, stride * _moved(course, last.found.pose), 1), None)
+        after = _next(course, last, stride * _moved(course, last.found.pose), None)
         if after is None:
             stride *= 0.25
             if stride < _LEAST:

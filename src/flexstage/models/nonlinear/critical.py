@@ -11,17 +11,14 @@ import scipy
 
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
+from flexstage.models.nonlinear.arc import Course, first_point, follow_to_turn
 from flexstage.models.nonlinear.condense import system
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import System, assemble
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort
+from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads
 from flexstage.models.nonlinear.summed import negative_pivots
 
-WEIGHT = "weight"
-"""The load that is the stage's own weight, payloads included."""
-STATED = "stated forces"
-"""The load that is all stated forces and preloads."""
 _FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
 _NEAR = Effort(halvings=0, iterations=12, arcs=0)
 """Each state starts from one beside it."""
@@ -36,10 +33,14 @@ class NothingGivesWayError(DesignError):
 
 
 class Kind(Enum):
-    """What happens at a critical load: a `LIMIT` that the load cannot pass, or a `BIFURCATION` into another way of giving."""
+    """What happens at a critical load: a `LIMIT` that it cannot pass, a `BIFURCATION` into another way of giving, or a sharp `BEND`.
+
+    A stage whose symmetry is not quite right bends off beside a bifurcation, to one side, and may bear more load so.
+    """
 
     LIMIT = "limit"
     BIFURCATION = "bifurcation"
+    BEND = "bend"
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +92,8 @@ def critical(  # noqa: PLR0913 (what stays, one by one)
     too (absent: all are) count as free under the force that holds them there.
 
     The factor doubles from 0.001, or from 1 where the state under the whole load is `known`, each state from the one before; the change of
-    `unstable_motions` is then found, to `tolerance`, as a zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Raises
+    `unstable_motions` is then found, to `tolerance`, as a zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Where
+    steps of load find no state beside the last one the path is followed by arc length: it turns, a limit, or bends sharply. Raises
     `DesignError` for a load that is nothing and for a stage that is unstable where that begins, `NothingGivesWayError` where nothing gives
     way up to `most`.
     """
@@ -151,7 +153,24 @@ def _close(search: _Search, low: float, high: float, last: State, tolerance: flo
                 high, close = middle, 0.03 * close
             else:
                 return _told(search, sharp, search.at(sharp, last), "")
-    return _told(search, 0.5 * (low + high), last, _inside(last))
+    own, factor = _inside(last), 0.5 * (low + high)
+    return _told(search, factor, last, own) if own else _where_lost(search, factor, last, low)
+
+
+def _where_lost(search: _Search, factor: float, last: State, low: float) -> Critical:
+    """A load beyond which steps find nothing near: its limit if the load turns there, else a bend of the path."""
+    top, turns = follow_to_turn(course_of(last, search.load, low, _NEAR), first_point(last.pose, low))
+    shape = top.step[: last.model.freedoms].reshape(-1, 6)
+    return Critical(factor, last.model.bodies, shape, Kind.LIMIT if turns else Kind.BEND, "", last)
+
+
+def course_of(start: State, load: Mapping[str, float], factor: float, effort: Effort) -> Course:
+    """The course of a load that changes by a factor, from a state that has it so many times."""
+    model = start.model
+    rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
+    gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))
+    begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
+    return Course(model, begun, start.hold, gain, 0.0 * start.hold.value, effort)
 
 
 def _zero(search: _Search, low: float, high: float, start: State, tolerance: float) -> float | None:

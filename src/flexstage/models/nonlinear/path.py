@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, Point, first_point, follow_course
-from flexstage.models.nonlinear.critical import WEIGHT, Kind, critical, unstable_motions
+from flexstage.models.nonlinear.critical import Critical, Kind, course_of, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
 from flexstage.models.nonlinear.newton import USUAL, join
 from flexstage.models.nonlinear.stage import Nonlinear
@@ -133,8 +133,8 @@ def trace(
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
-    course = _course(load, start, effort)
-    begin = first_point(course, start.pose, 0.0)
+    course = course_of(start, load, 0.0, effort)
+    begin = first_point(start.pose, 0.0)
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
 
 
@@ -164,33 +164,51 @@ def branch(
     given = critical(model, load, rest=rest, weight=weight)
     if given.kind is Kind.LIMIT:
         raise refuse("load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.trace")
-    if given.link:
-        advice = "Draw it as two parts with a light body between them"
-        raise refuse(given.link, f"at {given.factor:.6g} times the load it gives way between its ends, which rest", advice)
-    start = given.state
-    course = _course(load, start, effort, given.factor)
-    begin, others = first_point(course, start.pose, given.factor), np.zeros(len(course.scale) - model.freedoms)
-    into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
+    return beyond(given, load, side=side, step=step, points=points, effort=effort)
+
+
+def beyond(
+    given: Critical,
+    load: Mapping[str, float],
+    *,
+    side: float = 1.0,
+    step: float = 0.02,
+    points: int = 60,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria from where a load is critical, along the factor on it: on the branch that opens there, or past the limit or bend.
+
+    `given` is what `critical` found for the load; steps, points and `side` are as in `branch`; past a limit, or where the path bends, there
+    is one side only. Raises `DesignError` for the other one, where a flexure gives way by itself, its ends at rest, and where no
+    equilibrium is found.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> load = {"platform.fx": -1e3}
+    >>> given = critical(nonlinear(parallelogram()), load, weight=0.0)
+    >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
+    [6.066, 6.067, 6.071]
+    """
+    start, what = given.state, f"at {given.factor:.6g} times the load"
+    if given.kind is not Kind.BIFURCATION and side < 0.0:
+        raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
+    if given.link and given.kind is Kind.BIFURCATION:
+        raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
+    course, begin, into = course_of(start, load, given.factor, effort), first_point(start.pose, given.factor), None
+    if given.kind is Kind.BIFURCATION:
+        others = np.zeros(len(course.scale) - start.model.freedoms)
+        into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
     found = [begin, *follow_course(course, begin, step, points, into=into)]
     if len(found) == 1:
-        raise refuse("load", f"no equilibrium is found beside the bifurcation at {given.factor:.6g} times the load", "Try a smaller step")
+        raise refuse("load", f"no equilibrium is found beyond what gives way {what}", "Try a smaller step")
     return _along(course, found, start.held)
-
-
-def _course(load: Mapping[str, float], start: State, effort: Effort, factor: float = 0.0) -> Course:
-    """A load that changes by a factor, from a state that has it so many times."""
-    model = start.model
-    rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
-    gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], np.zeros(1))
-    begun = replace(start.loads, inputs=start.loads.inputs - factor * gain.inputs, gravity=start.loads.gravity - factor * gain.gravity)
-    return Course(model, begun, start.hold, gain, 0.0 * start.hold.value, effort)
 
 
 def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
     factors, count = np.array([each.factor for each in found]), len(found)
     loads, hold = course.at(0.0)
     inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
-    along = Loads(inputs, gravity, np.repeat(loads.constant, count))
+    along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
     whole = join([each.found for each in found])
     states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
     return Path("factor", factors, states, unstable_motions(states), held)

@@ -10,6 +10,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 
+WEIGHT = "weight"
+"""The load that is the stage's own weight, payloads included."""
+STATED = "stated forces"
+"""The load that is all stated forces and preloads."""
+
 
 class Status(IntEnum):
     """How a search for equilibrium ended."""

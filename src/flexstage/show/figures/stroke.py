@@ -37,14 +37,18 @@ def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
             each.plot(along.values, curve.values, color=SERIES[0])
             for point in np.flatnonzero(beyond):
                 each.axvspan(*_around(along.values, int(point)), color=FAIL, alpha=0.15, linewidth=0.0)
-            each.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name, fontsize=7)
-            each.set_xlabel(f"{along.name} [{along.unit}]", fontsize=7)
+            each.set_ylabel(_title(curve), fontsize=7)
+            each.set_xlabel(_title(along), fontsize=7)
             each.tick_params(labelbottom=True)
             each.xaxis.set_major_locator(MaxNLocator(4))
             each.yaxis.set_major_locator(MaxNLocator(4))
             each.yaxis.get_major_formatter().set_useOffset(False)
             each.set_ylim(*_span(each.get_ylim()))
     return figure
+
+
+def _title(curve: Curve) -> str:
+    return f"{curve.name} [{curve.unit}]" if curve.unit else curve.name
 
 
 def _span(limits: tuple[float, float]) -> tuple[float, float]:

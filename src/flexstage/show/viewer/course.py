@@ -61,11 +61,12 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
 
 
-def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor]) -> StageData:
-    """A stage as it gives way in load cases, drawn about its last stable state in each: one motion a case."""
+def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: tuple[Path, Stroke] | None = None) -> StageData:
+    """A stage as it gives way in load cases, drawn about its last stable state in each: one motion a case, and the path `after` one."""
     still = still_data(mechanism)
     told = [motion for number, case in enumerate(cases) if case.found is not None for motion in _gives_way(still, case, case.found, number)]
-    return replace(still, motions=tuple(told))
+    paths = [] if after is None else [_along(still, after[0].state, after[0].drive, after[1])]
+    return replace(still, motions=(*told, *paths))
 
 
 def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int) -> Iterator[Motion]:
