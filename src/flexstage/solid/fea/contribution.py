@@ -57,7 +57,7 @@ def contributions(space: Field, groups: Mapping[str, Array], basis: Array) -> It
     for alike in _group_by_law(found):
         together = np.any([group.elements for group in alike], axis=0)
         strained = _strain_operator(space, alike, basis)
-        forces, momenta = times(stiffness(space, together), strained), times(inertia(space, together), basis)
+        forces, momenta = times(stiffness(space, together), strained), inertia(space, together).times(basis)
         for group in alike:
             rows = np.flatnonzero(group.degrees)
             yield Contribution(group.name, rows, basis[rows], strained[rows], forces[rows], momenta[rows])

@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component, Interface
-from flexstage.solid.fea.field import Field, Solver, factorise, mean_motion, rigid, shift_stiffness, times, warping_motion
+from flexstage.solid.fea.field import Field, Inertia, Solver, factorise, mean_motion, rigid, shift_stiffness, times, warping_motion
 from flexstage.solid.fea.fineness import Hold
 from flexstage.spatial.frame import Frame
 
@@ -43,7 +43,7 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
-def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm, hold: Hold) -> Support:
+def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: Inertia, hold: Hold) -> Support:
     """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
 
     >>> from flexstage.solid.fea.bar import bar
@@ -57,10 +57,10 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
     100.0
     """
     if component.floats:
-        return _afloat(component, space, elastic, mass)
+        return _afloat(component, space, mass)
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    plain = factorise(space, shift_stiffness(space, elastic, mass, _SHIFT) if unsupported else elastic)
+    plain = factorise(space, shift_stiffness(space, _SHIFT) if unsupported else elastic)
     if not loose:
         faces = _face_motions(component.interfaces, space, elastic, plain)
         return Support(faces, _face_warpings([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
@@ -94,11 +94,11 @@ def middle(component: Component) -> Array:
     return next(iter(component.bodies.values()))
 
 
-def _afloat(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: ngsolve.BilinearForm) -> Support:
+def _afloat(component: Component, space: Field, mass: Inertia) -> Support:
     """What nothing holds: it moves rigidly, and all else has neither momentum nor angular momentum."""
     motion = rigid(space, Frame(np.eye(3), middle(component)))
-    plain = factorise(space, shift_stiffness(space, elastic, mass, _SHIFT))
-    return Support(motion, np.zeros((space.size, 0)), _held(plain, times(mass, motion).T)[1])
+    plain = factorise(space, shift_stiffness(space, _SHIFT))
+    return Support(motion, np.zeros((space.size, 0)), _held(plain, mass.times(motion).T)[1])
 
 
 def _face_motions(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
@@ -112,8 +112,10 @@ def _face_warpings(interfaces: Sequence[Interface], space: Field, elastic: ngsol
 
 def _static_motions(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
     """One face moved and all others held: u = R - K_ff^-1 K R."""
-    columns = [motion - solve(times(elastic, motion)) for motion in moved]
-    return np.hstack(columns) if columns else np.zeros((space.size, 0))
+    if not moved:
+        return np.zeros((space.size, 0))
+    motions = np.hstack(moved)
+    return motions - solve(times(elastic, motions))
 
 
 def _frame(interface: Interface) -> Frame:

@@ -6,12 +6,11 @@ held, to a wrench on each body and to each stroke: statics under these loads is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import ngsolve
 import numpy as np
-import scipy
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
@@ -21,8 +20,8 @@ from flexstage.solid.fea.component import Component, groups
 from flexstage.solid.fea.contribution import contributions
 from flexstage.solid.fea.field import (
     Field,
+    Inertia,
     Solver,
-    apply_form,
     degrees_of,
     field,
     inertia,
@@ -34,6 +33,7 @@ from flexstage.solid.fea.field import (
 )
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hold import is_rigid, middle, support
+from flexstage.solid.fea.krylov import lowest_modes
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.piece import span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
@@ -43,7 +43,6 @@ from flexstage.solid.fea.ties import End
 from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-13
-_EIGENVALUES = 1e-9
 _REACH = 0.5
 """How far around the end of a part without a shape a body's surface counts, over the least dimension of its solid there."""
 
@@ -53,7 +52,7 @@ class _Problem:
     component: Component
     field: Field
     stiffness: ngsolve.BilinearForm
-    inertia: ngsolve.BilinearForm
+    inertia: Inertia
     faces: Array
     warps: Array
     solve: Solver
@@ -84,8 +83,10 @@ def reduce_mesh(
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
     loads += [rows.T for rows in seats.values()]
     if reduction.residual:
-        loads.append(times(problem.inertia, problem.faces))
-    inner = _independent_columns(problem, [_modes(problem, reduction.modes, springs), *(problem.solve(load) for load in loads)])
+        loads.append(problem.inertia.times(problem.faces))
+    inner = _independent_columns(
+        problem, [_modes(problem, reduction.modes, springs), *([problem.solve(np.hstack(loads))] if loads else [])]
+    )
     basis = np.hstack([problem.faces, problem.warps, inner])
     return replace(_project(problem, basis, strokes, report), seats={number: rows @ basis for number, rows in seats.items()})
 
@@ -116,7 +117,7 @@ def _wrenches(problem: _Problem, body: str) -> Array:
     """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
     frame = Frame(np.eye(3), problem.component.bodies[body])
     motion = rigid(problem.field, frame)
-    momentum = apply_form(inertia(problem.field, _elements(problem, body), assemble=False), motion)
+    momentum = inertia(problem.field, _elements(problem, body)).times(motion)
     return momentum @ np.linalg.inv(motion.T @ momentum)
 
 
@@ -138,37 +139,25 @@ def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
     joined = problem.faces if springs is not None else problem.faces[:, :0]
     boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
     size = len(free) + joined.shape[1]
-    count = min(count, size - 2)
+    count = min(count, size)
+    result = np.zeros((problem.field.size, count))
     if count <= 0:
-        return np.zeros((problem.field.size, 0))
-
-    def motion(x: Array) -> Array:
-        full = joined @ x[len(free) :]
-        full[free] += x[: len(free)]
-        return full
+        return result
 
     def weighed(x: Array) -> Array:
-        force = times(problem.inertia, motion(x.ravel())[:, None])[:, 0]
-        return np.concatenate([force[free], joined.T @ force])
+        full = joined @ x[len(free) :]
+        full[free] += x[: len(free)]
+        force = problem.inertia.times(full)
+        return np.vstack([force[free], joined.T @ force])
 
     def inverse(force: Array) -> Array:
-        full = np.zeros(problem.field.size)
-        full[free] = force.ravel()[: len(free)]
-        return np.concatenate([problem.solve(full)[free], np.linalg.solve(boundary, force.ravel()[len(free) :])])
+        full = np.zeros((problem.field.size, force.shape[1]))
+        full[free] = force[: len(free)]
+        return np.vstack([problem.solve(full)[free], np.linalg.solve(boundary, force[len(free) :])])
 
-    start = np.random.default_rng(0).standard_normal(size)
-    if not np.any(weighed(start)):  # without mass there are no modes
-        return np.zeros((problem.field.size, 0))
-    mass, solve = (_operator(size, function) for function in (weighed, inverse))
-    # With OPinv the first argument is used for its shape only.
-    _, vectors = scipy.sparse.linalg.eigsh(solve, k=count, M=mass, sigma=0.0, OPinv=solve, v0=start, tol=_EIGENVALUES)  # pyright: ignore[reportArgumentType]
-    result = np.zeros((problem.field.size, count))
-    result[free] = vectors[: len(free)]
+    found = lowest_modes(weighed, inverse, size, count)
+    result[free, : found.shape[1]] = found[: len(free)]
     return result
-
-
-def _operator(size: int, function: Callable[[Array], Array]) -> scipy.sparse.linalg.LinearOperator:
-    return scipy.sparse.linalg.LinearOperator((size, size), matvec=function, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
 
 
 def _independent_columns(problem: _Problem, motions: list[Array]) -> Array:
@@ -196,12 +185,12 @@ def _project(problem: _Problem, basis: Array, strokes: Mapping[str, Array], repo
         elastic[name], mass[name] = _symmetrise(part.strained.T @ part.forces), _symmetrise(part.motions.T @ part.momenta)
         if name in component.bodies:
             motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
-            own = motion.T @ apply_form(inertia(space, wholes[name], assemble=False), motion)
+            own = motion.T @ inertia(space, wholes[name]).times(motion)
             bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetrise(own)
         else:
             resultants[name] = _sections(problem, names[name][0])[part.rows].T @ part.forces
     everything = rigid(space, identity())
-    carried = basis.T @ times(problem.inertia, everything)
+    carried = basis.T @ problem.inertia.times(everything)
     projected = {int(number): basis.T @ force for number, force in strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces) + component.floats,

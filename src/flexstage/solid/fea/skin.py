@@ -6,13 +6,18 @@ from typing import Any
 
 import ngsolve
 import numpy as np
+from scipy import sparse
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.field import Field, strain
+from flexstage.solid.fea.field import Field, hooke
 from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.solid.fea.superelement import Skin
 
-_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+_VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+_FROM_VOIGT = [0, 1, 2, 5, 3, 4]
+"""Stresses as xx, yy, zz, xy, yz, zx, from the order of a medium's law."""
+_AT_ONCE = 32
+"""Motions that are worked out at once."""
 
 _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
 """Points within a triangle, in the order of its corners."""
@@ -40,21 +45,51 @@ def skin(space: Field, basis: Array) -> Skin:
     used, triangles = np.unique(corners, return_inverse=True)
     triangles = triangles.reshape(corners.shape)
     places = np.array([mesh.vertices[int(number)].point for number in used]) / MILLIMETRES
-    points = mesh.MapToAllElements(ngsolve.IntegrationRule([(1, 0), (0, 1), (0, 0)], [0.0, 0.0, 0.0]), ngsolve.BND)
+    behind = np.array([mesh[face.faces[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)], dtype=int)
     within = mesh.MapToAllElements(ngsolve.IntegrationRule(_WITHIN, [0.0, 0.0, 0.0]), ngsolve.BND)
-    function = ngsolve.GridFunction(space.space)
-    tension = space.stress(MILLIMETRES * strain(function))
-    wanted = ngsolve.BoundaryFromVolumeCF(ngsolve.CoefficientFunction(tuple(tension[i, j] for i, j in _PAIRS)))
-    motion = np.empty((len(used), 3, basis.shape[1]), dtype=np.float32)
-    stress = np.empty((len(used), 6, basis.shape[1]), dtype=np.float32)
+    gradient = _gradient(space, corners, behind, within)
+    laws = np.array([hooke(medium) for medium in space.meshed.media])[_media(space)[behind]]
     weights = _weights(within)
-    shares = _sum_by_vertex(triangles, weights, len(used))
-    for number in range(basis.shape[1]):
-        function.vec.FV().NumPy()[:] = basis[:, number]
-        motion[triangles.ravel(), :, number] = function(points)
-        found = np.einsum("ab,tbc->tac", _CONTINUED, np.asarray(wanted(within)).reshape(-1, 3, 6)).reshape(-1, 6)
-        stress[..., number] = _sum_by_vertex(triangles, weights * found, len(used)) / shares
+    average = _mean_by_vertex(triangles, weights[:, 0])
+    columns, points = basis.shape[1], 3 * len(behind)
+    motion = basis.reshape(3, -1, columns)[:, used].transpose(1, 0, 2).astype(np.float32)  # a vertex has a function of its own
+    stress = np.empty((len(used), 6, columns), dtype=np.float32)
+    for first in range(0, columns, _AT_ONCE):
+        part = basis[:, first : first + _AT_ONCE]
+        moved = part.reshape(3, -1, part.shape[1]).transpose(1, 0, 2).reshape(-1, 3 * part.shape[1])
+        slopes = (gradient @ moved).reshape(points, 3, 3, -1)  # by point, derivative, component, column
+        strains = np.stack([slopes[:, i, j] if i == j else slopes[:, i, j] + slopes[:, j, i] for i, j in _VOIGT], axis=1)
+        found = np.einsum("tij,tpjc->tpic", laws, strains.reshape(len(behind), 3, 6, -1))
+        ends = np.einsum("ab,tbic->taic", _CONTINUED, found)[:, :, _FROM_VOIGT]
+        stress[..., first : first + _AT_ONCE] = (average @ ends.reshape(points, -1)).reshape(len(used), 6, -1)
     return Skin(places, triangles, motion, stress, surface_owners(mesh, space.meshed.owner))
+
+
+def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> sparse.csr_matrix:
+    """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind."""
+    scalar, mesh = space.space.components[0], space.meshed.mesh
+    turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
+    inverse = MILLIMETRES * np.linalg.inv(np.asarray(turned).reshape(len(behind), 3, 3, 3))
+    weights = np.array([(a, b, 1.0 - a - b) for a, b in _WITHIN])
+    values: list[Array] = []
+    columns: list[Array] = []
+    for triangle, number in enumerate(behind):
+        element = ngsolve.ElementId(ngsolve.VOL, int(number))
+        members = [vertex.nr for vertex in mesh[element].vertices]
+        places = [members.index(corner) for corner in corners[triangle]]
+        function = scalar.GetFE(element)
+        share = np.zeros((3, 4))
+        share[:, places] = weights
+        slopes = [np.array(function.CalcDShape(*point[:3]).NumPy()) @ own for point, own in zip(share, inverse[triangle], strict=True)]
+        values.append(np.stack(slopes).transpose(0, 2, 1).ravel())
+        columns.append(np.tile(np.array(scalar.GetDofNrs(element)), 9))
+    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) // 9 for each in columns], 9))])
+    return sparse.csr_matrix((np.concatenate(values), np.concatenate(columns), starts), shape=(9 * len(behind), scalar.ndof))
+
+
+def _media(space: Field) -> Array:
+    """The medium (index) of each element."""
+    return np.array([int(element.mat.rpartition(" ")[2]) for element in space.meshed.mesh.Elements(ngsolve.VOL)])
 
 
 def _weights(points: Any) -> Array:
@@ -63,10 +98,11 @@ def _weights(points: Any) -> Array:
     return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
 
 
-def _sum_by_vertex(triangles: Array, values: Array, count: int) -> Array:
-    total = np.zeros((count, values.shape[1]))
-    np.add.at(total, triangles.ravel(), values)
-    return total
+def _mean_by_vertex(triangles: Array, weights: Array) -> sparse.csr_matrix:
+    """What makes weighted means at vertices of values at the corners of all triangles."""
+    count = int(triangles.max()) + 1
+    shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
+    return sparse.csr_matrix((shares, (triangles.ravel(), np.arange(triangles.size))), shape=(count, triangles.size))
 
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:

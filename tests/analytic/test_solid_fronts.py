@@ -1,0 +1,80 @@
+"""Factors front by front against dense linear algebra and NGSolve's own, and lowest modes by blocks against dense ones."""
+
+from __future__ import annotations
+
+import ngsolve
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from flexstage.solid.fea.bar import bar
+from flexstage.solid.fea.field import factorise, field, grid, inertia, stiffness
+from flexstage.solid.fea.fineness import Fineness
+from flexstage.solid.fea.frontal import Matrix, dissect, factorise_fronts
+from flexstage.solid.fea.krylov import lowest_modes
+from flexstage.solid.fea.mesh import mesh_component
+
+ORDER = 3
+SPACE = field(mesh_component(bar(), Fineness(order=ORDER, block=1.0)), ["foot"], ORDER)
+FREE = np.flatnonzero(SPACE.free)
+ELASTIC = stiffness(SPACE)
+
+
+def dense() -> np.ndarray:
+    result = np.zeros((SPACE.size, SPACE.size))
+    rows, columns, values = (np.array(each) for each in ELASTIC.mat.COO())
+    result[rows, columns] = values
+    return result
+
+
+def test_motions_are_those_of_the_other_solver() -> None:
+    forces = np.random.default_rng(1).standard_normal((SPACE.size, 5))
+    forces[~SPACE.free] = 0.0
+    found = factorise(SPACE, ELASTIC)(forces)
+    inverse = ELASTIC.mat.Inverse(SPACE.space.FreeDofs(), inverse="sparsecholesky")
+    x, y = ngsolve.BaseVector(SPACE.size), ngsolve.BaseVector(SPACE.size)
+    x.FV().NumPy()[:] = forces[:, 0]
+    inverse.Mult(x, y)
+    np.testing.assert_allclose(found[:, 0], y.FV().NumPy(), rtol=0, atol=1e-9 * np.abs(found[:, 0]).max())
+    law = dense()[np.ix_(FREE, FREE)]
+    assert np.abs(law @ found[FREE] - forces[FREE]).max() < 1e-13 * np.abs(law).max() * np.abs(found).max() * 100.0
+    assert not found[~SPACE.free].any()
+
+
+def test_every_node_is_eliminated_once_and_its_traces_lie_beyond() -> None:
+    order = dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0])
+    assert sorted(order.nodes) == list(np.flatnonzero(SPACE.free.reshape(3, -1)[0]))
+    assert order.fronts[0].first == 0
+    assert [front.last for front in order.fronts[:-1]] == [front.first for front in order.fronts[1:]]
+    assert all((front.beyond >= front.last).all() for front in order.fronts)
+    assert not len(order.fronts[-1].beyond)
+    assert len(order.fronts) > 4
+
+
+def test_what_is_not_definite_is_refused() -> None:
+    values, columns, starts = ELASTIC.mat.CSR()
+    matrix = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), -np.asarray(values))
+    with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
+        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), matrix)
+
+
+def test_lowest_modes_are_the_dense_ones() -> None:
+    mass, solve = inertia(SPACE), factorise(SPACE, ELASTIC)
+
+    def full(x: np.ndarray) -> np.ndarray:
+        result = np.zeros((SPACE.size, x.shape[1]))
+        result[FREE] = x
+        return result
+
+    found = lowest_modes(lambda x: mass.times(full(x))[FREE], lambda x: solve(full(x))[FREE], len(FREE), 8)
+    law, carried = dense()[np.ix_(FREE, FREE)], mass.times(np.eye(SPACE.size)[:, FREE])[FREE]
+    values, _ = eigh(law, carried, subset_by_index=(0, 7))
+    np.testing.assert_allclose(np.diag(found.T @ law @ found), values, rtol=1e-8)
+    np.testing.assert_allclose(found.T @ carried @ found, np.eye(8), atol=1e-9)
+
+
+def test_a_mass_of_low_rank_has_as_many_modes() -> None:
+    few = np.zeros((30, 1))
+    few[:2] = 1.0
+    assert lowest_modes(lambda x: few * x, lambda x: x, 30, 5).shape == (30, 2)
+    assert lowest_modes(lambda x: 0.0 * x, lambda x: x, 30, 5).shape == (30, 0)
