@@ -14,11 +14,11 @@ PATIENCE = 120.0
 
 
 class Page:
-    """One window: `told` are the newest pushes by kind, `counts` how many of each there were."""
+    """One window: `told` are the newest pushes by kind, `counts` how many of each there were, `engine` all that the engine did."""
 
     def __init__(self, connection):
         self.connection = connection
-        self.told, self.counts, self.bytes = {}, {}, 0
+        self.told, self.counts, self.bytes, self.engine = {}, {}, 0, []
         self._number = self.revision = 0
         self._answers = {}
         self._news = asyncio.Event()
@@ -35,6 +35,7 @@ class Page:
                 self._answers[message.to].set_result(message)
             else:
                 self.told[kind] = message
+                self.engine += [message.state] if kind is say.Engine else []
             self._news.set()
 
     def begin(self, kind, **fields):

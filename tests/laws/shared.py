@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flexstage.models import ideal as _ideal
 from flexstage.models import lumped as _lumped
-from tests.conftest import FULL
+from tests.conftest import FULL, QUICK
 
 _KEPT = 800
 """Models kept at a time: of the stages that laws share, and of what they were last turned into."""
@@ -20,18 +20,21 @@ ideal = lru_cache(maxsize=_KEPT)(_ideal.ideal)
 lumped = lru_cache(maxsize=_KEPT)(_lumped.lumped)
 
 
+_STORED = settings().max_examples if QUICK else 100
+"""Stages of a store: enough that every kind is among them."""
+
+
 class Shared:
-    """In the quick tests a strategy called without arguments gives stages of a common store, as many as a law has examples.
+    """In the usual tests a strategy called without arguments gives stages of a common store, at least as many as a law has examples.
 
     So a law of stages alone is still tried on that many different ones, and `test_all_kinds_are_drawn` says that every kind is among
-    them. The full tests draw stages anew for every law, ten times as many. `fresh` is the strategy itself.
+    them. The full tests draw stages anew for every law, many times as many. `fresh` is the strategy itself.
     """
 
     def __init__(self, fresh: Callable[..., st.SearchStrategy[Any]]) -> None:
         self.fresh = fresh
-        count = settings().max_examples
-        self._store = cache(lambda: _drawn(fresh(), count))
-        self._stored = st.integers(0, count - 1).map(lambda number: self._store()[number])
+        self._store = cache(lambda: _drawn(fresh(), _STORED))
+        self._stored = st.integers(0, _STORED - 1).map(lambda number: self._store()[number])
 
     def __call__(self, *arguments: Any, **named: Any) -> st.SearchStrategy[Any]:
         return self.fresh(*arguments, **named) if FULL or arguments or named else self._stored
