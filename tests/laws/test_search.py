@@ -46,7 +46,7 @@ from flexstage.control.study.setup import (
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.goal import Kind, Tuning
-from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another
+from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another, variants
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.wish import Wish
 
@@ -140,7 +140,18 @@ def test_a_delay_margin_is_held_in_every_loop_of_the_shipped_stage(bandwidth):
     tuned = make_controller(given, given.plant.coordinates.strokes).tuning
     found = margins(closed(given.plant, tuned, 0.0), Cut.POSE)
     assert min(each.delay.value for each in found.channels) >= 3e-4
+    assert np.min(bandwidths(closed(given.plant, tuned, 0.0)).rejection) > 160.0  # also rz, which no floor shakes
     assert all(peaks(closed(given.plant, tuned, offset), Cut.POSE).sensitivity.value <= 2.0 for offset in (-0.02, 0.0, 0.02))
+
+
+def test_delays_are_tried_at_every_turn_up_to_the_one_asked_for():
+    """A mode far above the crossing may be unstable with half the delay, and stable with all of it."""
+    later, frequencies = 3e-4, np.array([10.0, 1485.0])
+    late = [-np.angle(each.factor(frequencies)) for each in variants(Wish(delay_margin=later)) if each.later]
+    assert np.ptp([one[0] for one in late]) < 1e-12  # 10 Hz turns by 1 deg at most
+    turned = np.sort([one[1] for one in late])
+    assert np.max(np.diff(turned)) <= 0.25 * np.pi + 1e-9
+    assert turned[-1] == pytest.approx(2.0 * np.pi * 1485.0 * 1.03 * later)
 
 
 def test_the_same_search_finds_the_same():

@@ -70,19 +70,27 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     require(_growth_findings(seen))
     if asked.kind is Kind.LQG:
         return _find_weights(seen, asked)
-    found = None
-    for tighter in _TIGHTER:
-        within = field(seen, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0)), asked.floor)
-        found = search(seen, within, asked.kind) if found is None else tighten(within, found)
-        if found is None:
-            break
+    for within, found in _rounds(seen, asked):
         controller = _controller(loops, within, found, asked)
         judged = _judge(seen, wish, controller)
-        if judged.stable and judged.peak <= wish.sensitivity:
-            require(_unmet(seen, within, found))
+        if judged.stable and judged.peak <= wish.sensitivity and np.isfinite(far := excess(within, found)):
+            require(_unmet(seen, within, found, far))
             goal = Goal(None, wish.sensitivity, wish.spread)
             return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
     raise DesignError([_none_found(asked)])
+
+
+def _rounds(seen: View, asked: Asked) -> Iterator[tuple[Field, Found]]:
+    """What is found within the peak of S, then within lower ones: on from the last, and where that does not do, anew."""
+    found = None
+    for tighter in _TIGHTER:
+        within = field(seen, replace(asked.wish, sensitivity=1.0 + tighter * (asked.wish.sensitivity - 1.0)), asked.floor)
+        if found is not None:
+            yield within, tighten(within, found)
+        found = search(seen, within, asked.kind)
+        if found is None:
+            return
+        yield within, found
 
 
 def _find_weights(seen: View, asked: Asked) -> Tuning:
@@ -208,9 +216,9 @@ def _settling(within: Field, following: Array, tried: Prefilter) -> tuple[float,
     return max(float(np.max(steps)), _CALM - 0.01), float(outside[-1]) if len(outside) else 0.0
 
 
-def _unmet(seen: View, within: Field, found: Found) -> Iterator[Finding]:
-    """What was asked for and is not reached."""
-    wish, far = within.wish, excess(within, found)
+def _unmet(seen: View, within: Field, found: Found, far: float) -> Iterator[Finding]:
+    """What was asked for and is not reached, `far` being the excess."""
+    wish = within.wish
     stated = {"rejection": wish.rejection, "settling": wish.settling, "delay margin": wish.delay_margin or None}
     wanted = [name for name, value in stated.items() if value is not None]
     if far > _UNMET and wanted:

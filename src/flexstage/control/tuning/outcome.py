@@ -49,7 +49,7 @@ def bench(seen: View, within: Field) -> Bench:
     systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
     sense = seen.loops.sense
     plants = [
-        sense @ systems[each.offset].at(at) * (each.gain * np.exp(-2j * np.pi * at * each.later))[:, None, None]
+        sense @ systems[each.offset].at(at) * each.factor(at)[:, None, None]
         for each, at in zip(within.variants, within.frequencies, strict=True)
     ]
     offsets = tuple(within.variants[place].offset for place in _spread(within))

@@ -30,6 +30,8 @@ _LOOSER, _LATER = 1.5, 8.0
 
 Both are finite so that the descent sees an edge before it is passed: at 8, L is an eighth from -1, at a delay 3 % above the one asked for.
 """
+_TURNS = 0.25 * np.pi * np.arange(1, 8)
+"""Turns at which delays are tried: a mode of gain 1.08 encircles -1 over 44 deg of them, one of less gain comes nearer to it than 1/8."""
 _SETTLED = 6.0
 """Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced.
 
@@ -69,6 +71,9 @@ _COUPLED = 0.5
 """|g_ij g_ji / (g_ii g_jj)| above which loops are searched for together: the interaction at which a loop's own plant changes by half."""
 _NOISIER = 1.65
 """How much more noise a balance takes than what is quiet and already rejects far."""
+_LAME = 0.7
+"""Share of the farthest start's rejection that quiet ones have at least in a balance. What no floor shakes is quietest where it does least:
+such loops are made quiet again, rejecting nearly as far."""
 _AMBITION, _BACK = 1.0, 0.8
 """What is wanted at first: 0.3 of the first mode's frequency, or this share of what the calm start rejects, with all bounds kept."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
@@ -100,12 +105,20 @@ _CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
 
 @dataclass(frozen=True)
 class Variant:
-    """Where the plant may be: modes by `offset` off, commands `gain` times as large, `later` [s]; and the `limit` of |S| there."""
+    """Where the plant may be: modes by `offset` off, commands `gain` times as large, `later` [s]; and the `limit` of |S| there.
+
+    What is late turns by `turn` [rad] at most: a mode far above the crossing may be unstable with less delay than one that it bears.
+    """
 
     offset: float
     gain: float
     later: float
     limit: float
+    turn: float = np.inf
+
+    def factor(self, frequencies: Array) -> Array:
+        """By what the plant's response is multiplied at frequencies [Hz]."""
+        return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 
 def variants(wish: Wish) -> tuple[Variant, ...]:
@@ -118,12 +131,12 @@ def variants(wish: Wish) -> tuple[Variant, ...]:
     near = (-spread, spread) if spread else ()
     far = (-STABLE * spread, STABLE * spread) if spread else ()
     gains = (1.0 - wish.gain, 1.0 + wish.gain) if wish.gain else ()
-    delays = (0.5 * wish.delay_margin, wish.delay_margin) if wish.delay_margin else ()
+    turns = (*_TURNS, np.inf) if wish.delay_margin else ()
     return (
         *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
         *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
         *(Variant(0.0, gain, 0.0, limit) for gain in gains),
-        *(Variant(0.0, 1.0, 1.03 * later, _LATER) for later in delays),
+        *(Variant(0.0, 1.0, 1.03 * wish.delay_margin, _LATER, turn) for turn in turns),
     )
 
 
@@ -156,7 +169,9 @@ def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum]) -> Field:
     systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
     own = _frequencies(seen, max(each.offset for each in cases))
     frequencies = np.stack([own * (1.0 + each.offset) for each in cases])
-    plants = np.stack([_moved(sense @ systems[each.offset].at(at) @ drive, at, each) for each, at in zip(cases, frequencies, strict=True)])
+    plants = np.stack(
+        [sense @ systems[each.offset].at(at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
+    )
     lines = _lines(seen)
     slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -wish.spread, wish.spread) if wish.spread else (0.0,))])
     weights = np.sqrt(np.gradient(own))[:, None]
@@ -171,10 +186,6 @@ def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum]) -> Field:
         heard=_heard(seen) * weights,
         alike=tuple(_first_alike(plants, loop) for loop in range(len(seen.loops.names))),
     )
-
-
-def _moved(plants: Array, frequencies: Array, case: Variant) -> Array:
-    return plants * (case.gain * np.exp(-2j * np.pi * frequencies * case.later))[:, None, None]
 
 
 def _lines(seen: View) -> Array:
@@ -342,11 +353,25 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
     if not starts:
         return None
     far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
-    calm = [_fit_together(within, each, _all_bounds(within, [0.0] * len(shapes)), _CALM)[0] for each in far]
-    calm.sort(key=lambda each: (not _is_calm(within, each), -_far(within, each)))
+    calm = _calmed(within, far, 0.0)
+    if within.wish.aim is Aim.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
+        calm = _calmed(within, far, _BACK)
     if within.wish.aim is Aim.BALANCE and _is_calm(within, calm[0]):
         within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
     return _climb(within, [*calm, *far], _wanted(within, calm[0], least))
+
+
+def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
+    """Starts made quiet that still reject up to a share of what they did; first those that keep what is asked for, the farthest of them."""
+    calm = [
+        _fit_together(within, each, _all_bounds(within, [share * far for far in _rejections(within, each)]), _CALM)[0] for each in starts
+    ]
+    return sorted(calm, key=lambda each: (not _is_calm(within, each), -_far(within, each)))
+
+
+def _rejections(within: Field, found: Found) -> list[float]:
+    """How far each loop rejects [Hz]."""
+    return [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
 
 
 def _is_calm(within: Field, found: Found) -> bool:
@@ -361,14 +386,12 @@ def _noises(within: Field, found: Found) -> list[float]:
 
 def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
     """Nearly what loops reject already, or part of what they should at `least` [Hz]."""
-    far = [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
-    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(far, least, strict=True)]
+    return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(_rejections(within, found), least, strict=True)]
 
 
 def _far(within: Field, found: Found) -> float:
     """How far loops reject, the geometric mean."""
-    each = [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
-    return float(np.exp(np.mean(np.log(each))))
+    return float(np.exp(np.mean(np.log(_rejections(within, found)))))
 
 
 def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
