@@ -577,10 +577,11 @@ study = pathlib.Path(words[1]).read_text()
 design = next(line for line in study.splitlines() if line.startswith("design")).split('"')[1]
 assert '"0.8 mm"' in pathlib.Path(words[1]).with_name(design).read_text()
 print("progress 0.2500 3.0 a quarter", file=sys.stderr, flush=True)
-print("said", flush=True)
+print(f"read {pathlib.Path(words[1]).with_name(design)}, {words[1]}", flush=True)
+print(f"Wrote {words[words.index('--report') + 1]}", flush=True)
 while "--wait" in words:
     time.sleep(0.1)
-pathlib.Path(words[words.index("--report") + 1]).write_text("<html>swept</html>")
+pathlib.Path(words[words.index("--report") + 1]).write_text(f"<html>{design}</html>")
 """
 
 
@@ -600,15 +601,36 @@ async def test_a_job_tells_its_progress_and_opens_its_report(page, studio):
         await page.ask(say.Cancel, job=second.job)
         await page.until(lambda page: _job(page, first).report)
         assert [_job(page, each).state for each in (first, second, third)] == ["done", "cancelled", "cancelled"]
-        assert _job(page, first).said == ("said",)
+        file = studio.session.stored.path.name
+        assert _job(page, first).said == (f"read {file}, study",)  # by the user's names, without files of the studio's own
         answer = await _got(studio.port, _job(page, first).report)
         assert b"Content-Security-Policy: sandbox" in answer
-        assert answer.endswith(b"<html>swept</html>")
+        assert answer.endswith(f"<html>{file}</html>".encode())
         for _ in range(100):  # a job that is ended cleans up by itself
             if not list(jobs_folder(studio).glob(".*studio*")):
                 break
             await asyncio.sleep(0.05)
         assert not list(jobs_folder(studio).glob(".*studio*"))
+    finally:
+        jobs.program = real
+
+
+SET_UP = """
+import pathlib, sys
+words = sys.argv[1:]
+print(pathlib.Path(words[words.index("--setup") + 1]).read_text())
+pathlib.Path(words[words.index("--report") + 1]).write_text("")
+"""
+
+
+@on_page
+async def test_a_loop_has_the_set_up_that_was_written(page, studio):
+    jobs = studio.session.jobs
+    jobs.program, real = ("-c", SET_UP), jobs.program
+    try:
+        said = await page.ask(say.Run, command="loop", study='format = "flexstage loop 1"', record=None, options=())
+        await page.until(lambda page: _job(page, said).report)
+        assert _job(page, said).said == ('format = "flexstage loop 1"',)
     finally:
         jobs.program = real
 

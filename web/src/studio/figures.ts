@@ -105,7 +105,7 @@ export class FigureTable {
     const against = this.studio.against.value;
     const pick = h("select", { ariaLabel: "Compare with", change: (event: Event) => this.studio.against.set((event.target as HTMLSelectElement).value) });
     pick.append(new Option("file", "", false, against === ""), ...pins.map((each) => new Option(each, each, false, against === each)));
-    fill(this.pins, h("label", {}, "old: ", pick), h("span", { className: "buttons" }, ...PINS.map((name) => this.pin(name, pins.includes(name)))));
+    fill(this.pins, h("label", {}, "old: ", pick), h("span", { className: "buttons" }, ...[...PINS, ...pins.filter((each) => !PINS.includes(each))].map((name) => this.pin(name, pins.includes(name)))));
   }
 
   private pin(name: string, isKept: boolean): HTMLElement {

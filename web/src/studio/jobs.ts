@@ -37,6 +37,9 @@ const FORMS: Record<Command, Form> = {
   analyse: { title: "Report", about: "Writes the report: everything at once, with the turning model, in one file.", study: null, record: false },
 };
 
+/** What the last design that an optimisation found is pinned as. */
+const OPTIMUM = "optimum";
+
 export class JobsPane {
   private readonly root = byId("pane-jobs");
   private readonly list = h("div", { id: "jobs" });
@@ -83,23 +86,25 @@ export class JobsPane {
   }
 
   private show(said: Jobs): void {
-    fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each)));
+    const best = said.jobs.filter((each) => each.command === "optimise" && each.state === "done").at(-1);
+    fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each, each === best && this.studio.state.value?.pins.includes(OPTIMUM))));
     for (const each of said.jobs) if (this.live.has(each.job) && isOver(each)) this.studio.tell(`${each.command}: ${each.state}.`, each.state === "failed");
     for (const each of said.jobs) if (isOver(each) && this.wanted.delete(each.job) && each.report) showReport(each.report, "Report");
     this.live = new Set(said.jobs.filter((each) => !isOver(each)).map((each) => each.job));
   }
 
-  private job(each: JobState): HTMLElement {
+  private job(each: JobState, hasOptimum = false): HTMLElement {
     const isLive = !isOver(each);
     const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
     const cancel = h("button", { type: "button", click: () => this.studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
     const address = each.report;
     const show = address && h("button", { type: "button", click: () => showReport(address, `Report of ${each.command}`) }, "show the report");
+    const take = h("button", { type: "button", title: "make it the present design; undo takes it back", click: () => this.studio.ask({ kind: "recall", name: OPTIMUM }) }, "take the optimum");
     const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
     return h(
       "article",
       { className: `job ${each.state}` },
-      h("h3", {}, `${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, show),
+      h("h3", {}, `${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, show, hasOptimum && take),
       isLive && bar,
       h("p", {}, each.text),
       each.said.length > 0 && h("pre", {}, each.said.join("\n")),

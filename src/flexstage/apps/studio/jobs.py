@@ -21,6 +21,7 @@ from flexstage.base.store import make_temporary_folder, write
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx")
 _STUDIES = ("sweep", "optimise")
+_ENDS = {"optimise": "done; the optimum is pinned among the figures"}
 _LINES = 12
 """Last lines of what a job said that are kept."""
 _PATIENCE = 3.0
@@ -38,6 +39,14 @@ class _Job:
     state: say.JobState
     process: asyncio.subprocess.Process | None = None
     files: list[Path] = field(default_factory=list[Path])
+    names: dict[str, str] = field(default_factory=dict[str, str])
+    """Names of files that are the studio's own, and what they are to whoever reads of them; longer ones first."""
+
+    def as_read(self, text: str) -> str:
+        """What the command said, by the names that the user knows."""
+        for own, known in self.names.items():
+            text = text.replace(own, known)
+        return text
 
 
 class Jobs:
@@ -136,13 +145,14 @@ class Jobs:
         if job.state.state == "cancelled":
             return
         if report.is_file():
+            report.write_text(job.as_read(report.read_text(encoding="utf-8")), encoding="utf-8")
             name = f"{secrets.token_urlsafe(18)}.html"
             self.reports[name] = report
             job.state = replace(job.state, report=f"/report/{name}")
         better = self._folder / f"{job.number}.toml"
         if code == 0 and better.is_file():
-            self._optimum(better.read_text(encoding="utf-8"))
-        state, text = ("done", "done") if code in (0, 1) else ("failed", f"ended with exit code {code}")
+            self._optimum(job.as_read(better.read_text(encoding="utf-8")))
+        state, text = ("done", _ENDS.get(job.request.command, "done")) if code in (0, 1) else ("failed", f"ended with exit code {code}")
         self._set(job, replace(job.state, state=state, text=text, fraction=1.0 if state == "done" else None, left=None))
 
     def _arguments(self, job: _Job) -> list[str]:
@@ -150,26 +160,30 @@ class Jobs:
         request, folder = job.request, self._folder or Path()
         design = self._path
         if not design.is_file() or Stored.read(design).text != job.text:
-            design = self._beside(job, f".{self._path.stem}.studio-{os.getpid()}-{job.number}.toml", job.text)
+            design = self._beside(job, "toml", self._path.name, job.text)
         if request.command == "identify":
             return [str(self._path.parent / (request.record or "")), "--stage", str(design)]
+        if request.command == "loop" and request.study is not None:
+            return [str(design), "--setup", str(self._beside(job, "loop.toml", "set-up", request.study))]
         if request.command not in _STUDIES:
             return [str(design)]
-        study = self._beside(job, f".{self._path.stem}.studio-{os.getpid()}-{job.number}.study.toml", _study(request.study or "", design))
+        study = self._beside(job, "study.toml", "study", _study(request.study or "", design, self._path.stem))
         ending = "h5" if request.command == "sweep" else "toml"
         return [str(study), "--output", str(folder / f"{job.number}.{ending}")]
 
-    def _beside(self, job: _Job, name: str, text: str) -> Path:
-        path = self._path.parent / name
+    def _beside(self, job: _Job, ending: str, known: str, text: str) -> Path:
+        """A file beside the design while the job runs, which is `known` by another name to whoever reads of it."""
+        path = self._path.parent / f".{self._path.stem}.studio-{os.getpid()}-{job.number}.{ending}"
         job.files.append(path)
+        job.names |= {str(path): known, path.name: known}
         return write(path, text)
 
     def _hear(self, job: _Job, line: str) -> None:
         if not line.startswith(f"{LINE} "):
-            if line.strip():
-                job.state = replace(job.state, said=(*job.state.said, line)[-_LINES:])
+            if line.strip() and not (self._folder and line.startswith(f"Wrote {self._folder}")):  # its results stand in the page
+                job.state = replace(job.state, said=(*job.state.said, job.as_read(line))[-_LINES:])
             return
-        _, fraction, left, text = [*line.split(" ", 3), ""][:4]
+        _, fraction, left, text = [*job.as_read(line).split(" ", 3), ""][:4]
         with contextlib.suppress(ValueError):
             self._set(job, replace(job.state, text=text, fraction=float(fraction), left=None if left == "-" else float(left)))
 
@@ -202,8 +216,8 @@ def _kill(process: asyncio.subprocess.Process) -> None:
             process.kill()
 
 
-def _study(text: str, design: Path) -> str:
-    """A study's text about that design."""
+def _study(text: str, design: Path, name: str) -> str:
+    """A study's text about that design; of that name where it has none."""
     import tomlkit  # takes long to import
     from tomlkit.exceptions import TOMLKitError
 
@@ -212,6 +226,7 @@ def _study(text: str, design: Path) -> str:
     except TOMLKitError as error:
         raise refuse("study", f"this is not TOML: {error}", "Mend that line") from None
     document["design"] = design.name
+    document.setdefault("name", name)
     return tomlkit.dumps(document)
 
 
