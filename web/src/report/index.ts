@@ -2,9 +2,10 @@
 
 import { addPlays, joinViewers } from "./play";
 import { addReadings } from "./read";
-import { addTools } from "./tables";
+import { addTools, fadeEdges } from "./tables";
 
 addTools();
+fadeEdges();
 addPlays();
 joinViewers();
 addReadings();

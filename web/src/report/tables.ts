@@ -94,3 +94,12 @@ export function addTools(): void {
     frame.after(tools);
   }
 }
+
+/** What is wider than its place fades where more of it is: a number that is cut would be read as another one. */
+export function fadeEdges(): void {
+  for (const frame of document.querySelectorAll<HTMLElement>("div.table")) {
+    const mark = (): void => void frame.classList.toggle("more", frame.scrollWidth - frame.clientWidth - frame.scrollLeft > 2);
+    frame.addEventListener("scroll", mark, { passive: true });
+    new ResizeObserver(mark).observe(frame);
+  }
+}

@@ -1,6 +1,13 @@
 // Curves over the points of a path, one small figure each, with a cursor that stands where the picture does. What is beyond a limit is red.
 
 import { written } from "./player";
+
+/** Numbers with as many digits as tell them apart, where they are not the same. */
+function apart(ends: number[]): string[] {
+  const told = ends.map(written), [low, high] = ends;
+  for (let digits = 4; low !== high && told[0] === told[1] && digits <= 6; digits++) told.splice(0, 2, ...ends.map((each) => String(Number(each.toPrecision(digits)))));
+  return told;
+}
 import type { Course, Curve, Response } from "./types";
 import { floats } from "./unpack";
 
@@ -50,7 +57,8 @@ class Small {
     name.title = curve.name;
     caption.append(name, this.told);
     range.className = "range";
-    range.append(...(known.length ? [low, high] : []).map((each) => Object.assign(document.createElement("span"), { textContent: written(Math.abs(each) > ROUNDING * large ? each : 0) })));
+    const ends = (known.length ? [low, high] : []).map((each) => (Math.abs(each) > ROUNDING * large ? each : 0));
+    range.append(...(span > 0 ? apart(ends) : ends.map(written)).map((each) => Object.assign(document.createElement("span"), { textContent: each.replace("-", "−") })));
     this.element.append(caption, svg, range);
     this.listen(svg);
   }
