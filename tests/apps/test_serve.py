@@ -22,7 +22,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.gcs import COMMANDS, LONGEST, Session, spelled
-from flexstage.control.serve.running import RunningLoop
+from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.serve.server import CLIENTS, HOST, Served
 from flexstage.control.serve.waves import segment
 from flexstage.control.simulation.noise import noise_series

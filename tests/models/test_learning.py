@@ -9,15 +9,25 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.control.closed import loop
-from flexstage.control.learning.learn import robust_band
-from flexstage.control.learning.responses import readings, through
+from flexstage.control.learning.learn import fade_ends, filter_path, robust_band
+from flexstage.control.learning.responses import Band, readings, through
 from flexstage.control.learning.shaper import zv, zvd
 from flexstage.control.study.checks import setup_findings
-from flexstage.control.study.choices import Following
+from flexstage.control.study.choices import Axis, Following
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
-from flexstage.control.study.setup import ControllerSetup, FollowSetup, GaugeSetup, LoopSetup, Motion, RasterMotion, SineMotion, StepMotion
+from flexstage.control.study.setup import (
+    ControllerSetup,
+    DampingSetup,
+    FollowSetup,
+    GaugeSetup,
+    LoopSetup,
+    Motion,
+    RasterMotion,
+    SineMotion,
+    StepMotion,
+)
 from flexstage.control.system import select
 
 
@@ -86,6 +96,34 @@ def test_a_raster_is_learned_down_to_what_does_not_repeat():
     assert found.tracking.at("x", "true rms") < 0.3 * runs(replace(given, setup=replace(given.setup, follow=None)), control, closed)[
         0
     ].tracking.at("x", "true rms")
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("damping", [None, DampingSetup(ratio=0.2)])
+def test_the_shipped_stage_learns_a_raster_along_z(damping):
+    """Within ten passes down to twice what does not repeat, in the band that is told, along all six motions."""
+    path = RasterMotion(length=5e-6, pitch=1e-6, lines=6, speed=0.1e-3, acceleration=0.01, fast=Axis.Z, slow=Axis.X)
+    quiet = GaugeSetup(noise=1e-10, resolution=0.0)
+    given, control, closed = closed_of(
+        "double-triangle", trajectory=path, gauges=quiet, follow=FollowSetup(Following.LEARNING), damping=damping
+    )
+    seen = runs(given, control, closed)[0].learned
+    assert len(seen.rms) == 11
+    assert seen.rms[0, 2] > 50.0 * seen.noise[2]
+    assert np.all(seen.above_noise < 2.0)
+    assert np.all(seen.beyond > 0.0)
+
+
+def test_noise_that_begins_at_once_is_faded():
+    """Without it, what a band without phase sees before the begin comes back at the end, and all between is off by as much."""
+    count, window = 4000, slice(1000, 3000)
+    gains = 100.0 * Band(300.0).gains(np.fft.rfftfreq(count, 1e-4))
+    noise = np.random.default_rng(1).normal(size=(count, 1))
+    noise[0] = 5.0
+    faded = noise * fade_ends(count, window)[:, None]
+    inside = filter_path(gains, faded)[window]
+    assert inside == pytest.approx(np.fft.irfft(gains[:, None] * np.fft.rfft(faded, axis=0), n=count, axis=0)[window], abs=0.1)
+    assert abs(np.mean(filter_path(gains, noise)[window] - inside)) > 10.0
 
 
 def test_the_inverse_leaves_nothing_of_a_slow_path():

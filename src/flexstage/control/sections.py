@@ -27,6 +27,7 @@ from flexstage.control.tables import (
     learning_table,
     loop_table,
     margin_table,
+    repetition_table,
     step_table,
     tracking_table,
 )
@@ -205,7 +206,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 def time_section(found: LoopStudy) -> Section | None:
     """Steps and trajectories."""
-    blocks = [step_table(found.runs), tracking_table(found.runs), learning_table(found.runs), heat_table(found.runs)]
+    blocks = [each(found.runs) for each in (step_table, tracking_table, learning_table, repetition_table, heat_table)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:

@@ -172,6 +172,26 @@ def learning_table(runs: Sequence[Run]) -> Table | None:
     return make_table("Learning", heads, rows, notes=[*notes, last])
 
 
+def repetition_table(runs: Sequence[Run]) -> Table | None:
+    """What repetitive control came to along a path, by motion; `None` where there is none."""
+    rows, notes = [], []
+    for run in runs:
+        if (seen := run.repeated) is None:
+            continue
+        for index, (name, unit) in enumerate(zip(seen.coordinates, seen.units, strict=True)):
+            values = (seen.rms[0, index], seen.rms[len(seen.rms) // 2, index], seen.rms[-1, index], seen.beyond[index])
+            rows.append((run.course.name, Cell(name, Mark.STRONG), *(format_value(float(value), unit, 3) for value in values)))
+        period, end = number(seen.period, 4), number(seen.band, 4)
+        left = f"a period leaves {percent(seen.contraction, 3)} at most of what repeats, all modes up to {percent(seen.spread)} off"
+        notes.append(f"{run.course.name}: {len(seen.rms)} periods of {period} s, gain {seen.gain:g} up to {end} Hz; {left}.")
+        notes.append(f"What does not repeat is made up to {number(seen.amplifies, 3)} times as large between the harmonics of {period} s.")
+    heads = ["path", "motion", "first period", "halfway", "last period", "beyond the band"]
+    last = (
+        "Rms errors as the gauges tell them, the first three in the band. What is beyond it is not learnable: there the loop is not known."
+    )
+    return make_table("Repetitive control", heads, rows, notes=[*notes, last]) if rows else None
+
+
 def law_table(found: LoopStudy) -> Table | None:
     """The controller's numbers, loop by loop; `None` of one that is not made of single loops."""
     loops = found.controller.loops

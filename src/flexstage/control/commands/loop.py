@@ -464,6 +464,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.step_table(found.runs)
     yield tables.tracking_table(found.runs)
     yield tables.learning_table(found.runs)
+    yield tables.repetition_table(found.runs)
     yield tables.heat_table(found.runs)
     yield None if found.static_errors is None else errors.rest_table(found.static_errors)
     yield errors.noise_table(found)

@@ -18,6 +18,8 @@ from flexstage.control.system import System
 
 _CONTRACTS = 0.8
 """What is learned anew in a pass stays below this share of what was there, wherever the modes lie."""
+_MOST_INVERTED = 100.0
+"""The most that is asked of a loop for what is wanted of it: beyond, noise alone would take the strokes to their ends."""
 _OFFSETS, _LINES, _AROUND = 5, 600, 15
 _REPEATS = 4
 """Runs of what was learned, by which what repeats and what does not are told apart."""
@@ -62,17 +64,19 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     """The band in which learning with a gain contracts, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, all modes by up to `spread` off.
 
     P are the loop's responses with its modes moved, P^ those of the model (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
-    below 1 at all frequencies makes the error fall from pass to pass). Raises `DesignError` where they differ too much even at rest.
+    below 1 at all frequencies makes the error fall from pass to pass). It ends where P^^-1 passes 100 too. Raises `DesignError` where
+    responses differ too much even at rest.
     """
     plant, step = closed.plant, closed.step or 1.0
-    lines = _lines(closed, spread)
+    lines = line_grid(closed, spread)
     back = np.linalg.inv(readings(plant, control, lines))
     scale = plant.coordinates.scale
     worst = np.zeros(len(lines))
     for offset in np.linspace(-spread, spread, _OFFSETS):
         left = np.eye(len(scale)) - gain * readings(plant, control, lines, float(offset)) @ back
         worst = np.maximum(worst, np.linalg.norm(left * scale[:, None] / scale, ord=2, axis=(1, 2)))
-    beyond = np.flatnonzero(worst > _CONTRACTS)
+    asked = np.linalg.norm(back * scale[:, None] / scale, ord=2, axis=(1, 2))
+    beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
     if len(beyond) and beyond[0] == 0:
         what = f"with all modes up to {100.0 * spread:g} % off, a pass would leave {worst[0]:.3g} times the error at {lines[0]:.3g} Hz"
         raise refuse("follow", what, "Take a smaller gain or spread")
@@ -81,7 +85,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     return Robust(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
 
 
-def _lines(closed: Loop, spread: float) -> Array:
+def line_grid(closed: Loop, spread: float) -> Array:
     """Frequencies up to 0.45 of the rate, densely around each mode wherever it may lie."""
     highest, modes, ratios = 0.45 / (closed.step or 1.0), closed.plant.frequencies, np.minimum(closed.plant.ratios, 0.3)
     around = [
@@ -128,15 +132,15 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
     inside = filtered > 0.0
     back[inside] = filtered[inside, None, None] * lesson.gain * np.linalg.inv(readings(closed.plant, control, frequencies[inside]))
     target, added, rms = wanted_readings(closed, control, wanted, robust.band.end), np.zeros_like(wanted), []
-    error = target
+    error, fades = target, fade_ends(len(wanted), lesson.window)[:, None]
     for number in range(lesson.passes + 1):
-        error = target - run(wanted + added, number)
-        rms.append(_rms(_filtered(whole, error)[lesson.window]))
+        error = (target - run(wanted + added, number)) * fades
+        rms.append(_rms(filter_path(whole, error)[lesson.window]))
         if number < lesson.passes:
-            added = _filtered(filtered, added) + through(back, error)
+            added = filter_path(filtered, added) + through(back, error)
     final = [run(wanted + added, lesson.passes + each) for each in range(1, _REPEATS)]
-    again = np.array([_filtered(whole, target - each)[lesson.window] for each in final])
-    every = np.concatenate([_filtered(whole, error)[None, lesson.window], again])
+    again = np.array([filter_path(whole, (target - each) * fades)[lesson.window] for each in final])
+    every = np.concatenate([filter_path(whole, error)[None, lesson.window], again])
     rms[-1] = np.sqrt(np.mean(every**2, axis=(0, 1)))
     return Learned(
         coordinates=closed.plant.coordinates.names,
@@ -147,12 +151,23 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
         spread=lesson.spread,
         rms=np.array(rms),
         noise=np.sqrt(np.mean(np.var(every, axis=0, ddof=1), axis=0)),
-        beyond=_rms((error - _filtered(whole, error))[lesson.window]),
+        beyond=_rms((error - filter_path(whole, error))[lesson.window]),
         commanded=wanted + added,
     )
 
 
-def _filtered(gains: Array, path: Array) -> Array:
+def fade_ends(count: int, window: slice) -> Array:
+    """1 within a window of so many samples, fading to 0 at both ends: noise that begins at once is no path from nothing to rest.
+
+    >>> fade_ends(5, slice(2, 4)).tolist()
+    [0.0, 0.5, 1.0, 1.0, 0.0]
+    """
+    places = np.arange(count)
+    before, after = (window.start - places) / max(window.start, 1), (places - window.stop + 1) / max(count - window.stop, 1)
+    return 0.5 * (1.0 + np.cos(np.pi * np.clip(np.maximum(before, after), 0.0, 1.0)))
+
+
+def filter_path(gains: Array, path: Array) -> Array:
     """A path (n, f) through real gains without phase."""
     return through(gains[:, None, None] * np.eye(path.shape[1]), path)
 

@@ -11,8 +11,8 @@ from flexstage.base.number import Array
 from flexstage.control.closed import loop
 from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
-from flexstage.control.serve.running import RunningLoop
 from flexstage.control.simulation.noise import noise_series
+from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.stability import require_stable
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.serve.running import Stretch
+from flexstage.control.simulation.running import Stretch
 
 TABLES, POINTS = 8, 262_144
 """Tables, and points that they share alike."""

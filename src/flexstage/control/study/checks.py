@@ -18,6 +18,7 @@ from flexstage.control.study.setup import (
     HystereticStacks,
     LoopSetup,
     RasterMotion,
+    SineMotion,
     SpiralMotion,
     StepMotion,
     TrajectorySetup,
@@ -49,7 +50,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
     yield from _gauges(setup.gauges)
     yield from _floor(setup.floor)
     yield from _controller(setup.controller)
-    yield from _follow(setup.follow) if setup.follow is not None else ()
+    yield from _follow(setup.follow, setup.trajectory) if setup.follow is not None else ()
     yield from _damping(setup.damping) if setup.damping is not None else ()
     yield from _compensation(setup)
     yield from _hysteresis(setup.hysteresis) if setup.hysteresis is not None else ()
@@ -129,7 +130,10 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
 
 
-def _follow(found: FollowSetup) -> Iterator[Finding]:
+def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
+    if found.by is Following.REPETITIVE and not isinstance(path, RasterMotion | SineMotion):
+        what = f"a {path.TOLD_BY[1]} has no period that comes again"
+        yield Finding("follow.by", what, "Take a raster or a sine as trajectory, or follow by learning or the inverse")
     shaped = found.by in (Following.ZV, Following.ZVD)
     if shaped and found.frequency is None:
         yield Finding(

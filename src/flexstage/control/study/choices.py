@@ -75,6 +75,8 @@ class Following(Enum):
     """The path through the inverse of the model's loop."""
     LEARNING = "learning"
     """What passes over it have taught."""
+    REPETITIVE = "repetitive"
+    """What the periods before have taught, as it runs."""
     ZV = "zv"
     """The path through a shaper that leaves a mode at rest."""
     ZVD = "zvd"

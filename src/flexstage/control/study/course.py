@@ -36,13 +36,18 @@ _MOST_SAMPLES = 5_000_000
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A trajectory by name, and its `duration` [s]; `moved` are the coordinates it is about, `plane` two to be shown in plan."""
+    """A trajectory by name, and its `duration` [s]; `moved` are the coordinates it is about, `plane` two to be shown in plan.
+
+    It does the same again every `period` [s], from when to when `repeats` [s] says (absent: it does not).
+    """
 
     name: str
     trajectory: Annotated[Trajectory, INNER]
     moved: tuple[str, ...]
     duration: Annotated[float, TIME]
     plane: Annotated[tuple[str, str] | None, INNER] = None
+    period: Annotated[float | None, INNER] = None
+    repeats: Annotated[tuple[float, float] | None, INNER] = None
 
     @property
     def is_step(self) -> bool:
@@ -81,7 +86,7 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
         pair = (commanded.fast.value, commanded.slow.value)
         sizes = (commanded.length, commanded.pitch, commanded.lines, commanded.speed, commanded.acceleration)
         raster = Raster(*sizes, coordinates=pair)
-        yield Course("raster", raster, pair, raster.duration, pair)
+        yield Course("raster", raster, pair, raster.duration, pair, raster.period, raster.repeats)
     elif isinstance(commanded, SpiralMotion):
         pair = (commanded.first.value, commanded.second.value)
         way = np.pi * commanded.radius**2 / commanded.pitch
@@ -91,7 +96,8 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
     elif isinstance(commanded, SineMotion):
         sizes = _stated_motions(commanded.by) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
-        yield Course("sine", sine, tuple(sizes), commanded.periods / commanded.frequency)
+        period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
+        yield Course("sine", sine, tuple(sizes), end, period=period, repeats=(_FADED * period, end))
     else:
         yield _course_of_file(commanded)
 

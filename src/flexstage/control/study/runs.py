@@ -20,14 +20,16 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
 from flexstage.control.creep_plant import add_creep
 from flexstage.control.learning.learn import Learned
+from flexstage.control.learning.repeat import Repeated
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
 from flexstage.control.simulation.run import simulate
+from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
 from flexstage.control.study.course import Course, course_cautions, course_findings, courses, sampled_course
-from flexstage.control.study.follow import follow
+from flexstage.control.study.follow import Runner, follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
 from flexstage.mechanism.expand import expand
@@ -76,7 +78,8 @@ class CoilHeat:
 class Run:
     """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
 
-    `learned` is what passes over it have taught, where the set-up asks for that, `heat` what force actuators bear by name.
+    `learned` is what passes over it have taught, `repeated` what its periods have, where the set-up asks for that; `heat` what force
+    actuators bear by name.
     """
 
     course: Course
@@ -85,6 +88,7 @@ class Run:
     tracking: Matrix
     cautions: Annotated[tuple[Finding, ...], INNER] = ()
     learned: Learned | None = None
+    repeated: Repeated | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
 
     @property
@@ -158,8 +162,10 @@ def runs(
         if (known := given.setup.follow) is None:
             found.append(_run(given, course, computed, cautions, poses=poses, rest=rest))
         else:
-            learnt = follow(known, closed, control.system, poses, rest=rest, run=_in_noise(given, computed, rest))
-            found.append(_run_of(course, learnt.simulated, computed, cautions, learnt.learned))
+            runner = Runner(_in_noise(given, computed, rest), _running(given, computed, rest))
+            learnt = follow(known, closed, control.system, poses, course, rest=rest, runner=runner)
+            run = _run_of(course, learnt.simulated, computed, cautions)
+            found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated))
     return tuple(_with_heat(given, run) for run in found)
 
 
@@ -280,15 +286,20 @@ def _simulate_noise(given: ResolvedSetup, computed: Machine, poses: Array, rest:
 
     The floor begins to shake gently, not at once.
     """
-    lead = int(rest / given.step)
-    noise = noise_series(given.plant, given.floor, lead + len(poses), given.setup.seed)
-    if not noise and not np.any(held):
+    lead, series = _noise(given, len(poses), rest)
+    if not series and not np.any(held):
         return simulate(computed, poses)
     before = np.zeros((lead, poses.shape[1])) + held
-    share = np.clip(np.arange(lead + len(poses)) / max(lead, 1), 0.0, 1.0)
-    gentle = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-    series = {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
     return _after(simulate(computed, np.concatenate([before, poses]), series), lead)
+
+
+def _noise(given: ResolvedSetup, count: int, rest: float) -> tuple[int, Mapping[str, Array]]:
+    """How many samples before some others the loop gets used to its noise in, and the noise of all of them."""
+    lead = int(rest / given.step)
+    noise = noise_series(given.plant, given.floor, lead + count, given.setup.seed)
+    share = np.clip(np.arange(lead + count) / max(lead, 1), 0.0, 1.0)
+    gentle = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    return lead, {name: values * gentle if name.startswith("ground.") else values for name, values in noise.items()}
 
 
 def _after(found: Simulated, lead: int) -> Simulated:
@@ -313,9 +324,21 @@ def _in_noise(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[
     return run
 
 
-def _run_of(course: Course, found: Simulated, computed: Machine, cautions: tuple[Finding, ...], learned: Learned | None = None) -> Run:
+def _running(given: ResolvedSetup, computed: Machine, rest: float) -> Callable[[int], Callable[[Array], Array]]:
+    """Loops that run on, in the noise of pass 0, from when they have got used to it."""
+
+    def begin(count: int) -> Callable[[Array], Array]:
+        lead, series = _noise(given, count, rest)
+        running, held = RunningLoop(computed, series), np.ones(len(computed.names), dtype=bool)
+        running.advance(np.zeros((lead, len(computed.names))), held)
+        return lambda commanded: running.advance(commanded, held).pose
+
+    return begin
+
+
+def _run_of(course: Course, found: Simulated, computed: Machine, cautions: tuple[Finding, ...]) -> Run:
     figures = step_figures(found, _BAND) if course.is_step else None
-    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)), learned)
+    return Run(course, found, figures, tracking(found), (*cautions, *_range_cautions(course, found, computed)))
 
 
 def _range_cautions(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:

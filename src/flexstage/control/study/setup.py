@@ -222,8 +222,9 @@ class DampingSetup:
 class FollowSetup:
     """What the loop is asked to follow instead of the trajectory itself, which is known beforehand; the error is against the trajectory.
 
-    `by` the inverse of the model's loop or by learning (so many `passes` of a `gain`), both in the band that holds with all modes up to
-    `spread` off; or by a shaper for a mode at `frequency` of a `damping` ratio.
+    `by` the inverse of the model's loop, by learning (so many `passes` of a `gain`) or by repetitive control of that gain (of a path that
+    repeats: a raster, a sine), all in the band that holds with all modes up to `spread` off; or by a shaper for a mode at `frequency` of a
+    `damping` ratio.
     """
 
     by: Following

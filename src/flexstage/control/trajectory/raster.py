@@ -79,6 +79,17 @@ class Raster:
         steps = self._entry + np.arange(self.lines) * (self.length / self.speed + self._turn_time)
         return self.start + steps
 
+    @property
+    def period(self) -> float:
+        """After this time [s] it does the same again, but for steps of the slow coordinate: a line to and a line fro, or one flown back."""
+        return (2.0 if self.scan is Scan.BOTH_WAYS else 1.0) * (self.length / self.speed + self._turn_time)
+
+    @property
+    def repeats(self) -> tuple[float, float]:
+        """From when to when it does [s]: from the begin of the first line to the end of the last."""
+        starts = self.line_starts
+        return float(starts[0]), float(starts[-1]) + self.length / self.speed
+
     def at(self, times: Array) -> Array:
         """Poses (n, 2) at `times` (n,) [s], fast coordinate first."""
         return self._pieces.at(np.asarray(times, dtype=float) - self.start)

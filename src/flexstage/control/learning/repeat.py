@@ -1,0 +1,223 @@
+"""Repetitive control: what comes again every period is taken away while a path runs, in the band where the loop is known well enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.quantity import FREQUENCY, TIME
+from flexstage.base.record import INNER, Along, Axes
+from flexstage.control.closed import Loop
+from flexstage.control.learning.learn import fade_ends, filter_path, line_grid, robust_band, wanted_readings
+from flexstage.control.learning.responses import Band, frequencies_of, readings
+from flexstage.control.system import System
+
+_MEMORY = 6.0
+"""How far the filters reach both ways, in periods of the end of the band."""
+_MOST_OF_PERIOD = 0.45
+_CONTRACTS, _LOWER, _WHOLE = 0.9, 0.85, 0.75
+_OFFSETS, _PHASES, _FINEST = 5, 16, 8
+
+
+@dataclass(frozen=True, eq=False)
+class Repeater:
+    """What is added to a path, d = z^-P (W d + L e) of the error e: `keep` (2m+1,) and `teach` (2m+1, f, f), without cause by m samples.
+
+    `period` P is counted in samples, its fraction lies in the filters; `band` is where W is 1. `contraction` is the largest ||W - L P|| of
+    these very filters over all frequencies, in lengths, all modes by up to a spread off: below 1 the loop with them is stable and what
+    repeats dies out (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353).
+    `amplifies` is the largest ||(I + W z) (I + (W - L P) z)^-1|| over |z| = 1: what it makes worse between the harmonics.
+    """
+
+    period: float
+    keep: Array
+    teach: Array
+    band: Band
+    contraction: float
+    amplifies: float
+
+    @property
+    def reach(self) -> int:
+        """Samples m that the filters reach both ways."""
+        return len(self.keep) // 2
+
+    def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
+        """Responses of W (n,) and L (n, f, f) as they act together with the period's whole samples, its fraction taken off."""
+        late = np.arange(-self.reach, self.reach + 1) + (np.floor(self.period + 0.5) - self.period)
+        turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
+        return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
+
+    def share_left(self, closed: Loop, control: System, frequencies: Array) -> Array:
+        """What is left (n, f, f) of an error that repeats at harmonics, (I - W) (I - W + L P)^-1 by the model: 0 where W is 1."""
+        own, (keep, teach) = np.eye(self.teach.shape[-1]), self.at(frequencies, closed.step or 1.0)
+        bare = own - keep[:, None, None] * own
+        return bare @ np.linalg.inv(bare + readings(closed.plant, control, frequencies) @ teach)
+
+
+def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
+    """Filters for a `period` [s], a `gain` of the loop's inverse, all modes up to `spread` off, in the widest band where they contract.
+
+    Filters of a finite reach reach beyond their band too: it ends lower than the band in which learning from pass to pass contracts. Raises
+    `DesignError` as `robust_band` does, and where the period is too short for filters of a band that holds a harmonic of it.
+    """
+    step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
+    lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
+    moved = [readings(closed.plant, control, lines, float(offset)) for offset in np.linspace(-spread, spread, _OFFSETS)]
+    while _WHOLE * end > 1.0 / period:
+        found = _repeater(closed, control, period, Band(end), gain)
+        kept, taught = found.at(lines, step)
+        own = kept[:, None, None] * np.eye(taught.shape[-1])
+        contraction = max(float(np.max(_norms(own - each @ taught, closed.plant.coordinates.scale))) for each in moved)
+        if contraction < _CONTRACTS:
+            worse = _amplification(own, own - moved[_OFFSETS // 2] @ taught, closed.plant.coordinates.scale)
+            return replace(found, contraction=contraction, amplifies=worse)
+        end *= _LOWER
+    said = f"no filters for a period of {period:.4g} s, whose first harmonic is {1.0 / period:.4g} Hz"
+    raise refuse(
+        "follow",
+        f"{said}, leave less of it than {_CONTRACTS:g} times",
+        "Take a longer period (a slower scan), a smaller gain or spread, or learn from pass to pass",
+    )
+
+
+def _repeater(closed: Loop, control: System, period: float, band: Band, gain: float) -> Repeater:
+    """Filters of a band, not proved yet."""
+    step = closed.step or 1.0
+    samples = period / step
+    reach = int(min(np.ceil(_MEMORY / (band.end * step)), _MOST_OF_PERIOD * samples))
+    keep, teach = _filters(closed, control, band, gain, reach=reach, early=float(np.floor(samples + 0.5) - samples))
+    return Repeater(samples, keep, teach, band, np.nan, np.nan)
+
+
+def _amplification(kept: Array, left: Array, scale: Array) -> float:
+    """The largest ||(I + W z) (I + (W - P L) z)^-1|| over |z| = 1, of W (n, f, f) and W - P L."""
+    own, turns = np.eye(left.shape[-1]), np.exp(2j * np.pi * np.arange(_PHASES) / _PHASES)
+    return max(float(np.max(_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
+
+
+def _norms(values: Array, scale: Array) -> Array:
+    return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
+
+
+def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: int, early: float) -> tuple[Array, Array]:
+    """Taps of Q and of Q gain P^^-1 from `reach` samples before to as many after, ahead by a part of a sample, their ends faded out."""
+    step, axes = closed.step or 1.0, len(closed.plant.coordinates.names)
+    count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
+    lines = np.fft.rfftfreq(count, step)
+    lines[0] = 1e-3 * lines[1]
+    gains = band.gains(lines) * np.exp(2j * np.pi * lines * step * early)
+    inside = np.abs(gains) > 0.0
+    back = np.zeros((len(lines), axes, axes), complex)
+    back[inside] = gain * gains[inside, None, None] * np.linalg.inv(readings(closed.plant, control, lines[inside]))
+    places = np.arange(-reach, reach + 1)
+    window = 0.5 * (1.0 + np.cos(np.pi * places / (reach + 1.0)))
+    keep, teach = (np.fft.irfft(each, n=count, axis=0)[places] for each in (gains, back))
+    return keep * window, teach * window[:, None, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Repeated:
+    """What repetitive control came to along a path, by the loop's `coordinates` in their `units`.
+
+    `rms` (periods, f) is the error of each `period` in the band up to `band` [Hz], as the gauges tell it, the first one without anything
+    learned; `beyond` (f,) that outside the band over the last period, which stays. `contraction` is the largest share of the error that a
+    period leaves, all modes by up to `spread` off; `amplifies` by how much it makes worse at most what does not repeat, between harmonics.
+    """
+
+    coordinates: tuple[str, ...]
+    units: tuple[str, ...]
+    period: Annotated[float, TIME]
+    band: Annotated[float, FREQUENCY]
+    contraction: float
+    amplifies: float
+    gain: float
+    spread: float
+    rms: Annotated[Array, Axes("periods", "coordinates")]
+    beyond: Annotated[Array, Along("coordinates")]
+    commanded: Annotated[Array, INNER]
+
+
+@dataclass(frozen=True, eq=False)
+class Repetition:
+    """A `period` [s] that a path repeats within a `window` of its samples."""
+
+    period: float
+    window: slice
+
+
+def repeat(
+    advance: Callable[[Array], Array],
+    closed: Loop,
+    control: System,
+    wanted: Array,
+    asked: Repetition,
+    *,
+    gain: float = 0.6,
+    spread: float = 0.02,
+) -> Repeated:
+    """Run along a true path (n, f), adding what the periods before have taught; `advance` runs on by what is commanded and tells the pose.
+
+    Only errors within the window are learned from, and nothing is added after it but for a fading. Raises `DesignError` as `repeater` does.
+    """
+    found = repeater(closed, control, asked.period, gain, spread)
+    target = wanted_readings(closed, control, wanted, found.band.end)
+    added, error = np.zeros_like(wanted), np.zeros_like(wanted)
+    learns, fades = _windows(len(wanted), asked.window, found.reach)
+    block = max(int(found.period + 0.5) - found.reach, 1)
+    for start in range(0, len(wanted), block):
+        stop = min(start + block, len(wanted))
+        added[start:stop] = _next(found, added, error * learns[:, None], start, stop) * fades[start:stop, None]
+        error[start:stop] = target[start:stop] - advance(wanted[start:stop] + added[start:stop])
+    return _repeated(found, closed, error, asked, gain=gain, spread=spread, commanded=wanted + added)
+
+
+def _windows(count: int, window: slice, fade: int) -> tuple[Array, Array]:
+    """Where errors are learned from, and where something is added, fading within some samples after it."""
+    places = np.arange(count)
+    learns = ((places >= window.start) & (places < window.stop)).astype(float)
+    after = np.clip((places - window.stop) / max(fade, 1), 0.0, 1.0)
+    return learns, 0.5 * (1.0 + np.cos(np.pi * after))
+
+
+def _next(found: Repeater, added: Array, error: Array, start: int, stop: int) -> Array:
+    """W d + L e one period before, for the samples from `start` to `stop`."""
+    first, last = start - int(found.period + 0.5) - found.reach, stop - int(found.period + 0.5) + found.reach
+    if last <= 0:
+        return np.zeros((stop - start, added.shape[1]))
+    before = np.zeros((max(-first, 0), added.shape[1]))
+    past, known = (np.concatenate([before, each[max(first, 0) : last]]) for each in (added, error))
+    kept = np.stack([scipy.signal.fftconvolve(column, found.keep, mode="valid") for column in past.T], axis=-1)
+    taught = [
+        sum(scipy.signal.fftconvolve(known[:, column], found.teach[:, row, column], mode="valid") for column in range(known.shape[1]))
+        for row in range(known.shape[1])
+    ]
+    return kept + np.stack(taught, axis=-1)
+
+
+def _repeated(found: Repeater, closed: Loop, error: Array, asked: Repetition, *, gain: float, spread: float, commanded: Array) -> Repeated:
+    whole = Band(_WHOLE * found.band.end)
+    error = error * fade_ends(len(error), asked.window)[:, None]
+    inside = filter_path(whole.gains(frequencies_of(error, closed.step or 1.0)), error)
+    starts = np.arange(asked.window.start, asked.window.stop - found.period + 1.0, found.period).round().astype(int)
+    length = round(found.period)
+    squares = [np.mean(inside[start : start + length] ** 2, axis=0) for start in starts]
+    last = (error - inside)[starts[-1] : starts[-1] + length]
+    return Repeated(
+        coordinates=closed.plant.coordinates.names,
+        units=closed.plant.coordinates.units,
+        period=asked.period,
+        band=whole.end,
+        contraction=found.contraction,
+        amplifies=found.amplifies,
+        gain=gain,
+        spread=spread,
+        rms=np.sqrt(np.array(squares)),
+        beyond=np.sqrt(np.mean(last**2, axis=0)),
+        commanded=commanded,
+    )
