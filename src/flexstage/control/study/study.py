@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, TypeVar
 
 import numpy as np
@@ -151,6 +151,9 @@ def loop_study(
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
     control = said.of(0.05, "tuning", lambda: make_controller(given, pose_gains(given, lost)))
+    if given.setup.modes is None and loop(given.whole, control.system).system.growth >= 0.0:  # modes that the loop was said not to feel
+        given = replace(given, plant=given.whole)
+        control = said.of(0.3, "tuning with all modes", lambda: make_controller(given, pose_gains(given, lost)))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)

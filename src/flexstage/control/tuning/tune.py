@@ -139,7 +139,8 @@ def _unreached(seen: View, task: Task, best: Attempt | None, wanted: float) -> F
         else "no other is reached either"
     )
     what = f"at {_three_digits(wanted)} Hz {_reason(task, best, wanted)}; {rest}"
-    ask = f"Ask for {_three_digits(top)} Hz or less" if reached else "Allow a higher peak of S"
+    more = f"Ask for more, up to {_three_digits(top)} Hz" if wanted < top else f"Ask for {_three_digits(top)} Hz or less"
+    ask = more if reached else "Allow a higher peak of S"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, task, wanted)}")
 
 
