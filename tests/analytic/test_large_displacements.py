@@ -22,6 +22,7 @@ from flexstage.beams.section import cowper_rectangle, rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
+from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear import summed
@@ -141,6 +142,21 @@ def test_a_column_that_shears_buckles_as_haringx_has_it():
     assert found.kind is Kind.BIFURCATION
     assert np.argmax(np.abs(found.shape[0])) in {1, 5}
     assert critical(cantilever(), {"platform.fx": -RIGIDITY}).factor == pytest.approx(euler, rel=1e-7)
+
+
+def test_bodies_one_by_one_warm_the_stage_as_all_of_it_together():
+    """Small temperatures add up, parts at the mean of their ends; of all bodies alike they are a uniform change, to the bit."""
+    stage = replace(parallelogram(), ground="aluminium", gravity=(0.0, 0.0, 0.0))
+    bodies = ("ground", *nonlinear(stage).bodies)
+
+    def moved(temperatures: dict[str, float]) -> np.ndarray:
+        return equilibrium(nonlinear(replace(stage, temperatures=temperatures))).twist()
+
+    together = moved({"all": 1e-3})
+    np.testing.assert_array_equal(together, equilibrium(nonlinear(stage, temperature=1e-3)).twist())
+    alone = sum(moved({name: 1e-3}) for name in bodies)
+    np.testing.assert_allclose(alone, together, rtol=1e-4, atol=1e-4 * np.max(np.abs(together)))
+    assert [str(each.where) for each in check(replace(stage, temperatures={"platfrom": 1.0}))] == ["temperatures.platfrom"]
 
 
 def test_a_heated_column_buckles_at_its_temperature():

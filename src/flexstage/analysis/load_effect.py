@@ -27,6 +27,7 @@ from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS
 
 _BENT = "what bends flexures that are not straight when free"
+_WARM = "its temperatures"
 FELT = 0.01
 """Change of a stiffness or a frequency from which results are those of the loaded stage."""
 _MODES = 6
@@ -34,7 +35,7 @@ _MODES = 6
 
 @dataclass(frozen=True, eq=False)
 class LoadEffect:
-    """By how much its dead load (weight, payloads, preloads, stated forces; curvature and warmth of its flexures) changes a stage.
+    """By how much its dead load (weight, payloads, preloads, stated forces; what is bent or warm) changes a stage.
 
     `change` is the largest relative change of the platform's stiffness along an axis or of one of the first frequencies, and `figure` which
     it is; where `figure` is empty it is a bound of any stiffness, from linearised buckling. `model` is small motions about the loaded state
@@ -97,8 +98,9 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     found = under_load(mechanism)
     if found is None or np.ndim(found.dead) or np.iscomplexobj(found.dead) or found.refusals:
         return None
-    bound, bent = _bound(found), any(_is_bent(part) for part in mechanism.parts.values())
-    cause = f"weight, payloads, forces and {_BENT}" if bent else LoadEffect.cause
+    causes = [*([_BENT] if any(map(_is_bent, mechanism.parts.values())) else []), *([_WARM] if _is_warm(mechanism) else [])]
+    bound, bent = _bound(found), bool(causes)
+    cause = f"weight, payloads, forces and {' and '.join(causes)}" if bent else LoadEffect.cause
     if bound < FELT and not bent:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)
@@ -134,10 +136,15 @@ def _is_bent(part: Part) -> bool:
     return bool(getattr(part, "is_bent", False))
 
 
+def _is_warm(mechanism: Mechanism) -> bool:
+    return any(np.any(np.real(each) != 0.0) for each in mechanism.temperatures.values())
+
+
 def _straight(mechanism: Mechanism) -> Mechanism:
-    """The stage with all its flexures straight when free."""
+    """The stage as it was made, with all its flexures straight when free."""
     parts = {name: getattr(part, "straight", part) for name, part in mechanism.parts.items()}
-    return replace(mechanism, parts=parts) if any(map(_is_bent, mechanism.parts.values())) else mechanism
+    changed = any(map(_is_bent, mechanism.parts.values())) or _is_warm(mechanism)
+    return replace(mechanism, parts=parts, temperatures={}) if changed else mechanism
 
 
 def _felt(mechanism: Mechanism) -> LoadEffect:

@@ -22,6 +22,7 @@ from flexstage.base.quantity import (
     RATE,
     RATIO,
     STIFFNESS,
+    TEMPERATURE,
     TIME,
 )
 from flexstage.mechanism.pattern import ORIGIN, Pattern, between, middle
@@ -35,6 +36,8 @@ GROUND = "ground"
 PLATFORM = "platform"
 NOT_GROWING = "none"
 """Said of the ground in place of a material: it does not grow with temperature."""
+EVERYWHERE = "all"
+"""Said in place of a body: the temperature of all that has none of its own."""
 
 BESIDE = {"beside": True}
 """Metadata of a field that has no key of its own in a file: formulas stand where the values do."""
@@ -235,8 +238,10 @@ class Mechanism(InNotebook, Description):
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
     (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
     `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
-    with (`none`: it does not grow). `packages` are those that its kinds of parts, gauges and measures come from, each perhaps with
-    versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they come out.
+    with (`none`: it does not grow). `temperatures` are changes since it was made, by body (`ground` too), and of `all` that has none of its
+    own; a part has the mean of the bodies that it joins. `packages` are those that its kinds of parts, gauges and measures come from, each
+    perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they
+    come out.
     """
 
     name: str = field(metadata=DOCUMENT_ONLY)
@@ -267,6 +272,7 @@ class Mechanism(InNotebook, Description):
     formulas: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | BESIDE)
     stops: Mapping[str, Stop] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
     paths: Mapping[str, StrokePath] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY | WHERE_STATED)
+    temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
         """The stage as it turns and moves, for a notebook or a page of its own: `flexstage.view`, which stands above all descriptions."""

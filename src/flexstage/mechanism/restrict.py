@@ -90,6 +90,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         forces={},
         requirements={},
         paths={},
+        temperatures={},
         envelope=None,
         opening=None,
     )

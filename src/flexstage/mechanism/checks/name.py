@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, suggest_nearest
 from flexstage.mechanism.expand import joined, placed_bodies, port_findings
 from flexstage.mechanism.grammar import RESERVED
 from flexstage.mechanism.likeness import drawn_units, likeness_findings
-from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
+from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
 from flexstage.mechanism.pattern import copy_names
 from flexstage.mechanism.sight import gauge_findings
 from flexstage.parts.body import Body, owner_of
@@ -166,6 +166,8 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
     for section, items in (("payloads", mechanism.payloads), ("forces", mechanism.forces)):
         for name, item in items.items():
             yield from _check_known(f"{section}.{name}.body", "body", item.body, gauged - {GROUND})
+    for name in mechanism.temperatures:
+        yield from _check_known(f"temperatures.{name}", "body", name, {EVERYWHERE, *gauged})
 
 
 def _check_stops(mechanism: Mechanism, moving: Iterable[str]) -> Iterator[Finding]:

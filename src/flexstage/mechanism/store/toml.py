@@ -29,6 +29,7 @@ HEADINGS: Mapping[str, str] = {
     "forces": "Constant forces, in the stage's frame.",
     "stops": "Gaps at which strokes end: the body may move by gap along x of each copy against its base.",
     "paths": "Strokes at large displacements, from where the stage rests: what requirements over a stroke are judged along.",
+    "temperatures": "Changes of temperature since the stage was made, by body; all: of what has none of its own.",
     "change": "Departures: unit/link.field for all copies, copy/link.field for one.",
     "require": "Judged first in every report.",
     "sources": "Sources that tags name. A value without tag is assumed.",

@@ -18,7 +18,7 @@ from flexstage.beams.mass import mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.expansion import expansion
 from flexstage.mechanism.incidence import layout
-from flexstage.mechanism.mechanism import GROUND, Damping, Mechanism
+from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, Damping, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import exerted_wrenches, imposed_strokes, input_channels, wrench_places
 from flexstage.models.linear.model import Channel
@@ -146,9 +146,9 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
 
     Leaves, rods, notches and necks bend; all other links are their 6x6, and superelements their matrices, in a frame that turns with them.
-    Valid for small strains in the flexures. Batches of designs are refused. `temperature` is a uniform change [K]: bodies and parts grow
-    freely by their expansion, the `ground` (of this material; absent: as `drift` finds it) about the origin; what does not fit bends.
-    Moduli stay. What states no expansion is then refused.
+    Valid for small strains in the flexures. Batches of designs are refused. `temperature` is a uniform change [K] beside the `temperatures`
+    that the description states: bodies and parts grow freely by their expansion, a part at the mean of its ends, the `ground` (of this
+    material; absent: as `drift` finds it) about the origin; what does not fit bends. Moduli stay. What states no expansion is then refused.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
@@ -159,7 +159,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
     laws = _laws(assembly, resolution)
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
-    growth = _growth(mechanism, bodies, temperature, ground)
+    growth = _growth(mechanism, assembly, bodies, (temperature, ground))
     drawn = _Drawn(number, reference, growth)
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
@@ -196,12 +196,17 @@ def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | 
     return result
 
 
-def _growth(mechanism: Mechanism, bodies: tuple[str, ...], temperature: float, ground: str | None) -> _Growth:
-    if not temperature:
+def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], asked: tuple[float, str | None]) -> _Growth:
+    """How bodies and parts have grown at the temperatures of the description and a uniform change, on a ground of some material."""
+    change, ground = asked
+    stated = {name: float(np.real(value)) for name, value in mechanism.temperatures.items()}
+    warmth = {name: change + stated.get(name, stated.get(EVERYWHERE, 0.0)) for name in (*bodies, GROUND)}
+    if not any(warmth.values()):
         return _Growth(np.ones(len(bodies) + 1), {})
     found = expansion(mechanism, ground)
-    parts = {name: 1.0 + temperature * float(each) for name, (each, _) in found.parts.items()}
-    return _Growth(np.array([1.0 + temperature * float(found.bodies[name]) for name in (*bodies, GROUND)]), parts)
+    mean = {name: 0.5 * sum(warmth[body] for body in assembly.links[name].joins) for name in found.parts}
+    parts = {name: 1.0 + mean[name] * float(each) for name, (each, _) in found.parts.items()}
+    return _Growth(np.array([1.0 + warmth[name] * float(found.bodies[name]) for name in (*bodies, GROUND)]), parts)
 
 
 def _grow(law: FlexureLaw, ratio: float) -> FlexureLaw:

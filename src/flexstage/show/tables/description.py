@@ -28,6 +28,7 @@ TITLES = {
     "payloads": "Payloads",
     "forces": "Forces",
     "stops": "Stops",
+    "temperatures": "Temperatures",
     "changes": "Departures of single copies",
     "": "Stage",
 }
