@@ -25,9 +25,11 @@ from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear import linearise as linearised
 from flexstage.models.nonlinear import summed
 from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.path import branch, path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Effort
@@ -108,11 +110,22 @@ def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
     assert found.displacement() == pytest.approx(one.displacement(), rel=1e-6)
     assert found.displacement()[1] < -0.3
     follow_chain(26)
+    pressed = critical(chain(26), {"platform.fx": -RIGIDITY})
+    assert pressed.factor == pytest.approx(np.pi**2 / 4.0, rel=1e-6)
+    along = pressed.state.model.reference[:-1, 0]
+    assert pressed.shape[:, 1] / pressed.shape[np.argmax(along), 1] == pytest.approx(1.0 - np.cos(0.5 * np.pi * along), abs=1e-6)
+    monkeypatch.setattr(linearised, "_MEMORY", 1e6)
+    with pytest.raises(DesignError, match="598 coordinates: dense matrices of"):
+        linearise(found)
 
 
 @pytest.mark.full
 def test_a_chain_of_a_thousand_flexures_is_one_flexure():
+    """Its stiffness too, without the memory of dense matrices; what needs these says how much before it begins."""
     follow_chain(1000)
+    assert critical(chain(1000), {"platform.fx": -RIGIDITY}).factor == pytest.approx(np.pi**2 / 4.0, rel=1e-3)
+    with pytest.raises(DesignError, match="GB, above 8 GB"):
+        linearise(equilibrium(chain(1000)))
 
 
 def test_modes_converge_as_a_series_does():

@@ -13,11 +13,12 @@ from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, first_point, follow_to_turn
 from flexstage.models.nonlinear.condense import system
+from flexstage.models.nonlinear.element import Tangent
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import System, assemble
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads
-from flexstage.models.nonlinear.summed import negative_pivots
+from flexstage.models.nonlinear.summed import nearest_descent, negative_pivots
 
 _FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
 _NEAR = Effort(halvings=0, iterations=12, arcs=0)
@@ -192,9 +193,11 @@ def _zero(search: _Search, low: float, high: float, start: State, tolerance: flo
 def _lowest(state: State, locked: Sequence[str]) -> tuple[float, Array]:
     """The lowest scaled stiffness among motions that keep what is `locked`, and its motion (n,)."""
     whole, freedoms = _system(state), state.model.freedoms
-    kept = _kept(state, whole, locked)
+    kept, scale = _kept(state, whole, locked), _scale(state.model)
+    if not isinstance(whole.matrix, np.ndarray):
+        value, motion = nearest_descent(whole.matrix[0][kept][:, kept], scale)
+        return value, motion / scale
     matrix = whole.stiffness[0][np.ix_(kept, kept)]
-    scale = _scale(state.model)
     stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
     free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
     values, vectors = np.linalg.eigh(free.T @ stiff @ free)
@@ -204,12 +207,17 @@ def _lowest(state: State, locked: Sequence[str]) -> tuple[float, Array]:
 def _inside(state: State) -> str:
     """The flexure that gives way by itself, or none."""
     weakest = [
-        (float(np.min(np.abs(np.linalg.eigvalsh(_indefinite(system(each.tangent))[place, 0])))), name)
+        (float(least), name)
         for group, each in zip(state.model.flexures, _system(state).bent, strict=True)
-        for place, name in enumerate(group.names)
+        for name, least in zip(group.names, _softest(each.tangent), strict=True)
     ]
     size, name = min(weakest, default=(1.0, ""))
     return name if size < 1e-7 else ""
+
+
+def _softest(found: Tangent) -> Array:
+    """How near the own system of each flexure (l,) is to being singular, in the first case."""
+    return np.min(np.abs(np.linalg.eigvalsh(_indefinite(system(found))[:, 0])), axis=-1)
 
 
 def _told(search: _Search, factor: float, state: State, own: str) -> Critical:

@@ -35,6 +35,8 @@ from flexstage.parts.part import inner
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform
 
 _SHAKEN = " (link)"
+_MATRICES, _MEMORY = 6.0, 8e9
+"""Matrices of all coordinates that are there at once, and the bytes that they may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +93,8 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     follow without mass. Stiffness is symmetrised, and split by link, with one more contribution, `geometric`. Forces inside flexures are
     not told (`unknown`). Gauges look along their drawn lines. Without `inner` coordinates flexures follow their bodies as they do at rest,
     and each is its 6x6 about its middle, in the frame of its start: the same statics, link by link, as lost motion and drift ask for; modes
-    are then those of Guyan's reduction. Raises `DesignError` where no case has a state, and for `locked` names that
-    were not held.
+    are then those of Guyan's reduction. Raises `DesignError` where no case has a state, for `locked` names that
+    were not held, and where matrices would take more than 8 GB.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -107,6 +109,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
         if name not in state.held:
             raise refuse(name, "it was not held at this state", suggest_nearest(name, state.held))
     model = state.model
+    _require_memory(state, inner=inner)
     whole = assemble(model, state.pose, state.loads, state.hold)
     links = {
         name: item if inner else _follow_statically(item, bent, (group.law, place))
@@ -116,6 +119,17 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     own = {name: item.mass.shape[-1] - 12 for name, item in links.items()} | {each.name: len(each.squares) for each in model.elements}
     order = _Coordinates(model, own)
     return _assembled(state, order, _joins(model), links, [state.held.index(name) for name in locked])
+
+
+def _require_memory(state: State, *, inner: bool) -> None:
+    """Refuse what would take more memory than most computers have: its matrices are dense."""
+    model, cases = state.model, len(state.pose.position)
+    own = sum(len(group.names) * (group.law.form.shape[-1] - 3) for group in model.flexures) if inner else 0
+    size = model.freedoms + own + sum(len(each.squares) for each in model.elements)
+    needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, _MEMORY))
+    if 8.0 * _MATRICES * cases * size**2 > _MEMORY:
+        what = f"small motions about {cases} states have {size:,} coordinates: dense matrices of {needed}, above {most}"
+        raise refuse("stage", what, "Ask for fewer states at once (state.case), or without coordinates of flexures (inner=False)")
 
 
 def _joins(model: Nonlinear) -> dict[str, tuple[int, int]]:

@@ -113,3 +113,23 @@ def negative_pivots(matrix: Any, freedoms: int) -> int:
     count = int(np.sum(factor.U.diagonal() < 0.0))
     rows = even[freedoms:, :freedoms].toarray()
     return count + (int(np.sum(np.linalg.eigvalsh(rows @ factor.solve(rows.T)) > 0.0)) if len(rows) else 0)
+
+
+def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
+    """The lowest eigenvalue of K over `scale` (n,) on both sides among motions that C allows, and its vector (n,), of [K, C^T; C, 0].
+
+    By Lanczos' method on the inverse: of the two that are nearest to zero the negative one, if there is one.
+    """
+    count = len(scale)
+    whole = np.concatenate([scale, np.ones(matrix.shape[0] - count)])
+    even = scipy.sparse.diags_array(1.0 / whole) @ (0.5 * (matrix + matrix.T)) @ scipy.sparse.diags_array(1.0 / whole)
+    factor = scipy.sparse.linalg.splu(even.tocsc())
+    none = np.zeros(len(whole) - count)
+
+    def flexibility(force: Array) -> Array:
+        return factor.solve(np.concatenate([np.ravel(force), none]))[:count]
+
+    operator = scipy.sparse.linalg.LinearOperator((count, count), matvec=flexibility, dtype=float)
+    values, vectors = scipy.sparse.linalg.eigsh(operator, k=2, which="LM", v0=np.ones(count))
+    chosen = int(np.argmin(values)) if np.min(values) < 0.0 else int(np.argmax(values))
+    return 1.0 / float(values[chosen]), vectors[:, chosen]
