@@ -13,9 +13,13 @@ from flexstage.analysis.pairing import RELIABLE, Moving, pair_modes
 from flexstage.analysis.units import units
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
+from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.read import read_solid, solids
+from flexstage.solid.fea.parts import Parts, content_in_stage, reduce_jobs
+from flexstage.solid.fea.superelement import Skin, Superelement
+from flexstage.solid.read import read_solid, remember, solids
 from flexstage.solid.resolution import Converged, Resolution, converge
 from flexstage.solid.stage import solid_stage
 from flexstage.solid.stress import link_stress
@@ -127,6 +131,74 @@ def test_resolution_keeps_what_it_has_when_more_does_not_fit() -> None:
     assert "9 GB" in found.stopped
     with pytest.raises(DesignError, match="9 GB"):
         converge(work, lambda value: {"a": value}, Resolution(order=4))
+
+
+EMPTY = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
+SIZES = {"lever": 200e3, "foot": 7e3, "plate": 30e3}
+
+
+def stiffness_with(parts: dict[str, float], way: Reduction) -> float:
+    """A figure to which each component adds its own error at order two, a fifth of it at every order more."""
+    return 100.0 + sum(error * 0.2 ** (way.of(part).fineness.order - 2) for part, error in parts.items())
+
+
+@pytest.mark.parametrize(
+    ("errors", "raised"),
+    [({"lever": 0.3, "foot": 1.6, "plate": 0.1}, {"foot"}), ({"lever": 0.3, "foot": 0.8, "plate": 0.9}, {"foot", "plate"})],
+)
+def test_the_order_rises_where_the_error_is(errors: dict[str, float], raised: set[str]) -> None:
+    """Order four for the component that takes most for its unknowns; the error told is the change from an order less in every one."""
+    asked: list[Reduction] = []
+
+    def work(way: Reduction) -> float:
+        asked.append(way)
+        return stiffness_with(errors, way)
+
+    found = converge(work, lambda value: {"a": value}, Resolution(0.01), lambda _: SIZES)
+    (last,) = [way for way in asked if way.fineness.order == 3 and way.raised]
+    assert last.raised == raised
+    assert found.order == 3
+    change = stiffness_with(errors, replace(last, fineness=replace(last.fineness, order=2))) - found.result
+    assert found.error == pytest.approx(change / found.result)
+    assert all(way.fineness.order < 4 for way in asked)
+
+
+def test_the_order_rises_everywhere_where_all_must() -> None:
+    asked: list[Reduction] = []
+
+    def work(way: Reduction) -> float:
+        asked.append(way)
+        return stiffness_with(dict.fromkeys(SIZES, 10.0), way)
+
+    found = converge(work, lambda value: {"a": value}, Resolution(0.01), lambda _: SIZES)
+    assert found.order == 4
+    assert not asked[-1].raised
+
+
+def test_what_is_at_hand_is_put_together_from_two_orders() -> None:
+    """Of a stage known at two orders, parts of either stand in a mixed one; nothing is reduced for it."""
+    asked: list[Reduction] = []
+
+    def counted(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        asked.append(reduction)
+        return tuple((part, replace(EMPTY, freedoms=reduction.fineness.order)) for part in components(mechanism))
+
+    again, stage = remember(counted), propped(6e-3, 7e-3)
+    low, high = (replace(COARSE, fineness=replace(COARSE.fineness, order=order)) for order in (2, 3))
+    lower, _ = again(stage, low), again(stage, high)
+    mixed = again(stage, replace(low, raised=frozenset({content_in_stage(lower[0][0])})))
+    assert [element.freedoms for _, element in mixed] == [3, 2]
+    assert asked == [low, high]
+    again(stage, replace(high, raised=frozenset({content_in_stage(lower[0][0])})))
+    assert len(asked) == 3
+
+
+def test_jobs_of_raised_components_are_those_of_the_next_order() -> None:
+    """So that they are looked up where the next order is kept."""
+    parts = components(propped(6e-3, 7e-3))
+    low, high = (replace(COARSE, fineness=replace(COARSE.fineness, order=order)) for order in (2, 3))
+    mixed = reduce_jobs(parts, replace(low, raised=frozenset({content_in_stage(parts[1])})))
+    assert [job.key for job in mixed] == [reduce_jobs(parts, low)[0].key, reduce_jobs(parts, high)[1].key]
 
 
 def test_given_parts_are_drawn_as_what_they_stand_for() -> None:

@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.solid.fea.assemble import Placed, linear_model, place_parts
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.parts import Parts, Ways, reduce_parts
+from flexstage.solid.fea.parts import Parts, Ways, content_in_stage, reduce_parts
 from flexstage.solid.fea.sound import sound_components
 
 Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
@@ -45,6 +45,11 @@ class SolidRead:
         return sum(item.element.freedoms for item in self._distinct)
 
     @property
+    def sizes(self) -> dict[str, int]:
+        """Unknowns of every distinct component, by the content that orders are raised by."""
+        return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
+
+    @property
     def _distinct(self) -> list[Placed]:
         return list({id(item.element): item for item in self.placed}.values())
 
@@ -63,6 +68,28 @@ def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
         return found.parts
 
     return reduce
+
+
+def remember(reduce: Solids) -> Solids:
+    """The same, but what was reduced is kept at hand: of two orders known, parts of either are put together without asking again.
+
+    >>> remember(solids())(Mechanism("nothing"), Reduction())
+    ()
+    """
+    known: dict[tuple[str, Reduction], Parts] = {}
+
+    def again(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        name, plain = digest(mechanism), replace(reduction, raised=frozenset())
+        if (name, reduction) in known:
+            return known[name, reduction]
+        higher = replace(plain, fineness=replace(plain.fineness, order=plain.fineness.order + 1))
+        if reduction.raised and (name, plain) in known and (name, higher) in known:
+            pairs = zip(known[name, plain], known[name, higher], strict=True)
+            return tuple(more if content_in_stage(less[0]) in reduction.raised else less for less, more in pairs)
+        known[name, reduction] = reduce(mechanism, reduction)
+        return known[name, reduction]
+
+    return again
 
 
 def _ignore(_finding: Finding) -> None:
@@ -91,7 +118,9 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
     parts = reduce(shape, reduction)
-    said = f"solid model of {digest(shape, physics=True)[:16]}, order {reduction.fineness.order}, {reduction.modes} modes a component"
+    order = reduction.fineness.order
+    orders = f"{order} and {order + 1}" if reduction.raised else f"{order}"
+    said = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component"
     return SolidRead(shape, linear_model(shape, assembly, parts, said), place_parts(assembly, parts))
 
 

@@ -60,8 +60,7 @@ class SolidStage(InNotebook):
     @property
     def figures(self) -> Mapping[str, float]:
         """What an error is estimated of, in SI."""
-        frequencies = {f"platform mode {number + 1}": float(value) for number, value in enumerate(self.modes.platform_frequencies)}
-        return stiffness_figures(self.statics) | frequencies
+        return _figures(self.statics, self.modes)
 
     @property
     def flexible(self) -> Array:
@@ -98,6 +97,17 @@ class SolidStage(InNotebook):
     def provenance(self) -> Annotated[str, VIEW]:
         """What was read, and how finely."""
         return self.read.model.provenance
+
+
+def _figures(found: Statics, modes: Modes) -> dict[str, float]:
+    frequencies = {f"platform mode {number + 1}": float(value) for number, value in enumerate(modes.platform_frequencies)}
+    return stiffness_figures(found) | frequencies
+
+
+def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
+    """The figures of `solid_stage` alone: no stress. Raises as it does."""
+    model = read_solid(mechanism, reduction, reduce).model
+    return _figures(statics(model), platform_modes(mechanism, model))
 
 
 def stiffness_figures(found: Statics) -> dict[str, float]:

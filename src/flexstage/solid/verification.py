@@ -28,9 +28,9 @@ from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import substitute_parts
 from flexstage.solid.fea.ties import stated_links
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
-from flexstage.solid.read import STANDARD_SOLIDS, Solids
+from flexstage.solid.read import STANDARD_SOLIDS, Solids, remember
 from flexstage.solid.resolution import DEFAULT, Converged, Resolution, converge
-from flexstage.solid.stage import SolidStage, solid_stage, stiffness_figures
+from flexstage.solid.stage import SolidStage, solid_stage, stage_figures, stiffness_figures
 from flexstage.solid.units import SolidUnit, solid_units
 from flexstage.spatial.frame import COMPONENTS
 
@@ -173,7 +173,14 @@ def _nobody(_rows: tuple[Row, ...]) -> None:
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
     """The whole stage as a solid, to the accuracy asked."""
-    return converge(lambda way: solid_stage(mechanism, way, reduce), lambda found: found.figures, asked)
+    again = remember(reduce)
+    return converge(
+        lambda way: solid_stage(mechanism, way, again),
+        lambda found: found.figures,
+        asked,
+        lambda found: found.read.sizes,
+        lambda way: stage_figures(mechanism, way, again),
+    )
 
 
 def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[dict[str, SolidUnit]]:
@@ -182,7 +189,11 @@ def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
         return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
 
-    return converge(lambda way: solid_units(mechanism, way, reduce), figures, asked)
+    def sizes(found: dict[str, SolidUnit]) -> dict[str, int]:
+        return {part: size for unit in found.values() for part, size in unit.read.sizes.items()}
+
+    again = remember(reduce)
+    return converge(lambda way: solid_units(mechanism, way, again), figures, asked, sizes)
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:

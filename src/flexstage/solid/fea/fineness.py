@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
@@ -39,10 +39,20 @@ class Reduction:
     """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held.
 
     `residual`: it also keeps the static response, faces held, to the inertia of the faces' motions: what is left of the modes that are not
-    kept, to first order in frequency squared.
+    kept, to first order in frequency squared. Components whose content is `raised` get elements of one order more than the others.
     """
 
     fineness: Fineness = Fineness()
     modes: int = 12
     hold: Hold = Hold.RIGID
     residual: bool = False
+    raised: frozenset[str] = frozenset()
+
+    def of(self, content: str) -> Reduction:
+        """What it asks of a component, by its content.
+
+        >>> Reduction(raised=frozenset({"lever"})).of("lever").fineness.order
+        4
+        """
+        order = self.fineness.order + (content in self.raised)
+        return replace(self, fineness=replace(self.fineness, order=order), raised=frozenset())

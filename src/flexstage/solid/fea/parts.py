@@ -12,6 +12,7 @@ from flexstage.base.number import Array
 from flexstage.base.progress import Progress
 from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, key_of
 from flexstage.solid.fea.component import Component, with_yielding_ends
+from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import Hold, Reduction
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.reducing import Reduce, StoredJob
@@ -66,8 +67,21 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     """
     yields = reduction.hold is Hold.RIGID and not reduction.residual
     wholes = [with_yielding_ends(part) if yields and part.name not in springs else part for part in parts]
-    own = [springs.get(part.name) for part in parts]
-    return [Reduce(key_of(whole, reduction, joined), whole, reduction, joined) for whole, joined in zip(wholes, own, strict=True)]
+    jobs: list[Reduce] = []
+    for part, whole in zip(parts, wholes, strict=True):
+        own, joined = reduction.of(content(whole)) if reduction.raised else reduction, springs.get(part.name)
+        jobs.append(Reduce(key_of(whole, own, joined), whole, own, joined))
+    return jobs
+
+
+def content_in_stage(part: Component) -> str:
+    """The content of what is reduced for a component, the same for a unit alone and in its stage.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> content_in_stage(bar()) == content(with_yielding_ends(bar()))
+    True
+    """
+    return content(with_yielding_ends(part))
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
@@ -100,6 +114,7 @@ def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str,
     missing = [job for job in first.values() if not store.holds(job)]
     if missing:
         require_solver()
+        missing.sort(key=lambda job: -job.seconds())  # the longest first: the others fill the time beside it
         work_all(missing, store.take, ways.limits, ways.progress)
     return store.results, tuple(store.notices)
 
