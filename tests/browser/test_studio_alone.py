@@ -255,6 +255,16 @@ def test_the_report_that_was_asked_for_opens_over_the_page_and_reaches_nothing_o
     page.keyboard.press("Escape")
 
 
+def test_an_optimum_is_taken_beside_its_job_and_among_the_pins(page: Page, server: Server) -> None:
+    server.say(replace(state(1), pins=("optimum",)), Jobs((JobState(1, "optimise", "done", "done", 1.0, None, (), "/report/one.html"),)))
+    page.get_by_role("tab", name="Jobs").or_(page.get_by_role("button", name="Jobs")).first.click()
+    page.get_by_role("button", name="take the optimum").click()
+    until(page, lambda: [each["name"] for each in server.of("recall")] == ["optimum"])
+    page.get_by_role("tab", name="Figures").or_(page.get_by_role("button", name="Figures")).first.click()
+    page.locator("#pane-figures").get_by_role("button", name="optimum", exact=True).click()
+    until(page, lambda: [each["name"] for each in server.of("recall")] == ["optimum"] * 2)
+
+
 def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, server: Server) -> None:
     wire = Snippet("wire", "hinge", "A wire", "[parts.{name}]\n", {"name": "wire", "length": "20 mm"})
     server.holds = {"palette"}
