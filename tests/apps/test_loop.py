@@ -289,6 +289,10 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--hysteresis", "80 %"), ("hysteresis.width", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
+    (
+        ("--fea", "--at", "platform.x=1 mm", "--model", "mapped"),
+        ("--fea: finite elements are of the stage as drawn", "--fea: --model mapped asks for another"),
+    ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
     (("--sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),

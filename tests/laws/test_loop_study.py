@@ -8,6 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.workspace.drive import drive
 from flexstage.base.document import plain
 from flexstage.base.finding import DesignError
@@ -28,6 +30,7 @@ from flexstage.control.study.runs import rest_rms
 from flexstage.control.study.setup import (
     AmplifierSetup,
     ControllerSetup,
+    DampingSetup,
     Floor,
     GaugeSetup,
     HystereticStacks,
@@ -43,9 +46,12 @@ from flexstage.control.study.stacks import stacks_of, sweep_stacks
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tables import step_table
 from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
 from flexstage.parts.gauge import Gauge
 from flexstage.show.display import NO_VALUE, format_value
 from flexstage.show.viewer.data import stage_data
+from flexstage.solid.modes import fea_modes
 
 CALM = ControllerSetup(integral=300.0)
 
@@ -293,3 +299,26 @@ def test_others_count_departures_from_what_was_asked() -> None:
     told = other_motions(seen, "x")
     assert set(told) == {"y", "z", "rx", "ry", "rz"}
     assert told["y"].largest == np.max(np.abs(seen.true_error[:, 1]))
+
+
+def test_a_plant_of_finite_elements_is_taken_as_it_is():
+    """The same matrices called solid: the same loop, and it says what it is a model by."""
+    stage = parallelogram()
+    model = lumped(stage)
+    asked = LoopSetup(controller=ControllerSetup(integral=300.0))
+    drawn = loop_study(stage, asked)
+    found = loop_study(stage, asked, solid=FeaModes(platform_modes(stage, model), model, 3))
+    assert np.array_equal(found.closed.system.A, drawn.closed.system.A)
+    assert (drawn.model_name, found.model_name) == ("lumped", "solid, elements of order 3")
+    with pytest.raises(DesignError, match="tells no forces"):
+        loop_study(stage, replace(asked, damping=DampingSetup()), solid=FeaModes(platform_modes(stage, mapped(stage)), mapped(stage), 3))
+
+
+@pytest.mark.full
+def test_a_loop_on_finite_elements_of_a_guide_is_the_loop_of_theory_as_far_as_their_modes_are_the_same():
+    """The guide's mode by both within 5 % (docs/validation), so is its rejection."""
+    stage = parallelogram()
+    asked = LoopSetup(controller=ControllerSetup(integral=300.0))
+    theory, solid = loop_study(stage, asked), loop_study(stage, asked, solid=fea_modes(stage))
+    assert solid.settled.highest == pytest.approx(theory.settled.highest, rel=0.05)
+    assert solid.bandwidths.rejection == pytest.approx(theory.bandwidths.rejection, rel=0.05)

@@ -28,7 +28,7 @@ def loop_report(found: LoopStudy) -> str:
     mechanism = found.settled.mechanism
     origin = (
         ("physics", digest(mechanism, physics=True)[:16]),
-        ("model", found.setup.model.value),
+        ("model", found.model_name),
         ("rate", f"{found.settled.rate:g} Hz"),
         ("flexstage", flexstage.__version__),
     )
@@ -43,7 +43,7 @@ def loop_report(found: LoopStudy) -> str:
         time_section(found),
         error_section(found),
     )
-    head = Head(mechanism.name or "stage", f"Control loop, {found.setup.model.value} model", origin, headline(found))
+    head = Head(mechanism.name or "stage", f"Control loop, {found.settled.model_name.partition(',')[0]} model", origin, headline(found))
     return page(head, [each for each in sections if each is not None], {"stage": data})
 
 

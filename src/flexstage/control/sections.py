@@ -88,7 +88,7 @@ def diagram_of(found: LoopStudy) -> Diagram:
     """The block diagram of a loop, in the words of its set-up."""
     setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
-    stage = Box("stage", f"{setup.model.value}\n{count_modes(len(plant.frequencies))}")
+    stage = Box("stage", f"{found.model_name.partition(',')[0]}\n{count_modes(len(plant.frequencies))}")
     back = (
         Box("gauges", f"{len(plant.gauges)}"),
         *_filters(found),

@@ -43,7 +43,7 @@ def loop_table(found: LoopStudy) -> Table:
         ("controller", _controller(found)),
         ("coordinates", ", ".join(plant.coordinates.names)),
         ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, held"),
-        ("plant", f"{found.setup.model.value}, {modes}"),
+        ("plant", f"{found.model_name}, {modes}"),
         ("fed forward", ", ".join(each.value for each in found.setup.compensate) or "nothing"),
     ]
     if found.peaks is not None:

@@ -46,7 +46,8 @@ from flexstage.experiment.record_options import Allow, Arrays, Inputs, Only, Out
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
+from flexstage.show.command.displaced import At, Footing, Held, Load, Place, Warmth, footing, place
+from flexstage.show.command.models import Models
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
@@ -63,6 +64,7 @@ _NOTHING = "none"
 
 
 def loop(  # noqa: PLR0913  a loop has that many knobs
+    context: typer.Context,
     design: Design,
     *,
     setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")] = None,
@@ -144,6 +146,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     model: Annotated[
         Model | None, word_option("--model", Model, "Model of the stage as the plant. Default: lumped.", show_default=False)
     ] = None,
+    fea: Annotated[
+        bool, typer.Option("--fea", help="Finite elements of the drawn stage as the plant: from the cache, else computed, to 1 %.")
+    ] = False,
     at: At = None,
     load: Load = None,
     hold: Held = None,
@@ -232,13 +237,17 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     asked = _override(given, options)
     require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware)])
     written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
+    where = place(at, load, hold, temperature)
+    require(_fea_findings(where, model) if fea else ())
     mechanism = open_design(design, changes, written)
-    stands = footing(mechanism, place(at, load, hold, temperature), asked.model)
+    models: Models = context.obj
+    solid = models.modes("solid")(mechanism, computing=True) if fea else None
+    stands = Footing(mechanism, asked.model) if fea else footing(mechanism, where, asked.model)
     if compare:
         _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
         with progress_bar() as shown:
             test = None if not record else _tested(record, texts, shown.share)
-            rivals = compare_controllers(mechanism, asked, there=stands.stance, test=test, tell=shown.share, workers=cores())
+            rivals = compare_controllers(mechanism, asked, there=stands.stance, solid=solid, test=test, tell=shown.share, workers=cores())
         if report is not None:
             save(report, pages.comparison_report(mechanism, asked, rivals), "--report")
         answer(
@@ -246,7 +255,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             mechanism,
             lambda: rivals,
             lambda: [*stands.tables(), tables.comparison_table(rivals), tables.rivals_table(rivals)],
-            model=asked.model,
+            model=None if fea else asked.model,
             json=json,
             csv=csv,
             xlsx=xlsx,
@@ -256,7 +265,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         return
     with progress_bar() as shown:
         test = None if not record else _tested(record, texts, shown.share)
-        found = loop_study(mechanism, asked, there=stands.stance, test=test, tell=shown.share)
+        found = loop_study(mechanism, asked, there=stands.stance, solid=solid, test=test, tell=shown.share)
     if report is not None:
         save(report, pages.loop_report(found), "--report")
     for target in exports:
@@ -268,13 +277,23 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         mechanism,
         lambda: stands.body(found) if stands.stance is not None else found,
         lambda: [*stands.tables(), *_tables(found)],
-        model=asked.model,
+        model=None if fea else asked.model,
         json=json,
         csv=csv,
         xlsx=xlsx,
         cautions=(*stands.cautions, *found.cautions),
         beside=(report,),
     )
+
+
+def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
+    """What asks for another model than finite elements of the drawn stage."""
+    if where:
+        yield Finding(
+            "--fea", f"finite elements are of the stage as drawn, and {where.options} brings it elsewhere", "Leave one of them out"
+        )
+    if model is not None:
+        yield Finding("--fea", f"--model {model.value} asks for another model of the plant", "Leave one of them out")
 
 
 def _tested(paths: Sequence[Path], texts: RecordTexts, tell: Told) -> Identification:

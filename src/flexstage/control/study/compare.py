@@ -9,6 +9,7 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
+from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.jobs import CallError, Line, results
@@ -119,6 +120,7 @@ def compare_controllers(
     setup: LoopSetup | None = None,
     *,
     there: Stance | None = None,
+    solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
     workers: int = 0,
@@ -131,7 +133,7 @@ def compare_controllers(
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)
-    one = partial(_rival_of, mechanism, there, test)
+    one = partial(_rival_of, mechanism, there, solid, test)
     came: dict[str, _Came] = {}
     said = tell or (lambda _, __: None)
     said(f"tuning {', '.join(rivals)}", 0.0)
@@ -166,10 +168,17 @@ def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, 
         raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run it again") from None
 
 
-def _rival_of(mechanism: Mechanism, there: Stance | None, test: Identification | None, _line: Line | None, asked: LoopSetup) -> _Came:
+def _rival_of(
+    mechanism: Mechanism,
+    there: Stance | None,
+    solid: FeaModes | None,
+    test: Identification | None,
+    _line: Line | None,
+    asked: LoopSetup,
+) -> _Came:
     """What a kind comes to, or why it cannot be had."""
     try:
-        return rival(loop_study(mechanism, asked, there=there, test=test))
+        return rival(loop_study(mechanism, asked, there=there, solid=solid, test=test))
     except DesignError as error:
         return tuple(error.findings)
 

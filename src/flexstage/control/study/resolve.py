@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.analysis.complete import felt, platform_modes
 from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.random_response import Spectrum
+from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
@@ -49,7 +50,8 @@ class ResolvedSetup:
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
     brought somewhere, where it has already sagged; `loaded` what its dead load changes as drawn, whose model it is where that is felt.
     Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have;
-    `charge` what amplifiers of charge do, which they have too, while `model` is that at constant volts, which counts at rest.
+    `charge` what amplifiers of charge do, which they have too, while `model` is that at constant volts, which counts at rest. `solid` is
+    the stage by finite elements, where that is the model.
     """
 
     mechanism: Mechanism
@@ -65,6 +67,12 @@ class ResolvedSetup:
     damping: ActiveDamping | None = None
     loaded: LoadEffect | None = None
     charge: ChargedStacks | None = None
+    solid: FeaModes | None = None
+
+    @property
+    def model_name(self) -> str:
+        """What the plant is a model by."""
+        return self.setup.model.value if self.solid is None else f"solid, elements of order {self.solid.order}"
 
     @property
     def rate(self) -> float:
@@ -77,8 +85,10 @@ class ResolvedSetup:
         return 1.0 / self.rate
 
 
-def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None) -> ResolvedSetup:
+def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
     """Settle a set-up for a stage, drawn or as small motions about where it is brought, or where its dead load brings it if that is felt.
+
+    With a `solid` the model is that of the drawn stage by finite elements; what kinematics says is the ideal stage's all the same.
 
     Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
     that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
@@ -89,8 +99,9 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
     (10000.0, ('x', 'y', 'z', 'rx', 'ry', 'rz'), 173.1)
     """
     require(setup_findings(setup))
-    kinematics, loaded = ideal(mechanism), load_effect(mechanism) if there is None and setup.model is Model.LUMPED else None
-    model = felt(mechanism, setup.model) if there is None else there.linear
+    asked = solid is None and there is None and setup.model is Model.LUMPED
+    kinematics, loaded = ideal(mechanism), load_effect(mechanism) if asked else None
+    model = solid.model if solid is not None else there.linear if there is not None else felt(mechanism, setup.model)
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
     require(_force_findings(kinematics, setup))
@@ -124,6 +135,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None)
         damping=None if damped is None else damped.found,
         loaded=loaded,
         charge=charge,
+        solid=solid,
     )
 
 

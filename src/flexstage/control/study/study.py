@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.analysis.load_effect import LoadEffect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -87,6 +88,11 @@ class LoopStudy(InNotebook):
         return self.settled.setup
 
     @property
+    def model_name(self) -> Annotated[str, VIEW]:
+        """What the plant is a model by: one of theory's, or finite elements with their order."""
+        return self.settled.model_name
+
+    @property
     def plant(self) -> Annotated[Plant, VIEW]:
         """The plant with the modes that the loop feels."""
         return self.settled.plant
@@ -130,14 +136,15 @@ def loop_study(
     setup: LoopSetup | None = None,
     *,
     there: Stance | None = None,
+    solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
 ) -> LoopStudy:
     """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
 
     The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up, the lumped one of
-    the loaded stage where its dead load is felt. With a `test` it
-    is what that found of strokes and gauges (`measured_plant`), and margins are read off its responses too (`measured`).
+    the loaded stage where its dead load is felt; with a `solid` the drawn stage by finite elements. With a `test` it is what that found of
+    strokes and gauges (`measured_plant`), and margins are read off its responses too (`measured`).
 
     Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.
 
@@ -147,7 +154,7 @@ def loop_study(
     (True, 'x')
     """
     said = _Steps(tell)
-    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there))
+    given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there, solid))
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
     control = said.of(0.05, "tuning", lambda: make_controller(given, pose_gains(given, lost)))
