@@ -6,14 +6,17 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
+from flexstage.control.closed import loop
 from flexstage.control.damping.damped_plant import as_felt, close_damping, describe_damping
 from flexstage.control.damping.force_feedback import ForceFeedback, best_gain, most_damping
 from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.electronics import AmplifierSettings, hardware
 from flexstage.control.plants import plant
 from flexstage.control.reduction import reduce_modes
+from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
-from flexstage.control.study.setup import DampingSetup, LoopSetup
+from flexstage.control.study.runs import runs
+from flexstage.control.study.setup import KINDS, AmplifierSetup, ControllerSetup, DampingSetup, LoopSetup, Motion, StepMotion
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -176,6 +179,49 @@ def test_strain_gauges_in_the_legs_sense_what_sensors_of_force_do():
         assert found.plant.heard == {"sensed.B": found.damping.sensed[0].noise}
         if link == "pzt":
             assert found.damping.modes[0].damped_ratio == pytest.approx(bare.damping.modes[0].damped_ratio, rel=1e-9)
+
+
+def test_what_is_added_is_the_law_of_the_tension():
+    """added / stroke = x / (1 - x), x = G T / k of the tension T per stroke without the inner loop."""
+    law = ForceFeedback(700.0, 4.0)
+    _, (leg,), bare, closed = damped_by(case("parallelogram"), law)
+    lines = np.geomspace(0.3, 3e3, 25)
+    place = bare.system.output_names.index(f"{leg.sensed}.fx"), bare.system.input_names.index("B")
+    opened = law.at(2j * np.pi * lines) * bare.system.transfer(lines)[:, place[0], place[1]] / leg.stiffness
+    seen = closed.system.output_names.index("added.B"), closed.system.input_names.index("B")
+    np.testing.assert_allclose(closed.system.transfer(lines)[:, seen[0], seen[1]], opened / (1.0 - opened), rtol=1e-9)
+
+
+@pytest.mark.parametrize(("size", "held"), [(0.3e-6, True), (4e-6, False)])
+def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
+    asked = LoopSetup(
+        controller=ControllerSetup(integral=600.0),
+        amplifier=AmplifierSetup(slew=1800.0),
+        damping=DampingSetup(ratio=0.4),
+        trajectory=StepMotion(by=Motion(x=size)),
+    )
+    given = resolve(case("parallelogram"), asked)
+    control = make_controller(given, given.plant.coordinates.strokes)
+    (run,) = runs(given, control, loop(given.plant, control.system))
+    use = run.legs["B"]
+    assert use.slew == pytest.approx(1800.0 * 38e-6 / 140.0)
+    assert use.is_held == held
+    assert any("as if its amplifier gave it" in each.what for each in run.cautions) != held
+
+
+@pytest.mark.parametrize("kind", ["ppf"])
+def test_positive_feedback_keeps_within_the_amplifiers_limits(kind):
+    asked = LoopSetup(
+        controller=ControllerSetup(kind=KINDS.parse(kind, "kind")),
+        amplifier=AmplifierSetup(slew=40.0),
+        trajectory=StepMotion(by=Motion(x=5e-6)),
+    )
+    given = resolve(case("parallelogram"), asked)
+    control = make_controller(given, given.plant.coordinates.strokes)
+    seen = runs(given, control, loop(given.plant, control.system))[0].simulated
+    most = given.plant.hardware.amplifiers["B"].slew * given.step
+    assert seen.slewing[0] > 0.0
+    assert np.max(np.abs(np.diff(seen.given[:, 0]))) <= most * (1.0 + 1e-9)
 
 
 BAD = {

@@ -28,6 +28,8 @@ from flexstage.spatial.frame import COMPONENTS, FORCES
 
 SENSED = "sensed"
 """Heads the names of inputs that sensors of inner loops hear as noise."""
+ADDED = "added"
+"""Heads the names of outputs that inner loops add to the strokes before the amplifiers."""
 _REPEATED = 1e-3
 
 

@@ -13,7 +13,7 @@ from flexstage.control.figures.diagram import Diagram, loop_diagram
 from flexstage.control.figures.frequency import Curves, open_loop_figure, pole_figure, sensitivity_figure
 from flexstage.control.figures.hysteresis import HysteresisLoop, hysteresis_figure
 from flexstage.control.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
-from flexstage.control.figures.time import error_figure, path_figure, step_figure
+from flexstage.control.figures.time import error_figure, lesson_figure, path_figure, step_figure
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import Run
 from flexstage.control.study.stacks import Sweep
@@ -25,6 +25,7 @@ from flexstage.control.tables import (
     heat_table,
     law_table,
     learning_table,
+    leg_table,
     loop_table,
     margin_table,
     repetition_table,
@@ -206,7 +207,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 def time_section(found: LoopStudy) -> Section | None:
     """Steps and trajectories."""
-    blocks = [each(found.runs) for each in (step_table, tracking_table, learning_table, repetition_table, heat_table)]
+    blocks = [each(found.runs) for each in (step_table, tracking_table, learning_table, repetition_table, heat_table, leg_table)]
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:
@@ -225,6 +226,16 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
         yield Picture(drawn, f"The {test.course.name} in plan, to scale; the true error is drawn magnified.")
     drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
     yield Picture(drawn, "Reference less true pose over time.")
+    if test.learned is not None:
+        taught = test.learned
+        figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "passes learned from", taught.noise)
+        caption = f"Error in the band up to {number(taught.band, 4)} Hz, pass by pass; dotted: what of it does not repeat."
+        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
+    if test.repeated is not None:
+        seen = test.repeated
+        figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "periods before")
+        caption = f"Error in the band up to {number(seen.band, 4)} Hz, period by period."
+        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
 
 
 def error_section(found: LoopStudy) -> Section | None:

@@ -150,6 +150,25 @@ def heat_table(runs: Sequence[Run]) -> Table | None:
     return make_table("Heat of force actuators", heads, rows, notes=[note]) if rows else None
 
 
+def leg_table(runs: Sequence[Run]) -> Table | None:
+    """What force feedback takes of the amplifiers in each course; `None` where there is none."""
+    rows = [
+        (
+            run.course.name,
+            Cell(name, Mark.STRONG),
+            format_value(each.added, "m", 3),
+            percent(each.largest / each.reach, 3),
+            NO_VALUE if np.isinf(each.slew) else percent(each.fastest / each.slew, 3),
+            Cell("yes" if each.is_held else "no", Mark.PASS if each.is_held else Mark.FAIL),
+        )
+        for run in runs
+        for name, each in run.legs.items()
+    ]
+    heads = ["course", "actuator", "added at most", "of the stroke", "of the speed", "held"]
+    note = "Of stroke and speed that the amplifier gives, what both loops take together. Beyond, the simulation goes on as if it gave them."
+    return make_table("Force feedback and amplifiers", heads, rows, notes=[note]) if rows else None
+
+
 def learning_table(runs: Sequence[Run]) -> Table | None:
     """What passes over a path have taught, by motion; `None` where nothing was learned."""
     rows, notes = [], []

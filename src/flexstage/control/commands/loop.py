@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -453,8 +454,7 @@ def _hardware_files(target: Path | None) -> Iterator[tuple[str, Path]]:
 def _export_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
     machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
     law = made_of if isinstance(made_of, Decentralised) else None
-    about = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
-    files = hardware_files(target, machine, law, found.runs[0].simulated.reference, precision=precision, about=about)
+    files = hardware_files(target, machine, law, found.runs[0].simulated.reference, precision=precision, about=_about(found))
     for path, content in files.items():
         write(path, content, "--hardware")
         announce(f"Wrote {path}")
@@ -465,12 +465,23 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
     if target.suffix == ".mat":
         return {target: plant_file(found.plant)}
     machine = driven_machine(found.settled, found.controller, found.stacks)
-    about = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
     if target.suffix == ".c":
-        return controller_files(target, machine, about)
+        return controller_files(target, machine, _about(found))
     if target.name.endswith(WHOLE):
         return {target: fmu(loop_code(machine, target.stem))}
-    return {target: fmu(controller_code(machine, target.stem, about))}
+    return {target: fmu(controller_code(machine, target.stem, _about(found)))}
+
+
+def _about(found: LoopStudy) -> str:
+    """What the head of exported code says of the loop, and of inner loops that are not part of it."""
+    said = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
+    if found.damping is None:
+        return said
+    law, sensed = found.damping.law, found.damping.sensed
+    gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
+    form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
+    numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
+    return f"{said}. Not in it, analogue and around it: force feedback, stroke = {form} tension / k, {numbers}, k: {gains}"
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | None]:
@@ -485,6 +496,7 @@ def _tables(found: LoopStudy) -> Iterator[Table | None]:
     yield tables.learning_table(found.runs)
     yield tables.repetition_table(found.runs)
     yield tables.heat_table(found.runs)
+    yield tables.leg_table(found.runs)
     yield None if found.static_errors is None else errors.rest_table(found.static_errors)
     yield errors.noise_table(found)
     if found.hysteresis is not None:

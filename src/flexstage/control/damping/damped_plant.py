@@ -14,7 +14,7 @@ from flexstage.base.quantity import FREQUENCY, RATE
 from flexstage.base.record import INNER, VIEW, Along
 from flexstage.control.damping.force_feedback import ForceFeedback, damping_of_pair, most_damping
 from flexstage.control.damping.legs import Leg, Pairs
-from flexstage.control.plants import SENSED, Plant
+from flexstage.control.plants import ADDED, SENSED, Plant
 from flexstage.control.reduction import resonances
 from flexstage.control.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
@@ -72,18 +72,21 @@ class ActiveDamping:
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
     """The plant with the inner loops closed; `given` has the links' forces `<link>.fx`, which it then no longer has.
 
-    Their strokes are added before the amplifiers. Inputs `sensed.<actuator>` [N] are what the sensors hear besides the tension.
+    Their strokes are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N] are what the
+    sensors hear besides the tension.
     """
     signs = tension_signs(given, legs)
     entries = {each.actuator: f"entry.{each.actuator}" for each in legs}
     stage = rename(given.system, entries)
-    inner = [law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"given.{each.actuator}", "m")) for each in legs]
-    links: dict[str, dict[str, float]] = {entries[each.actuator]: {each.actuator: 1.0, f"given.{each.actuator}": 1.0} for each in legs}
+    inner = [
+        law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
+    ]
+    links: dict[str, dict[str, float]] = {entries[each.actuator]: {each.actuator: 1.0, f"{ADDED}.{each.actuator}": 1.0} for each in legs}
     for each, sign in zip(legs, signs, strict=True):
         links[f"tension.{each.actuator}"] = {f"{each.sensed}.fx": sign, f"{SENSED}.{each.actuator}": 1.0}
     heard = tuple(Channel(f"{SENSED}.{each.actuator}", "N") for each in legs)
     gone = {f"{each.sensed}.fx" for each in legs}
-    outputs = tuple(name for name in given.system.output_names if name not in gone)
+    outputs = tuple(name for name in given.system.output_names if name not in gone) + tuple(f"{ADDED}.{each.actuator}" for each in legs)
     passing = {name: {name: 1.0} for name in stage.input_names if name not in entries.values()}
     whole = connect([stage, *inner], links | passing, (*given.system.inputs, *heard), outputs)
     count = len(law.denominator) - 1

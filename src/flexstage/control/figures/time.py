@@ -100,6 +100,31 @@ def error_figure(test: Simulated) -> Any:
     return figure
 
 
+def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
+    """Errors (n, f) in the band by pass or period, lengths above angles; dotted: what does not repeat (f,), where it is known.
+
+    >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
+    1
+    """
+    kinds = list(dict.fromkeys(units))
+    with style_context():
+        figure = canvas(FULL * 0.62, 0.65 + 1.5 * len(kinds))
+        grid = panels(figure, len(kinds), 1, Margins(left=0.62, top=0.3, down=0.14))
+        for axes, unit in zip(grid[:, 0], kinds, strict=True):
+            chosen = [index for index, each in enumerate(units) if each == unit]
+            form = display_unit_of(unit, float(np.max(rms[:, chosen])))
+            for index in chosen:
+                axes.semilogy(range(len(rms)), form.factor * rms[:, index], color=SERIES[index % 7], linewidth=1.0, label=names[index])
+                if floor is not None:
+                    axes.axhline(form.factor * float(floor[index]), color=SERIES[index % 7], linewidth=0.7, linestyle=":")
+            axes.set_ylabel(to_typography(f"rms error [{form.unit}]"))
+            axes.set_xlim(0.0, len(rms) - 1.0)
+        handles = [line for axes in grid[:, 0] for line in axes.get_lines() if not line.get_label().startswith("_")]
+        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=6, handlelength=1.4, borderaxespad=0.2)
+        grid[-1, 0].set_xlabel(noun)
+    return figure
+
+
 def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     """The path in plan: commanded, and followed with its error magnified so that it can be seen; the factor stands in the title.
 

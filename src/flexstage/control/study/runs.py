@@ -15,12 +15,13 @@ from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import POWER, TEMPERATURE, TIME
+from flexstage.base.quantity import DISPLACEMENT, POWER, SPEED, TEMPERATURE, TIME
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
 from flexstage.control.creep_plant import add_creep
 from flexstage.control.learning.learn import Learned
 from flexstage.control.learning.repeat import Repeated
+from flexstage.control.plants import ADDED
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
@@ -74,12 +75,32 @@ class CoilHeat:
     warming: Annotated[float | None, TEMPERATURE]
 
 
+@dataclass(frozen=True)
+class LegUse:
+    """What force feedback takes of an amplifier: the largest stroke [m] that it has `added`, and of both loops together the `largest`.
+
+    `fastest` [m/s] is how fast both change together from sample to sample. `reach` [m] is how far the amplifier goes that way, `slew` [m/s]
+    how fast: infinite where nothing bounds it.
+    """
+
+    added: Annotated[float, DISPLACEMENT]
+    largest: Annotated[float, DISPLACEMENT]
+    reach: Annotated[float, DISPLACEMENT]
+    fastest: Annotated[float, SPEED]
+    slew: Annotated[float, SPEED]
+
+    @property
+    def is_held(self) -> Annotated[bool, VIEW]:
+        """Whether the amplifier gives it."""
+        return self.largest <= self.reach and self.fastest <= self.slew
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
 
     `learned` is what passes over it have taught, `repeated` what its periods have, where the set-up asks for that; `heat` what force
-    actuators bear by name.
+    actuators bear by name, `legs` what inner loops take of their amplifiers.
     """
 
     course: Course
@@ -90,6 +111,7 @@ class Run:
     learned: Learned | None = None
     repeated: Repeated | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
+    legs: Mapping[str, LegUse] = field(default_factory=lambda: Table({}))
 
     @property
     def seconds(self) -> Annotated[float, VIEW]:
@@ -166,7 +188,7 @@ def runs(
             learnt = follow(known, closed, control.system, poses, course, rest=rest, runner=runner)
             run = _run_of(course, learnt.simulated, computed, cautions)
             found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated))
-    return tuple(_with_heat(given, run) for run in found)
+    return tuple(_with_legs(_with_heat(given, run), computed) for run in found)
 
 
 def _with_heat(given: ResolvedSetup, run: Run) -> Run:
@@ -184,6 +206,27 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
             what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, and bears {min(ends):.3g} {channel.unit} for ever"
             cautions.append(Finding(f"trajectory {run.course.name}", what, "Rest between courses, or command less"))
     return replace(run, heat=Table(heat), cautions=(*run.cautions, *cautions)) if heat else run
+
+
+def _with_legs(run: Run, computed: Machine) -> Run:
+    """The run with what inner loops take of their amplifiers; a caution where that is more than these give, which is simulated so."""
+    seen, powers = run.simulated, computed.amplifiers
+    channels = [channel.name for channel in seen.channels]
+    used, cautions = {}, []
+    for number, name in enumerate(seen.actuators):
+        if f"{ADDED}.{name}" not in channels:
+            continue
+        added = seen.motions[:, channels.index(f"{ADDED}.{name}")]
+        both = seen.given[:, number] + added
+        place = int(np.argmax(np.maximum(both / powers.high[number], both / powers.low[number])))
+        reach = abs(float(powers.high[number] if both[place] > 0.0 else powers.low[number]))
+        fastest = float(np.max(np.abs(np.diff(both)), initial=0.0)) / computed.step
+        used[name] = LegUse(float(np.max(np.abs(added))), abs(float(both[place])), reach, fastest, float(powers.slew[number]))
+        if not used[name].is_held:
+            what = f"with force feedback {name} goes to {1e6 * used[name].largest:.4g} um of {1e6 * reach:.4g} um"
+            rates = f"at up to {1e3 * fastest:.4g} mm/s of {1e3 * used[name].slew:.4g} mm/s, and is simulated as if its amplifier gave it"
+            cautions.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Command less or more slowly, or damp less"))
+    return replace(run, legs=Table(used), cautions=(*run.cautions, *cautions)) if used else run
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:

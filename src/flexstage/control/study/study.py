@@ -261,9 +261,6 @@ def _cautions(given: ResolvedSetup) -> list[Finding]:
         what = f"against forces on the platform the stage is down to {100.0 * yielding.softest[worst]:.3g} % of its stiffness at rest"
         advice = "The loop of the pose has to hold them; a higher corner or a lower ratio yields less"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
-        found.append(
-            Finding("damping", "its own strokes are not held against the amplifiers' limits", "Keep a share of the stroke for them")
-        )
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
             found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))
