@@ -43,12 +43,17 @@ def run(how: str, folder: Path) -> Run:
     peak = 0.0
     with subprocess.Popen([sys.executable, str(Path(__file__).resolve()), how, str(folder)]) as process:
         while process.poll() is None:
-            peak = max(peak, sum(_memory(each) for each in _tree(process.pid)))
+            peak = max(peak, tree_memory(process.pid))
             time.sleep(PERIOD)
     if process.returncode:
         raise RuntimeError(f"the {how} model ended with {process.returncode}")
     with np.load(folder / f"{how}.npz") as stored:
         return Run(float(stored["seconds"]), peak, stored["frequencies"])
+
+
+def tree_memory(process: int) -> float:
+    """Memory [MB] of a process and all it started."""
+    return sum(_memory(each) for each in _tree(process))
 
 
 def _tree(process: int) -> Iterator[int]:

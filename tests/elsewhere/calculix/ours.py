@@ -33,7 +33,8 @@ class Law:
 def solved(problem: Problem, mesh: PieceMesh, law: Law = Law()) -> Solution:
     """Compliance of the loaded face and the lowest frequencies."""
     space = field(mesh, [problem.held], law.order)
-    elastic, mass = stiffness(space), _by_four_points(space) if law.few_points else inertia(space)
+    elastic = stiffness(space)
+    mass = _sparse(_by_four_points(space)) if law.few_points else sparse.block_diag([inertia(space).scalar] * 3, format="csr")
     solve = factorise(space, elastic)
     forces = np.column_stack([_force(space, problem.loaded, axis) for axis in range(3)])
     free = np.flatnonzero(space.free)
@@ -46,7 +47,7 @@ def solved(problem: Problem, mesh: PieceMesh, law: Law = Law()) -> Solution:
     matrix = _sparse(elastic)[free][:, free]
     operator = LinearOperator(matrix.shape, matvec=inverse, dtype=float)  # pyright: ignore[reportCallIssue]  (its stubs know only __new__)
     start = np.random.default_rng(0).standard_normal(len(free))
-    values = eigsh(matrix, k=MODES, M=_sparse(mass)[free][:, free], sigma=0.0, OPinv=operator, v0=start, return_eigenvectors=False)
+    values = eigsh(matrix, k=MODES, M=mass[free][:, free], sigma=0.0, OPinv=operator, v0=start, return_eigenvectors=False)
     return Solution(forces.T @ solve(forces), np.sqrt(np.sort(values)) / (2.0 * np.pi))
 
 
@@ -70,4 +71,4 @@ def _force(space: Field, face: str, axis: int) -> Array:
 
 def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
     values, columns, rows = form.mat.CSR()
-    return sparse.csr_matrix((np.asarray(values), np.asarray(columns), np.asarray(rows)))
+    return sparse.csr_matrix((np.array(values), np.array(columns), np.array(rows)))

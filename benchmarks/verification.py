@@ -1,0 +1,74 @@
+"""The shipped stage verified at its default accuracy from nothing, then from the cache: processor, wall, how busy two cores are, memory.
+
+Each run is a command of its own. Targets: 100 s of processor, 4 GB, both cores 85 % busy; 1 s from the cache.
+"""
+
+from __future__ import annotations
+
+import os
+
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from substructures import PERIOD, tree_memory
+
+CORES = 2
+SECONDS, MEMORY, BUSY, CACHED = 100.0, 4000.0, 0.85, 1.0
+FLEXSTAGE = str(Path(sys.executable).with_name("flexstage"))
+
+
+@dataclass(frozen=True)
+class Run:
+    """Seconds of processor and wall, and the peak memory of all processes together [MB]."""
+
+    processor: float
+    wall: float
+    memory: float
+
+
+def run(folder: Path, *arguments: str) -> Run:
+    """One command, with the cache in a folder."""
+    before, begun, peak = _spent(), time.perf_counter(), 0.0
+    environment = {**os.environ, "FLEXSTAGE_CACHE": str(folder / "cache")}
+    with subprocess.Popen([FLEXSTAGE, *arguments], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        while process.poll() is None:
+            peak = max(peak, tree_memory(process.pid))
+            time.sleep(PERIOD)
+    if process.returncode:
+        raise RuntimeError(f"{' '.join(arguments)} ended with {process.returncode}")
+    return Run(_spent() - before, time.perf_counter() - begun, peak)
+
+
+def _spent() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        stage = str(folder / "stage.toml")
+        run(folder, "new", stage)
+        cold, kept = (run(folder, "verify", stage) for _ in range(2))
+    for how, found in (("from nothing", cold), ("from the cache", kept)):
+        print(f"{how:16} {found.processor:8.1f} s of processor {found.wall:8.1f} s of wall {found.memory:8.0f} MB")
+    busy = cold.processor / (CORES * cold.wall)
+    for what, value, target, met in (
+        ("processor from nothing, s", cold.processor, SECONDS, cold.processor <= SECONDS),
+        ("memory, MB", cold.memory, MEMORY, cold.memory <= MEMORY),
+        ("share of two cores", busy, BUSY, busy >= BUSY),
+        ("wall from the cache, s", kept.wall, CACHED, kept.wall <= CACHED),
+    ):
+        print(f"{what:28} {value:8.2f}; target {target:g}: {'met' if met else 'MISSED'}")
+
+
+if __name__ == "__main__":
+    main()
