@@ -39,13 +39,15 @@ class Converged(Generic[_Result]):
     """A result with the relative error estimated of each of its figures. An estimate, no bound; a figure that is not there is unknown.
 
     It is the change from the order before, at order two a quarter of it.
-    `stopped` says why the order was not raised further although the accuracy asked was not reached.
+    `stopped` says why the order was not raised further although the accuracy asked was not reached; `raised` is the number of components
+    whose elements are of one order more.
     """
 
     result: Annotated[_Result, INNER]
     errors: Mapping[str, float]
     order: int
     stopped: Annotated[str, INNER] = ""
+    raised: Annotated[int, INNER] = 0
 
     @property
     def error(self) -> float:
@@ -83,7 +85,7 @@ def converge(
             if sizes is not None and order < orders[-1]:
                 for way in _raise_parts(figured, now, sizes(result), order, asked.accuracy):
                     result = work(way)
-                    found = Converged(result, estimates(figured(coarsen(way)), figures(result), order), order)
+                    found = Converged(result, estimates(figured(coarsen(way)), figures(result), order), order, raised=len(way.raised))
                     if found.error <= asked.accuracy:
                         return found
         except DesignError as error:  # of a higher order than one that went: what it needs is not there

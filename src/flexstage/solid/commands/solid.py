@@ -376,7 +376,8 @@ def _accuracy_cautions(what: str, found: Converged[Any], asked: Resolution) -> t
 
 def _accuracy_text(found: Converged[Any]) -> str:
     size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
-    return f"the error estimated of finite elements is {size} at order {found.order}"
+    more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
+    return f"the error estimated of finite elements is {size} at order {found.order}{more}"
 
 
 def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
