@@ -303,6 +303,18 @@ def test_channels_that_are_not_what_they_are_called_are_named(told: str) -> None
     assert any(wanted in each for each in found.warnings)
 
 
+def test_outputs_and_inputs_are_named_together_each_as_if_the_others_were_right() -> None:
+    exchanged = renamed(SOUND.outputs, S1="S4", S4="S1")
+    both = replace(SOUND, outputs=exchanged, participation=times(SOUND.participation.T, 2, -1.0).T)
+    doubts = compare(STAGE, both).misnamed
+    assert [each.split(":")[0] for each in doubts] == ["S4 and S1 look exchanged", "B3 looks inverted"]
+    two = replace(SOUND, outputs=exchanged, shapes=times(SOUND.shapes, 4, -1.0))
+    [doubt] = compare(STAGE, two).misnamed
+    what, right = doubt.split(": ")
+    assert sorted(what.split(" and ")) == ["S1 look exchanged", "S4", "S5 looks inverted"]
+    assert right.startswith("put right, measured shapes are like theory to 1.00")
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_sound_channels_are_not_doubted(seed: int) -> None:
     """Modes off by some per cent, a weak drive, other units: nothing of that is a channel's fault."""

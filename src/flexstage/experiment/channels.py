@@ -20,7 +20,9 @@ _SCALED, _ALL_SCALED = 1.5, 3.0
 _LEAST = 0.02
 _ROUNDS = 5
 _FEWEST = 3
-_MOST_OUTPUTS = 24
+_MOST_OUTPUTS, _MOST_TOGETHER = 24, 8
+_COMPLETE = 0.95
+"""How alike two doubts together must make shapes, where one alone does not."""
 
 Score = Callable[[Array], float]
 """How alike theory and measured shapes (p, k) are, 0 to 1."""
@@ -41,38 +43,99 @@ class Residues:
     strokes: Array
 
 
-def shape_doubts(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Array | None = None) -> tuple[str, ...]:
-    """Outputs that make shapes alike when two are exchanged, one or two inverted, or all divided by `scales` (p,), and are unlike as is.
+@dataclass(frozen=True, eq=False)
+class Doubt:
+    """What looks wrong with outputs, in words; put right, output i is `factors[i]` times what is called `order[i]`."""
+
+    text: str
+    order: Array
+    factors: Array
+
+    def put_right(self, values: Array) -> Array:
+        """Values (p, ...) of the outputs as they would be without it."""
+        return self.factors[:, None] * values[self.order]
+
+
+@dataclass(frozen=True, eq=False)
+class _Remedy:
+    what: str
+    how: str
+    order: Array
+    factors: Array
+
+    def then(self, other: _Remedy) -> _Remedy:
+        return _Remedy(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
+
+
+def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Array | None = None) -> Doubt | None:
+    """What makes shapes alike that are unlike as they are: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
+
+    Where none of these does, two of them together are tried, and must leave almost nothing. Of several that say as much the first counts;
+    of two together that name others as well, none.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
     >>> alike = lambda shapes: float(np.mean(np.sum(theory * shapes, axis=0) ** 2))
-    >>> shape_doubts(("S1", "S2", "S3"), theory * [[1.0], [1.0], [-1.0]], alike)
-    ('S3 looks inverted: with its sign changed, measured shapes are like theory to 1.00, as they are to 0.70',)
+    >>> shape_doubt(("S1", "S2", "S3"), theory * [[1.0], [1.0], [-1.0]], alike).text
+    'S3 looks inverted: with its sign changed, measured shapes are like theory to 1.00, as they are to 0.70'
     """
     count = len(outputs)
     if count < _FEWEST or count > _MOST_OUTPUTS or not shapes.shape[1]:
-        return ()
-    pairs = list(combinations(range(count), 2))
-    tried = [
-        *((_invert(shapes, (index,)), f"{outputs[index]} looks inverted: with its sign changed") for index in range(count)),
-        *((_exchange(shapes, pair), f"{outputs[pair[0]]} and {outputs[pair[1]]} look exchanged: the other way round") for pair in pairs),
-        *(
-            (
-                _invert(shapes, pair),
-                f"{outputs[pair[0]]} and {outputs[pair[1]]} look inverted against the others: with their signs changed",
-            )
-            for pair in pairs
-        ),
-        *(() if scales is None else _rescale(outputs, shapes, scales)),
-    ]
+        return None
+    tried = list(_remedies(outputs, scales))
     before = score(shapes)
-    scores = np.array([score(each) for each, _ in tried])
-    best = int(np.argmax(scores > np.max(scores) - 1e-6))  # the first of those that say as much
-    gained, left = scores[best] - before, 1.0 - scores[best]
-    if scores[best] < _ALIKE or (gained < 1.0 - _ALIKE and left > _LEFT * (1.0 - before)) or gained < _LEAST:
-        return ()
-    return (f"{tried[best][1]}, measured shapes are like theory to {scores[best]:.2f}, as they are to {before:.2f}",)
+    single, alone = _best(tried, shapes, score)
+    chosen, best = single, alone
+    if alone < _COMPLETE and count <= _MOST_TOGETHER:
+        both, together = _best([first.then(second) for first in tried for second in tried if first is not second], shapes, score, sole=True)
+        if both is not None and together > _COMPLETE and 1.0 - together < _LEFT * (1.0 - alone):
+            chosen, best = both, together
+    gained, left = best - before, 1.0 - best
+    if chosen is None or best < _ALIKE or (gained < 1.0 - _ALIKE and left > _LEFT * (1.0 - before)) or gained < _LEAST:
+        return None
+    text = f"{chosen.what}: {chosen.how}, measured shapes are like theory to {best:.2f}, as they are to {before:.2f}"
+    return Doubt(text, chosen.order, chosen.factors)
+
+
+def _best(tried: list[_Remedy], shapes: Array, score: Score, *, sole: bool = False) -> tuple[_Remedy | None, float]:
+    """The first of the best; `sole`: none where others as good do something else."""
+    right = [_apply(each, shapes) for each in tried]
+    scores = np.array([score(each) for each in right])
+    best = np.flatnonzero(scores > np.max(scores) - 1e-6)
+    if sole and any(not _same(tried[best[0]], tried[each]) for each in best):
+        return None, 0.0
+    return tried[best[0]], float(scores[best[0]])
+
+
+def _same(one: _Remedy, other: _Remedy) -> bool:
+    """Whether two do the same, up to the sign of all."""
+    sign = np.sign(one.factors[0] * other.factors[0])
+    return bool(np.all(one.order == other.order) and np.allclose(one.factors, sign * other.factors))
+
+
+def _apply(remedy: _Remedy, shapes: Array) -> Array:
+    found = remedy.factors[:, None] * shapes[remedy.order]
+    return found if np.all(np.abs(remedy.factors) == 1.0) else found / np.maximum(np.linalg.norm(found, axis=0), 1e-300)
+
+
+def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[_Remedy]:
+    """One output inverted, two exchanged, two inverted, all scaled."""
+    count = len(outputs)
+    as_is, one = np.arange(count), np.ones(count)
+    for index, name in enumerate(outputs):
+        yield _Remedy(f"{name} looks inverted", "with its sign changed", as_is, np.where(as_is == index, -1.0, 1.0))
+    for first, second in combinations(range(count), 2):
+        order = as_is.copy()
+        order[[first, second]] = second, first
+        yield _Remedy(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
+    for first, second in combinations(range(count), 2):
+        what = f"{outputs[first]} and {outputs[second]} look inverted against the others"
+        yield _Remedy(what, "with their signs changed", as_is, np.where((as_is == first) | (as_is == second), -1.0, 1.0))
+    wrong = [] if scales is None else [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
+    if wrong and scales is not None:
+        listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
+        look = "looks" if len(wrong) == 1 else "look"
+        yield _Remedy(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
@@ -89,27 +152,6 @@ def output_scales(theory: Array, measured: Array) -> Array:
         columns = np.ma.median(ratio - rows[:, None], axis=0).filled(0.0)
         rows = np.ma.median(ratio - columns, axis=1).filled(0.0)
     return np.exp(rows - np.percentile(rows, 50.0, method="lower"))
-
-
-def _rescale(outputs: tuple[str, ...], shapes: Array, scales: Array) -> Iterator[tuple[Array, str]]:
-    wrong = [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
-    if wrong:
-        divided = shapes / scales[:, None]
-        listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
-        look = "looks" if len(wrong) == 1 else "look"
-        yield divided / np.maximum(np.linalg.norm(divided, axis=0), 1e-300), f"{listed} {look} scaled against the others: divided by that"
-
-
-def _invert(shapes: Array, indices: tuple[int, ...]) -> Array:
-    signs = np.ones((len(shapes), 1))
-    signs[list(indices)] = -1.0
-    return signs * shapes
-
-
-def _exchange(shapes: Array, pair: tuple[int, int]) -> Array:
-    order = list(range(len(shapes)))
-    order[pair[0]], order[pair[1]] = order[pair[1]], order[pair[0]]
-    return shapes[order]
 
 
 def gain_doubts(residues: Residues) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.base.record import INNER, VIEW
-from flexstage.experiment.channels import Residues, gain_doubts, normalise, output_scales, shape_doubts
+from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes
 from flexstage.experiment.updating.gains import is_length, metres
@@ -173,10 +173,11 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         found, alike = _pair(frequencies, experiment, groups, own, shapes)
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
-    misnamed = shape_doubts(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
-    misnamed = misnamed or gain_doubts(
-        _residues(mechanism, linear, theory, experiment, sensors, matched=_match_groups(groups, candidates, pairs))
-    )
+    doubt = shape_doubt(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
+    right = pairs if doubt is None else _pair(frequencies, experiment, groups, own, _unit(doubt.put_right(seen)))[0]
+    matched = _match_groups(groups, candidates, right)
+    misnamed = gain_doubts(_residues(mechanism, linear, theory, experiment, sensors, matched=matched, doubt=doubt))
+    misnamed = misnamed if doubt is None else (doubt.text, *misnamed)
     rows = _rows(theory, experiment, pairs, likeness)
     rows = rows if fea is None else _add_fea(rows, theory, fea, linear)
     repeated = tuple(_repeated_modes(group, pairs, own, seen) for group in groups if len(group) > 1 and group[-1] < len(rows))
@@ -235,7 +236,11 @@ def _normalise(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Arr
     units = {channel.name: channel.unit for channel in model.outputs}
     weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
     scaled = weight[:, None] * shapes
-    return scaled / np.maximum(np.linalg.norm(scaled, axis=0), 1e-300)
+    return _unit(scaled)
+
+
+def _unit(shapes: Array) -> Array:
+    return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
 
 
 def _pair(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> tuple[dict[int, int], Array]:
@@ -299,8 +304,12 @@ def _residues(
     sensors: Sequence[str],
     *,
     matched: list[tuple[list[int], list[int]]],
+    doubt: Doubt | None,
 ) -> Residues:
-    """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis."""
+    """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis.
+
+    Outputs are as they would be without the doubt about them.
+    """
     names = {channel.name for channel in model.inputs}
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
     inputs = tuple(experiment.inputs[index].name for index in columns)
@@ -312,6 +321,7 @@ def _residues(
     sense = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))]
     rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
     seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
+    seen = seen if doubt is None else doubt.put_right(seen)
     felt = (
         4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(np.isfinite(sizes), sizes, 1.0)
     )
