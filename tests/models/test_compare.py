@@ -14,6 +14,7 @@ from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.experiment.channels import Residues, gain_doubts
 from flexstage.experiment.comparison import Compared, ComparedMode, Measured, compare
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import identification, usable_measurement
@@ -313,6 +314,13 @@ def test_outputs_and_inputs_are_named_together_each_as_if_the_others_were_right(
     what, right = doubt.split(": ")
     assert sorted(what.split(" and ")) == ["S1 look exchanged", "S4", "S5 looks inverted"]
     assert right.startswith("put right, measured shapes are like theory to 1.00")
+
+
+def test_outputs_that_shapes_cannot_doubt_are_named_by_their_part_in_the_modes() -> None:
+    theory = np.random.default_rng(4).standard_normal((4, 3, 3))
+    measured = theory[:, [1, 0, 2]] * np.array([[1.0], [1.0], [-1.0]])
+    doubts = gain_doubts(Residues(("S1", "S2", "S3"), ("B1", "B2", "B3"), theory, measured, *np.ones((2, 3), dtype=bool)))
+    assert [each.split(":")[0] for each in doubts] == ["S1 and S2 look exchanged", "S3 looks inverted"]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -155,7 +155,9 @@ def output_scales(theory: Array, measured: Array) -> Array:
 
 
 def gain_doubts(residues: Residues) -> tuple[str, ...]:
-    """Inputs that look exchanged or inverted, and inputs and outputs that look scaled, by their part in the modes.
+    """Inputs or outputs that look exchanged or inverted, and such that look scaled, by their part in the modes.
+
+    Where an exchange on either side would do, the side counts that leaves less; inputs are looked at anew when outputs are put right.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
@@ -167,6 +169,13 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
     if not theory.size or len(theory) < _FEWEST:
         return ()
     likeness = _correlations(theory, measured)
+    by_output = [_columns(np.swapaxes(each, 1, 2)) for each in (residues.theory, residues.measured)]
+    outputs = _correlations(*by_output)
+    told_by_outputs = [*_exchange_doubts(residues.outputs, outputs, _correlations(by_output[0], by_output[0]))]
+    if told_by_outputs and _explained(outputs) > _explained(likeness):
+        order, signs = _assigned(outputs)
+        right = replace(residues, measured=signs[:, None] * residues.measured[:, order])
+        return (*told_by_outputs, *gain_doubts(right))
     found = [*_exchange_doubts(residues.inputs, likeness, _correlations(theory, theory))]
     if not found:
         found += _common_scale_doubts(theory, measured, residues.strokes)
@@ -186,9 +195,20 @@ def _correlations(theory: Array, measured: Array) -> Array:
     return theory.T @ measured / np.maximum(sizes, 1e-300)
 
 
+def _assigned(likeness: Array) -> tuple[Array, Array]:
+    """Which measured channel is most like each of theory's, no one twice, and with which sign."""
+    _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
+    return order, np.where(likeness[np.arange(len(order)), order] < 0.0, -1.0, 1.0)
+
+
+def _explained(likeness: Array) -> float:
+    """How alike the channel that is least so is, all put right."""
+    return float(np.min(np.abs(likeness[np.arange(len(likeness)), _assigned(likeness)[0]])))
+
+
 def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
     """Channels whose part in the modes is another's, or its own inverted; not those that theory has alike."""
-    _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
+    order, _ = _assigned(likeness)
     own = np.diag(likeness)
     moved = [index for index in range(len(names)) if order[index] != index and own[index] < _UNLIKE]
     sure = [index for index in moved if abs(likeness[index, order[index]]) > _ALIKE and abs(among[index, order[index]]) < _ALIKE]

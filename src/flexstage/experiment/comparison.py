@@ -31,7 +31,7 @@ _FAR, _FARTHEST = 0.3, np.log(1.6)
 _SILENT = 1e-6
 _PAIRED = 0.5
 _TRUSTED = 0.9
-_ROUNDS = 5
+_ROUNDS = 20
 _TURNED = np.deg2rad(20.0)
 
 
@@ -277,7 +277,7 @@ def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]],
 
 def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
     """How large every group of modes is at every output (p, groups)."""
-    sizes = [np.linalg.norm(shapes[:, group], axis=1) for group in groups]
+    sizes = [np.linalg.norm(np.linalg.qr(shapes[:, group])[0], axis=1) for group in groups]
     return np.stack(sizes, axis=1) if sizes else np.zeros((len(shapes), 0))
 
 
