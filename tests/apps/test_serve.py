@@ -22,11 +22,11 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.gcs import COMMANDS, LONGEST, Session, spelled
-from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.serve.server import CLIENTS, HOST, Served
 from flexstage.control.serve.waves import segment
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.run import simulate
+from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
