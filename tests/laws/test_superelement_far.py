@@ -9,7 +9,9 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.workspace.load import dead_loads
+from flexstage.base.native import SWITCH
 from flexstage.models.linear.static import displacement, static_gain
+from flexstage.models.nonlinear.compiled import kernel
 from flexstage.models.nonlinear.corotated import moved, resist, stiffen_ports
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear
@@ -47,6 +49,22 @@ def test_at_rest_it_is_the_linear_one(whole: fs.Mechanism, model: Nonlinear) -> 
     names = tuple(f"platform.{each}" for each in COMPONENTS), tuple(f"platform.{each}" for each in FORCES)
     gains = [static_gain(each, *names).values for each in (near, linear)]
     np.testing.assert_allclose(gains[0], gains[1], atol=1e-9 * np.max(np.abs(gains[1])))
+
+
+def test_beside_flexures_it_resists_in_c_too(whole: fs.Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stage of flexures and superelements alone, nothing held."""
+    leaf = fs.Link(("ground", "platform"), "leaf", at=(0.0, 0.0, 0.1), along=(0.0, 0.0, 1.0), bends=(1.0, 0.0, 0.0))
+    steel = {"steel": fs.Material(young=200e9, poisson=0.3, density=7800.0)}
+    parts = {**whole.parts, "leaf": fs.Leaf("steel", length=0.05, thickness=5e-4, width=0.01)}
+    both = fs.nonlinear(replace(whole, materials=steel, parts=parts, links={**whole.links, "leaf": leaf}))
+    load = {"platform.fx": np.array([1.0, 5.0])}
+    fast = fs.equilibrium(both, load).twist()
+    monkeypatch.setenv(SWITCH, "off")
+    kernel.cache_clear()
+    slow = fs.equilibrium(both, load).twist()
+    monkeypatch.undo()
+    kernel.cache_clear()
+    np.testing.assert_allclose(fast, slow, atol=1e-11 * np.max(np.abs(slow)))
 
 
 def test_a_rigid_motion_takes_no_force(model: Nonlinear) -> None:

@@ -237,7 +237,7 @@ typedef struct {
     lanes *factor;    /* fields x fields: unit lower factor, inverse pivots */
     lanes *fields;    /* fields x modes: how fields follow curvatures */
     lanes *answer;    /* (modes + 6) x columns */
-    lanes frame[9], lever[3], arm[3], weight[3], onset[3], end[6], mean[27], middle[3];
+    lanes frame[9], lever[3], arm[3], weight[3], onset[3], mean[27], middle[3], lack;
 } Flexure;
 
 /* Scratch of one flexure at a time. */
@@ -638,7 +638,7 @@ static lanes condense(Flexure *f, Scratch *s, const lanes *wanted, const lanes *
 typedef struct {
     const Task *task;
     int64_t next, cases[WIDTH], at[WIDTH], done[WIDTH]; /* case of each lane, or -1; its iterations */
-    int flexures, n;
+    int flexures, n, condensed; /* condensed: whether the flexures already are, at these amplitudes and poses */
     Flexure *flexure;
     Scratch scratch;
     lanes *position, *turn, *held, *gravity, *force, *matrix, *step;
@@ -650,7 +650,7 @@ static void take(Stage *s, int lane, int64_t number)
 {
     const Task *t = s->task;
     const int64_t bodies = t->bodies + 1;
-    s->cases[lane] = number, s->done[lane] = 0;
+    s->cases[lane] = s->at[lane] = number, s->done[lane] = t->count[number];
     for (int64_t i = 0; i < 3 * bodies; i++) *one(s->position + i, lane) = t->position[number * 3 * bodies + i];
     for (int64_t i = 0; i < 9 * bodies; i++) *one(s->turn + i, lane) = t->turn[number * 9 * bodies + i];
     for (int64_t i = 0; i < t->extra; i++) *one(s->held + i, lane) = t->held[number * t->extra + i];
@@ -740,7 +740,7 @@ static lanes bend(Stage *s, Flexure *f)
         rotate_back(f->weight, f->frame, s->gravity);
         for (int i = 0; i < 3; i++) f->weight[i] *= f->scalar[5];
     }
-    const lanes largest = condense(f, &s->scratch, wanted, wanted_turn, heavy);
+    if (!s->condensed) f->lack = condense(f, &s->scratch, wanted, wanted_turn, heavy);
     lanes wrench[6], force[3], moment[3], k[36], block[9], turned[9];
     for (int i = 0; i < 6; i++) wrench[i] = f->wrench[i] + f->answer[(k0 + i) * columns];
     rotate(force, f->frame, wrench), rotate(moment, f->frame, wrench + 3);
@@ -824,7 +824,7 @@ static lanes bend(Stage *s, Flexure *f)
             for (int j = 0; j < 3; j++) m[3 * i + j] = sway[i] * row[j] + sway[3 + i] * row[3 + j] + sway[6 + i] * row[6 + j];
         add(s, i6 + 3, i6 + 3, m, -1.0);
     }
-    return largest;
+    return f->lack;
 }
 
 /* What else acts: dead loads, and what other links and holds add. */
@@ -890,7 +890,7 @@ static lanes follow(Stage *s, Flexure *f, const lanes *moved, lanes share, lanes
 }
 
 /* One iteration of all lanes: how far bodies and amplitudes moved, and how large the residual inside flexures was. */
-static void iterate(Stage *s, lanes *size, lanes *lack)
+static __attribute__((noinline)) void iterate(Stage *s, lanes *size, lanes *lack)
 {
     const Task *t = s->task;
     const int n = s->n, wide = n + 1, bodies = (int)t->bodies;
@@ -934,7 +934,7 @@ static void *room(Store *store, size_t bytes)
 static void lay(Stage *s, Store *store, const Task *t)
 {
     int modes = 0, points = 0, fields = 0, columns = t->heavy ? 10 : 7, count = 0;
-    s->task = t, s->n = (int)(6 * t->bodies + t->extra), s->flexures = 0;
+    s->task = t, s->n = (int)(6 * t->bodies + t->extra), s->flexures = s->condensed = 0;
     for (int64_t g = 0; g < t->groups; g++) s->flexures += (int)t->group[g].links;
     s->flexure = room(store, (size_t)s->flexures * sizeof(Flexure) + 64);
     for (int64_t g = 0; g < t->groups; g++) {
@@ -987,6 +987,71 @@ static int fits(const Task *t)
     return t->cases > 0;
 }
 
+/* ---- the cases ---- */
+
+enum { CONVERGED, NOT_CONVERGED, SINGULAR, OPEN };
+
+/* Whether all cases begin where the first does: then they share what flexures are in the first step. */
+static int begin_alike(const Task *t)
+{
+    const int64_t n = t->bodies + 1;
+    for (int64_t i = 1; i < t->cases; i++) {
+        if (memcmp(t->position, t->position + 3 * n * i, (size_t)(3 * n) * sizeof(double))) return 0;
+        if (memcmp(t->turn, t->turn + 9 * n * i, (size_t)(9 * n) * sizeof(double))) return 0;
+        if (memcmp(t->gravity, t->gravity + 3 * i, 3 * sizeof(double))) return 0;
+    }
+    for (int64_t g = 0; g < t->groups; g++) {
+        const Group *group = t->group + g;
+        const int64_t q = group->twist + group->across + group->bending + group->fields;
+        for (int64_t i = 0; i < group->links * t->cases; i++) {
+            const int64_t first = i - i % t->cases;
+            if (memcmp(group->strain + q * first, group->strain + q * i, (size_t)q * sizeof(double))) return 0;
+            if (memcmp(group->wrench + 6 * first, group->wrench + 6 * i, 6 * sizeof(double))) return 0;
+        }
+    }
+    return 1;
+}
+
+/* One iteration of the lanes that have a case, and how each of them stands after it. */
+static void advance(Stage *s)
+{
+    const Task *t = s->task;
+    lanes size, lack;
+    int some = 0;
+    iterate(s, &size, &lack);
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const int64_t number = s->cases[lane];
+        if (number < 0) continue;
+        t->count[number] = ++s->done[lane], t->moved[number] = size[lane], t->lack[number] = lack[lane];
+        if (!isfinite(size[lane])) t->status[number] = SINGULAR;
+        else if (size[lane] < t->step && lack[lane] < t->gap) t->status[number] = CONVERGED;
+        else if (s->done[lane] >= t->iterations) t->status[number] = NOT_CONVERGED;
+        some |= t->status[number] != OPEN;
+    }
+    if (!some) return;
+    for (int i = 0; i < s->flexures; i++) settle(s->flexure + i);
+}
+
+/* The next case that is open; -1 if there is none. */
+static int64_t draw(Stage *s)
+{
+    while (s->next < s->task->cases && s->task->status[s->next] != OPEN) s->next++;
+    return s->next < s->task->cases ? s->next++ : -1;
+}
+
+/* Fill all lanes; those without a case repeat the last one, and are not told. Gives how many have one. */
+static int fill(Stage *s)
+{
+    int busy = 0;
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const int64_t number = draw(s);
+        take(s, lane, number < 0 ? s->task->cases - 1 : number);
+        if (number < 0) s->cases[lane] = -1;
+        else busy++;
+    }
+    return busy;
+}
+
 int64_t flexstage_equilibria(const Task *task);
 int64_t flexstage_equilibria_width(void);
 
@@ -1003,38 +1068,22 @@ int64_t flexstage_equilibria(const Task *task)
     if (!memory) return 1;
     store.from = memory + (64 - (uintptr_t)memory % 64), store.used = 0;
     lay(&stage, &store, task);
-    int busy = 0;
-    stage.next = 0;
-    for (int lane = 0; lane < WIDTH; lane++) { /* lanes without a case repeat the last one, and are not told */
-        const int64_t number = stage.next < task->cases ? stage.next++ : task->cases - 1;
-        take(&stage, lane, number);
-        stage.at[lane] = number;
-        if (lane < task->cases) busy++;
-        else stage.cases[lane] = -1;
-    }
-    while (busy) {
-        lanes size, lack;
-        int64_t end[WIDTH];
-        int some = 0;
-        iterate(&stage, &size, &lack);
-        for (int lane = 0; lane < WIDTH; lane++) {
-            end[lane] = -1;
-            if (stage.cases[lane] < 0) continue;
-            stage.done[lane]++;
-            if (!isfinite(size[lane])) end[lane] = 2;
-            else if (size[lane] < task->step && lack[lane] < task->gap) end[lane] = 0;
-            else if (stage.done[lane] >= task->iterations) end[lane] = 1;
-            some |= end[lane] >= 0;
+    for (int64_t i = 0; i < task->cases; i++) task->status[i] = OPEN, task->count[i] = 0;
+    if (task->cases > WIDTH && begin_alike(task))
+        for (stage.next = 0; fill(&stage); stage.condensed = 1) {
+            advance(&stage);
+            for (int lane = 0; lane < WIDTH; lane++)
+                if (stage.cases[lane] >= 0) put(&stage, lane);
         }
-        if (!some) continue;
-        for (int i = 0; i < stage.flexures; i++) settle(stage.flexure + i);
+    stage.next = stage.condensed = 0;
+    int busy = fill(&stage);
+    while (busy) {
+        advance(&stage);
         for (int lane = 0; lane < WIDTH; lane++) {
-            if (end[lane] < 0) continue;
-            const int64_t number = stage.cases[lane];
-            task->status[number] = end[lane], task->count[number] = stage.done[lane];
-            task->moved[number] = size[lane], task->lack[number] = lack[lane];
+            if (stage.cases[lane] < 0 || task->status[stage.cases[lane]] == OPEN) continue;
             put(&stage, lane);
-            if (stage.next < task->cases) take(&stage, lane, stage.next), stage.at[lane] = stage.next++;
+            const int64_t number = draw(&stage);
+            if (number >= 0) take(&stage, lane, number);
             else stage.cases[lane] = -1, busy--;
         }
     }

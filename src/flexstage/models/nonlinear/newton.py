@@ -14,8 +14,8 @@ from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
 from flexstage.models.nonlinear.walk import walked
 
-_CHUNK = 128
-"""Cases at once: what they need stays in the processor's caches."""
+_CHUNK, _STREAM = 128, 2048
+"""Cases at once: what they need stays in the processor's caches; and of a stage whose iterations are all in C, where lanes refill."""
 
 
 USUAL = Effort()
@@ -44,13 +44,20 @@ class Found:
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort = USUAL) -> Found:
     """The equilibrium of every case, the whole load at once; what fails so is loaded in steps."""
     cases = np.arange(len(loads.inputs))
-    chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases)]
+    most = _STREAM if _all_compiled(model, hold) else _CHUNK
+    chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases, most)]
     found = join(chunks)
     return _by_steps(model, start, loads, hold, effort=effort, found=found)
 
 
-def _split(cases: Array) -> list[Array]:
-    return np.array_split(cases, max(1, -(-len(cases) // _CHUNK)))
+def _split(cases: Array, most: int) -> list[Array]:
+    return np.array_split(cases, max(1, -(-len(cases) // most)))
+
+
+def _all_compiled(model: Nonlinear, hold: Hold) -> bool:
+    """Whether the kernel knows all of the stage: flexures and dead loads, nothing else and nothing held."""
+    others = model.hinges.names or model.elements or len(hold.body)
+    return not others and kernel() is not None and tables(model) is not None
 
 
 def join(parts: list[Found]) -> Found:
@@ -99,7 +106,7 @@ def _merge(found: Found, cases: Array, other: Found) -> Found:
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
     """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
     compiled = kernel() is not None and tables(model) is not None
-    if compiled and not model.hinges.names and not len(hold.body):
+    if _all_compiled(model, hold):
         found = iterate_compiled(model, start, loads, effort, None)
         return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
     count = len(loads.inputs)
