@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.modes import Modes, modes
 from flexstage.analysis.stability import Stability, stability
 from flexstage.analysis.standing import drawn, kinematics, standing, under_load
-from flexstage.analysis.stroke import Stroke
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
@@ -27,6 +27,7 @@ from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -34,8 +35,15 @@ from flexstage.mechanism.outline import outlines
 from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+
+if TYPE_CHECKING:
+    from flexstage.analysis import stroke as strokes
+    from flexstage.models.nonlinear import linearise
+    from flexstage.models.nonlinear import stage as displaced
+else:
+    strokes = Late("flexstage.analysis.stroke")
+    linearise = Late("flexstage.models.nonlinear.linearise")
+    displaced = Late("flexstage.models.nonlinear.stage")
 
 
 class Bench:
@@ -46,15 +54,15 @@ class Bench:
         self.command = command
         self._corrections: dict[str, Matrix] = {}
         self._reaches: dict[str, ForceReach] = {}
-        self._strokes: dict[tuple[str, float | None], Stroke] = {}
+        self._strokes: dict[tuple[str, float | None], strokes.Stroke] = {}
         self._along: dict[str, Bench] = {}
 
     @cached_property
-    def nonlinear(self) -> Nonlinear:
+    def nonlinear(self) -> displaced.Nonlinear:
         """The stage for large displacements."""
-        return nonlinear(self.mechanism)
+        return displaced.nonlinear(self.mechanism)
 
-    def along(self, name: str, at: float | None = None) -> Stroke:
+    def along(self, name: str, at: float | None = None) -> strokes.Stroke:
         """What the stage does along a path that the design states, or at one value of its drive."""
         if (name, at) not in self._strokes:
             found = course(self.mechanism, name)
@@ -70,7 +78,7 @@ class Bench:
             if lost:
                 raise refuse(f"paths.{name}", f"{lost} of its {states.converged.size} points have no equilibrium", "Ask for less stroke")
             other = Bench(self.mechanism, self.command)
-            other.__dict__["model"] = linearise(states, locked=found.locked)
+            other.__dict__["model"] = linearise.linearise(states, locked=found.locked)
             self._along[name] = other
         return self._along[name]
 

@@ -25,6 +25,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER
+from flexstage.base.threads import one_thread
 from flexstage.base.unit import show
 from flexstage.beams.mass import mass
 from flexstage.beams.validity import validity
@@ -174,6 +175,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
     return {name: part for name, part in inner.items() if isinstance(part, Piezo)}
 
 
+@one_thread
 def cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     """What is doubtful: the loaded stage, parts beyond beam theory's range, blocked strokes, outlines that clash or leave their room.
 

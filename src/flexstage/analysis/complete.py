@@ -120,8 +120,8 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 
 
 @one_thread
-def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
-    """Every analysis of one model.
+def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
+    """Every analysis of one model; unless `whole` without responses and units alone, half of the time, which the short form does not show.
 
     What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
     the model itself is refused.
@@ -140,6 +140,13 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
     command = required_command(mechanism)
     reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
     hinged = linear if model is Model.LUMPED else None
+
+    def responded(known: LinearModel) -> Response | None:
+        return response(known, seen, known.actuators) if whole or not known.actuators else None  # without one it is refused
+
+    def alone() -> Mapping[str, UnitResult] | None:
+        return units(mechanism) if whole or not kinematics.mapping.rows else None  # without strokes they are refused
+
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
     stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
     drifted = attempt.of_ground("drift", linked if model is Model.LUMPED else None, _UNLUMPED, lambda known: drift(mechanism, known))
@@ -153,12 +160,12 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED) -> Analysis:
         buckling=attempt.of_ground("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
         modes=attempt.of_ground("modes", weighed, _RIGID, lambda known: platform_modes(mechanism, known)),
-        response=attempt.of_ground("response", weighed, _RIGID, lambda known: response(known, seen, known.actuators)),
-        transmissibility=attempt.of_ground("transmissibility", weighed, _RIGID, transmissibility),
+        response=attempt.of_ground("response", weighed, _RIGID, responded),
+        transmissibility=attempt.of_ground("transmissibility", weighed, _RIGID, lambda known: transmissibility(known) if whole else None),
         workspace=reach,
         drift=drifted,
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
-        units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: units(mechanism)),
+        units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: alone()),
         verdicts=verdicts,
         reach=None if forced is None else attempt.of_ground("reach", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),

@@ -4,22 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexstage.analysis.stance import coordinate
-from flexstage.analysis.stroke import Stroke, stroke
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, LENGTH, Quantity
 from flexstage.base.unit import parse, quantity_of_unit
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import Mechanism, StrokePath
 from flexstage.models.linear.channels import input_channels, wrench_places
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
-from flexstage.models.nonlinear.path import Path, path
-from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.spatial.frame import COMPONENTS, FORCES
+
+if TYPE_CHECKING:
+    from flexstage.analysis import stance
+    from flexstage.analysis import stroke as strokes
+    from flexstage.models.nonlinear import equilibrium
+    from flexstage.models.nonlinear import path as paths
+    from flexstage.models.nonlinear import stage as nonlinear
+else:
+    stance = Late("flexstage.analysis.stance")
+    strokes = Late("flexstage.analysis.stroke")
+    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
+    paths = Late("flexstage.models.nonlinear.path")
+    nonlinear = Late("flexstage.models.nonlinear.stage")
 
 _SWITCH = {"on": 1.0, "off": 0.0}
 
@@ -37,25 +47,25 @@ class Course:
     locked: tuple[str, ...]
     weight: float
 
-    def rest(self, model: Nonlinear) -> State:
+    def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
         """Where the stage rests. Raises `DesignError` where it does not."""
-        found = equilibrium(model, self.loads, weight=self.weight)
+        found = equilibrium.equilibrium(model, self.loads, weight=self.weight)
         if not bool(found.converged):
             raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
         return found
 
-    def path(self, model: Nonlinear, rest: State, values: Array | None = None) -> Path:
+    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
         """Equilibria along it, or at other values of its drive."""
         wanted = self.values if values is None else values
         driven = self.drive in {channel.name for channel in model.inputs}
-        start = 0.0 if driven else float(coordinate(rest, self.drive))
-        hold = {name: float(coordinate(rest, name)) for name in self.locked}
-        return path(model, self.drive, start + wanted, loads=self.loads, hold=hold, weight=self.weight)
+        start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
+        hold = {name: float(stance.coordinate(rest, name)) for name in self.locked}
+        return paths.path(model, self.drive, start + wanted, loads=self.loads, hold=hold, weight=self.weight)
 
-    def stroke(self, model: Nonlinear, values: Array | None = None) -> Stroke:
+    def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
         """What the stage does along it, counted from where it rests."""
         rest = self.rest(model)
-        return stroke(self.path(model, rest, values), rest)
+        return strokes.stroke(self.path(model, rest, values), rest)
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -13,18 +13,24 @@ from flexstage.analysis.stability import Stability, is_large, prestress
 from flexstage.analysis.standing import standing, under_load
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError, refuse
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.nonlinear.critical import unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
-from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS
+
+if TYPE_CHECKING:
+    from flexstage.models.nonlinear import critical, equilibrium, linearise
+    from flexstage.models.nonlinear import stage as nonlinear
+else:
+    critical = Late("flexstage.models.nonlinear.critical")
+    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
+    linearise = Late("flexstage.models.nonlinear.linearise")
+    nonlinear = Late("flexstage.models.nonlinear.stage")
 
 _BENT = "what bends flexures that are not straight when free"
 _WARM = "its temperatures"
@@ -47,13 +53,13 @@ class LoadEffect:
     figure: str
     why: str
     model: Annotated[LinearModel | None, INNER]
-    state: Annotated[State | None, INNER] = None
+    state: Annotated[equilibrium.State | None, INNER] = None
     cause: str = "weight, payloads and forces"
 
     @cached_property
     def links(self) -> LinearModel | None:
         """Small motions about the loaded state link by link: flexures follow their ends as at rest."""
-        return None if self.model is None or self.state is None else linearise(self.state, inner=False)
+        return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
 
     @property
     def text(self) -> str:
@@ -148,13 +154,13 @@ def _straight(mechanism: Mechanism) -> Mechanism:
 
 
 def _felt(mechanism: Mechanism) -> LoadEffect:
-    state = equilibrium(nonlinear(mechanism))
-    unloaded = equilibrium(nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
-    if int(unstable_motions(state)):
+    state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
+    unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
+    if int(critical.unstable_motions(state)):
         raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
     if not bool(state.converged):
         raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
-    found = _compare(linearise(unloaded), linearise(state))
+    found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
     return replace(found, state=state if found.model is not None else None)
 
 

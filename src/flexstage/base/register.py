@@ -73,7 +73,14 @@ def _origin(package: str) -> str:
 
 @functools.cache
 def _offered(group: str) -> tuple[EntryPoint, ...]:
-    return tuple(entry_points(group=group))
+    return tuple(offer for offer in _all_offers() if offer.group == group)
+
+
+@functools.cache
+def _all_offers() -> tuple[EntryPoint, ...]:
+    """What all packages offer to any register, read once: every installed package has a file of its own."""
+    found = entry_points()
+    return tuple(offer for group in GROUPS for offer in found.select(group=group))
 
 
 def _distribution(offer: EntryPoint) -> str:

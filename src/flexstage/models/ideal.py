@@ -19,6 +19,7 @@ import scipy
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, first_design
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.beams.compliance import law
@@ -28,7 +29,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
-from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.models.linear.large import symmetric_factor
 from flexstage.parts.freedom import ALL, Freedom

@@ -15,6 +15,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, below
 from flexstage.beams.compliance import Law, law, law_of, viscous_damping
@@ -39,7 +40,7 @@ from flexstage.models.linear.channels import (
     wrench_places,
 )
 from flexstage.models.linear.eigen import cholesky, sign_weights
-from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, pivoted_qr
+from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion
 from flexstage.models.linear.large import SINGULAR, Quadratic, Solver, surely_definite
 from flexstage.models.linear.model import Contribution, Contributions, LinearModel, assemble, strain_forces
 from flexstage.parts.condensation import Condensed, condense

@@ -14,6 +14,7 @@ import numpy as np
 
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
@@ -22,7 +23,7 @@ from flexstage.mechanism.incidence import deformation, layout, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.models.ideal import ideal
-from flexstage.models.linear.elimination import null_space, pivoted_qr
+from flexstage.models.linear.elimination import null_space
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import Channel, Contribution, LinearModel
 from flexstage.parts.freedom import ALL, Freedom

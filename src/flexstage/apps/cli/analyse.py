@@ -57,9 +57,9 @@ def analyse(  # noqa: PLR0913 (its options)
 
     With --set, the key figures are shown as old, new and change, in the report too.
     """
-    analysis, compared = _worked_out(
-        design, model, changes or [], [("--json", json), ("--xlsx", xlsx), ("--report", report), ("--mat", mat)]
-    )
+    outputs: list[tuple[str, str | Path | None]] = [("--json", json), ("--xlsx", xlsx), ("--report", report), ("--mat", mat)]
+    whole = full or csv is not None or any(each is not None for _, each in outputs)
+    analysis, compared = _worked_out(design, model, changes or [], outputs, whole=whole)
     if mat is not None:
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
@@ -80,15 +80,15 @@ def analyse(  # noqa: PLR0913 (its options)
 
 
 def _worked_out(
-    design: Path, model: Model, changes: list[str], outputs: list[tuple[str, str | Path | None]]
+    design: Path, model: Model, changes: list[str], outputs: list[tuple[str, str | Path | None]], *, whole: bool
 ) -> tuple[Analysis, Comparison | None]:
     """The analysis of the design with its changes, and their effect if there are any."""
     stated = open_design(design, (), outputs)
-    analysis = complete.analyse(change(stated, changes), model)
+    analysis = complete.analyse(change(stated, changes), model, whole=whole)
     if not changes:
         return analysis, None
     addresses = tuple(each.partition("=")[0].strip() for each in changes)
-    return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, model), analysis))
+    return analysis, Comparison(stated, addresses, difference(complete.analyse(stated, model, whole=whole), analysis))
 
 
 def _results(analysis: Analysis) -> dict[str, Any]:

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array
 from flexstage.base.sparse import Sparse
-from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space, pivoted_qr
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space
 
 _RANK = 1e-9
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
-import scipy
 
+from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, first_design
 
 _RANK = 1e-9
@@ -133,12 +132,3 @@ def null_space(matrix: Array) -> Array:
     orthogonal, triangle, _ = pivoted_qr(_preference(matrix.T))
     diagonal = np.abs(np.diag(triangle))
     return orthogonal[:, int(np.sum(diagonal > _RANK * diagonal[0])) :]
-
-
-def pivoted_qr(matrix: Array) -> tuple[Array, Array, Array]:
-    """QR decomposition of one real matrix with column pivoting: Q (m, m), R and the order of the columns, largest first.
-
-    >>> pivoted_qr(np.array([[1.0, 2.0]]))[2].tolist()
-    [1, 0]
-    """
-    return cast(tuple[Array, Array, Array], scipy.linalg.qr(matrix, pivoting=True))

@@ -1,0 +1,44 @@
+"""LAPACK without the rest of `scipy.linalg`: its results to the last bit."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import scipy
+
+from flexstage.base import lapack
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("size", [1, 2, 7, 33, 114])
+def test_results_are_those_of_scipy(size, order):
+    random = np.random.default_rng(size)
+    matrix = np.array(random.standard_normal((size, size)), order=order)
+    definite = np.array(matrix @ matrix.T + size * np.eye(size), order=order)
+    root = scipy.linalg.cholesky(definite, lower=True)
+    np.testing.assert_array_equal(lapack.cholesky(definite), root)
+    for triangle, lower in ((root, True), (root.T, False)):
+        for right in (matrix, matrix.T, matrix[0]):
+            known = scipy.linalg.solve_triangular(triangle, right, lower=lower)
+            np.testing.assert_array_equal(lapack.solve_triangular(triangle, right, lower=lower), known)
+    few = min(3, size)
+    known = scipy.linalg.eigh(definite, subset_by_index=[0, few - 1])[1]
+    np.testing.assert_array_equal(lapack.lowest_shapes(definite, few), known)
+    for each in (matrix, matrix[: size // 2 + 1], matrix[:, : size // 2 + 1]):
+        for found, expected in zip(lapack.pivoted_qr(each), scipy.linalg.qr(each, pivoting=True), strict=True):
+            np.testing.assert_array_equal(found, expected)
+
+
+def test_a_matrix_that_is_not_definite_and_a_singular_triangle_are_refused():
+    with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
+        lapack.cholesky(np.array([[1.0, 0.0], [0.0, -1.0]]))
+    with pytest.raises(np.linalg.LinAlgError, match="singular"):
+        lapack.solve_triangular(np.zeros((2, 2)), np.ones(2), lower=True)
+
+
+def test_the_rest_of_scipy_is_not_loaded():
+    asked = (
+        "import sys; from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2)); assert 'scipy.linalg' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", asked], check=True)
