@@ -10,10 +10,11 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.health import Needs
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.identification.identify import Excitation, Search
+from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import identification, usable_measurement
 from flexstage.experiment.record import Channel, InMemory, Record, Role
 from flexstage.models.linear.frequency import superpose

@@ -21,8 +21,9 @@ from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_
 from flexstage.experiment.updating.tables import update_table
 from flexstage.experiment.updating.text import updated_text
 from flexstage.experiment.updating.update import Told, Updated, update
+from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.rig import rig
-from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup, Sensing
+from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
 from flexstage.mechanism.address import get, set_value, tag_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, loads

@@ -73,14 +73,14 @@ def _origin(package: str) -> str:
 
 @functools.cache
 def _offered(group: str) -> tuple[EntryPoint, ...]:
-    return tuple(offer for offer in _all_offers() if offer.group == group)
+    return _known_offers()[group] if group in GROUPS else tuple(entry_points(group=group))
 
 
 @functools.cache
-def _all_offers() -> tuple[EntryPoint, ...]:
-    """What all packages offer to any register, read once: every installed package has a file of its own."""
+def _known_offers() -> Mapping[str, tuple[EntryPoint, ...]]:
+    """What packages offer to all registers, read once: every installed package has a file of its own."""
     found = entry_points()
-    return tuple(offer for group in GROUPS for offer in found.select(group=group))
+    return {group: tuple(found.select(group=group)) for group in GROUPS}
 
 
 def _distribution(offer: EntryPoint) -> str:

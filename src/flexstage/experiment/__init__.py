@@ -10,11 +10,13 @@ HOMES = {
     "health": "Needs examine",
     "cross_spectra": "Segments spectra",
     "transfer": "h1 h2",
-    "identification.identify": "Excitation Search identify",
+    "identification.excitation": "Excitation",
+    "identification.identify": "Search identify",
     "comparison": "compare",
     "updating.update": "update",
     "updating.free": "Known",
     "virtual_rig.rig": "rig",
-    "virtual_rig.setup": "Amplifier AntiAlias NoiseDrive Recorded RigSetup Sensing Tap",
+    "virtual_rig.recorded": "Recorded Tap",
+    "virtual_rig.setup": "Amplifier AntiAlias NoiseDrive RigSetup Sensing",
 }
 __getattr__, __dir__ = lazy_attributes(__name__, HOMES)

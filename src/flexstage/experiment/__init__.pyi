@@ -15,8 +15,10 @@ from flexstage.experiment.health import (
     Needs as Needs,
     examine as examine,
 )
-from flexstage.experiment.identification.identify import (
+from flexstage.experiment.identification.excitation import (
     Excitation as Excitation,
+)
+from flexstage.experiment.identification.identify import (
     Search as Search,
     identify as identify,
 )
@@ -42,6 +44,10 @@ from flexstage.experiment.updating.free import (
 from flexstage.experiment.updating.update import (
     update as update,
 )
+from flexstage.experiment.virtual_rig.recorded import (
+    Recorded as Recorded,
+    Tap as Tap,
+)
 from flexstage.experiment.virtual_rig.rig import (
     rig as rig,
 )
@@ -49,10 +55,8 @@ from flexstage.experiment.virtual_rig.setup import (
     Amplifier as Amplifier,
     AntiAlias as AntiAlias,
     NoiseDrive as NoiseDrive,
-    Recorded as Recorded,
     RigSetup as RigSetup,
     Sensing as Sensing,
-    Tap as Tap,
 )
 
 HOMES: dict[str, str]

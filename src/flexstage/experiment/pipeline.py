@@ -14,8 +14,9 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.experiment.cross_spectra import Spectra, Tell, pool, spectra
 from flexstage.experiment.health import Needs, responses_findings, usable_record
 from flexstage.experiment.identification.evidence import choose_segments
+from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.identification.identify import Excitation, Search, identify
+from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.unrecorded import identify_decay, identify_floor
 from flexstage.experiment.options import Allow
 from flexstage.experiment.record import Record, Responses, report_reading

@@ -16,7 +16,8 @@ from flexstage.experiment import options
 from flexstage.experiment.cross_spectra import Segments
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.health import Needs
-from flexstage.experiment.identification.identify import Excitation, Search
+from flexstage.experiment.identification.excitation import Excitation
+from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
 from flexstage.experiment.record import Record, Responses
 from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from flexstage.apps.cli.signature import signature_of
 from flexstage.base.finding import Finding, require
 from flexstage.show.command.models import Models
 
@@ -31,6 +32,11 @@ class Command(NamedTuple):
         """The function or `Typer`, from its module."""
         module, _, name = self.home.partition(":")
         return getattr(import_module(module), name)
+
+    def signature(self) -> Any:
+        """What reads its options and shows its help, and imports its module when it is called."""
+        module, _, name = self.home.partition(":")
+        return signature_of(module, name)
 
 
 _DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
@@ -143,7 +149,7 @@ class LazyCommand(TyperCommand):
 
     def load(self) -> Any:
         """The command itself, or a group of commands."""
-        home = self.command.load()
+        home = self.command.signature()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
             home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)

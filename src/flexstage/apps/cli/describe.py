@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from enum import Enum
 from json import dumps as as_json
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +11,7 @@ import typer
 
 import flexstage
 from flexstage.analysis.cautions import caveats, model_findings
+from flexstage.apps.cli.file_kind import File
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import shipped_case
@@ -118,15 +118,6 @@ def _tell_sound(design: Path, mechanism: Mechanism) -> None:
     count = len(caveats(mechanism).cautions)
     said = f", {count} caution{'' if count == 1 else 's'}" if count else ""
     print_result(f"{design}: no findings{said}.")
-
-
-class File(Enum):
-    """Files that have a schema."""
-
-    DESIGN = "design"
-    STUDY = "study"
-    LOOP = "loop"
-    HYSTERESIS = "hysteresis"
 
 
 _SCHEMAS = {File.DESIGN: design_schema, File.STUDY: study_schema, File.LOOP: setup_schema, File.HYSTERESIS: hysteresis_schema}

@@ -10,8 +10,9 @@ import typer
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
+from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
-from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
+from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.models.theory import Model
 from flexstage.parts.amplifier import Amplifier

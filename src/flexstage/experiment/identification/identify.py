@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from flexstage.experiment.identification.caution import Modes, warnings
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
 from flexstage.experiment.identification.driven import measure_drives
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
+from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
@@ -32,17 +32,6 @@ _LONGEST = 40
 _PASSES = 2
 _FEW = 5.0
 _LEAST_PARTS, _MOST_PARTS = 3, 8
-
-
-class Excitation(Enum):
-    """What moved the stage."""
-
-    RECORDED = "recorded"
-    """Inputs that were recorded."""
-    FLOOR = "floor"
-    """The floor, or other noise that nobody recorded, all along."""
-    DECAY = "decay"
-    """Nothing: it was left to itself after a blow or a release."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import scipy
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.virtual_rig.plan import TAPER, Plan
-from flexstage.experiment.virtual_rig.setup import Tap
+from flexstage.experiment.virtual_rig.recorded import Tap
 from flexstage.mechanism.mechanism import Damping, ModalDamping, StructuralDamping
 from flexstage.models.linear.damping import modal_ratios
 from flexstage.models.linear.eigen import eigen

@@ -10,8 +10,9 @@ from flexstage.experiment.record import Channel, Record, Role
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
 from flexstage.experiment.virtual_rig.plan import Plan, plan_test
+from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.samples import Simulated
-from flexstage.experiment.virtual_rig.setup import Recorded, RigSetup
+from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law

@@ -3,27 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import Enum
 
+from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
 from flexstage.parts.amplifier import Amplifier
-
-
-class Tap(Enum):
-    """Where the recorded inputs are taken from."""
-
-    MONITOR = "monitor"
-    """Behind the amplifier and through the same filter as the gauges: amplifier and filter cancel in the frequency response."""
-    COMMAND = "command"
-    """Before the amplifier, not filtered: amplifier and filter are part of the frequency response."""
-
-
-class Recorded(Enum):
-    """What the recorded inputs are numbers of."""
-
-    STROKE = "stroke"
-    """Free stroke in um."""
-    VOLTAGE = "voltage"
-    """Voltage in V, counted from the bias."""
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.samples import Simulated
-from flexstage.experiment.virtual_rig.setup import Recorded
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Cell, Mark, Table, make_table
 
