@@ -10,9 +10,9 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.health import Needs
 from flexstage.experiment.identification.confidence import NORMAL_95
+from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import identification, usable_measurement

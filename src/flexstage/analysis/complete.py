@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from flexstage.analysis.deflection import Deflection, deflection
 from flexstage.analysis.drift import Drift, drift
 from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.judge import judge
-from flexstage.analysis.load_cases import CaseFactors, critical_factors, path_cases
 from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
@@ -30,6 +30,7 @@ from flexstage.analysis.workspace.reach import reach as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, small_motion
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
+from flexstage.base.lazy import Late
 from flexstage.base.number import Number, Table
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -39,6 +40,11 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.mapped import mapped
 from flexstage.models.theory import Model
+
+if TYPE_CHECKING:
+    from flexstage.analysis import load_cases
+else:
+    load_cases = Late("flexstage.analysis.load_cases")
 
 __all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
 
@@ -83,7 +89,7 @@ class Analysis:
     mass: MassMatrix | None = None
     loaded: LoadEffect | None = None
     second_order: SecondOrder | None = None
-    ends: CaseFactors | None = None
+    ends: load_cases.CaseFactors | None = None
 
     @property
     def felt(self) -> LinearModel | None:
@@ -177,11 +183,11 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     )
 
 
-def _ends(mechanism: Mechanism) -> CaseFactors:
+def _ends(mechanism: Mechanism) -> load_cases.CaseFactors:
     """Load cases at the ends of paths, followed as far as a factor is asked for."""
-    cases = [each for name in mechanism.paths for each in path_cases(mechanism, name)]
+    cases = [each for name in mechanism.paths for each in load_cases.path_cases(mechanism, name)]
     demand = asked_factor(mechanism)
-    return critical_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
+    return load_cases.critical_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
 
 
 def _second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:

@@ -7,12 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial, wraps
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.load_cases import REST, LoadCase, case_critical, path_cases
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
@@ -20,6 +19,7 @@ from flexstage.analysis.workspace.reach import bounds_along
 from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import refuse, require
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.quantity import (
     ANGLE,
@@ -42,11 +42,17 @@ from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import design, designs, step_size
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.nonlinear.critical import NothingGivesWayError
-from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport
+
+if TYPE_CHECKING:
+    from flexstage.analysis import load_cases as cases
+    from flexstage.models.nonlinear import critical, state
+else:
+    cases = Late("flexstage.analysis.load_cases")
+    critical = Late("flexstage.models.nonlinear.critical")
+    state = Late("flexstage.models.nonlinear.state")
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
 TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")
@@ -493,7 +499,7 @@ path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural freq
 @_each_design
 def buckling_factor(bench: Bench, _: Measure) -> float:
     """How many times its own weight and payloads the stage bears, at large displacements."""
-    return _borne(bench, LoadCase(WEIGHT, REST, {WEIGHT: 1.0}))
+    return _borne(bench, cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0}))
 
 
 @partial(MeasureKind, "<path>.buckling", RATIO, along=True)
@@ -501,13 +507,13 @@ def buckling_factor(bench: Bench, _: Measure) -> float:
 def path_buckling(bench: Bench, asked: Measure) -> float:
     """How many times its weight, and what loads it, the stage bears at the ends of a path, at large displacements; the least."""
     places = None if asked.place is None else {"there": asked.place}
-    return min((_borne(bench, each) for each in path_cases(bench.mechanism, asked.name, places)), default=np.inf)
+    return min((_borne(bench, each) for each in cases.path_cases(bench.mechanism, asked.name, places)), default=np.inf)
 
 
-def _borne(bench: Bench, asked: LoadCase) -> float:
+def _borne(bench: Bench, asked: cases.LoadCase) -> float:
     try:
-        return case_critical(bench.nonlinear, asked, tolerance=1e-9).factor  # slopes are taken of it
-    except NothingGivesWayError:
+        return cases.case_critical(bench.nonlinear, asked, tolerance=1e-9).factor  # slopes are taken of it
+    except critical.NothingGivesWayError:
         return np.inf
 
 

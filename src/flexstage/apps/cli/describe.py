@@ -11,7 +11,7 @@ import typer
 
 import flexstage
 from flexstage.analysis.cautions import caveats, model_findings
-from flexstage.apps.cli.file_kind import File
+from flexstage.apps.cli.words import File
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.cases.registry import shipped_case

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import Annotated
 
 import numpy as np
@@ -18,6 +17,7 @@ from flexstage.analysis.requirements import asked_factor
 from flexstage.analysis.stance import require_consistent
 from flexstage.analysis.stroke import Stroke
 from flexstage.analysis.stroke import stroke as over_stroke
+from flexstage.apps.cli.words import Side
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import ANGLE, LENGTH, RATIO
@@ -106,13 +106,6 @@ def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int,
     if low == high:
         raise refuse("--to", f"{drive} goes from {low:g} to {high:g}: a drive that does nothing", "Name two places")
     return Course(drive, np.linspace(low, high, more[0]), more[1], (), 1.0)
-
-
-class Side(Enum):
-    """The two ways of a branch: with the shape that gives way, or the other way."""
-
-    ALONG = "along"
-    AGAINST = "against"
 
 
 @dataclass(frozen=True, eq=False)
