@@ -108,12 +108,7 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
 
 
 def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> Matrix:
-    """The misalignment of every copy (or link) that joins the ground at which the stage gives way, by axis; NaN where none does.
-
-    >>> from flexstage.cases.parallelogram import parallelogram
-    >>> critical_misalignments(parallelogram(), ("ry",)).rows
-    ('B', 'left', 'right')
-    """
+    """The misalignment of every copy (or link) that joins the ground at which the stage gives way, by axis; NaN where none does."""
     rows = seated(mechanism)
     values = [[_forced(mechanism, copy, axis).critical() for axis in axes] for copy in rows]
     units = tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes)

@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import Enum
 from importlib.metadata import PackageNotFoundError, metadata, packages_distributions, requires, version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,8 @@ def _run(code: str) -> subprocess.CompletedProcess[str]:
 def _module(package: str) -> str:
     """What is imported of a package: the module of its name, or the first it brings (PIL of pillow)."""
     own = package.replace("-", "_")
+    if find_spec(own):
+        return own  # without a look at what all that is installed brings
     known = [module for module, owners in packages_distributions().items() if package in map(str.lower, owners)]
     return own if own in known else next(iter(known), own)
 
