@@ -152,9 +152,11 @@ def test_analyse_nests_the_documents_of_the_commands(flexstage: Command) -> None
         alone = flexstage(name, "stage.toml", "--json", "-").document
         common = {key: value for key, value in alone.items() if key in whole[name]}
         assert whole[name] == common, name
-        beside = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "loaded"}
+        beside = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "loaded", "second_order"}
         assert set(alone) - set(common) <= beside
         assert alone.get("loaded", whole["loaded"]) == whole["loaded"]
+        assert ("second_order" in alone) == (name in ("workspace", "budget"))
+        assert alone.get("second_order", whole["second_order"]) == whole["second_order"]
     assert [line["passed"] for line in whole["requirements"]] == [True] * 8
     assert list(whole).index("requirements") < list(whole).index("mapping")
 
@@ -200,7 +202,7 @@ def test_changes_are_told_old_new_and_relative(flexstage: Command) -> None:
 
 
 ENVELOPE = {"format", "kind", "version", "name", "model", "physics_digest", "cautions", "defaults", "method", "provenance", "reasons"}
-ENVELOPE |= {"loaded"}  # a section of its own
+ENVELOPE |= {"loaded", "second_order"}  # sections of their own
 
 
 def page_section(kind: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.workspace.drive import drive
+from flexstage.analysis.workspace.small import second_order
 from flexstage.base.document import plain
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
@@ -21,7 +23,7 @@ from flexstage.control.coordinates import coordinates
 from flexstage.control.error_tables import _error_and_crosstalk, noise_table
 from flexstage.control.playing import response_motions
 from flexstage.control.reduction import reduce_modes, resonances
-from flexstage.control.sections import margin_spots
+from flexstage.control.sections import margin_spots, time_section
 from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
 from flexstage.control.study.course import courses, sampled_course
@@ -71,14 +73,29 @@ def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
     assert (sensor.filter_order, sensor.filter_corner) == (2, 4e3)
 
 
+@cache
+def _calm() -> LoopStudy:
+    return loop_study(parallelogram(), LoopSetup(rate=10e3, controller=CALM))
+
+
 def test_margins_are_marked_where_the_open_loop_has_them() -> None:
-    found = loop_study(parallelogram(), LoopSetup(rate=10e3, controller=CALM))
+    found = _calm()
     spots = tuple(margin_spots(found))
     assert found.curves is not None
     assert {each.text.split(" margin")[0] for each in spots} == {"x: gain", "x: phase"}
     for spot in spots:
         opened = 1.0 / found.curves.response.at(np.array([spot.x]))[0, 0, 0] - 1.0
         assert spot.y == pytest.approx(abs(opened), rel=1e-6)
+
+
+def test_how_far_small_displacements_hold_is_told_of_what_is_simulated() -> None:
+    found = _calm()
+    stepped = {found.plant.coordinates.names[0]: np.max(found.runs[0].simulated.reference)}
+    assert found.second_order == second_order(found.settled.mechanism, found.settled.kinematics, stepped)
+    assert found.second_order is not None
+    time = time_section(found)
+    assert time is not None
+    assert time.blocks[0] == found.second_order.text
 
 
 def test_what_plays_is_where_the_platform_truly_went() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,11 +27,11 @@ from flexstage.analysis.units import UnitResult, units
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.reach import ForceReach
 from flexstage.analysis.workspace.reach import reach as reach_of
-from flexstage.analysis.workspace.small import SecondOrder, small_motion
+from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.lazy import Late
-from flexstage.base.number import Number, Table
+from flexstage.base.number import Table
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
@@ -177,7 +177,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
-        second_order=_second_order(mechanism, kinematics, command if command or reach is None else reach.command),
+        second_order=second_order(mechanism, kinematics, command if command or reach is None else reach.command),
         ends=attempt.of_ground("ends", hinged, _UNLUMPED, lambda _: _ends(mechanism)) if mechanism.paths else None,
         missing=Table(attempt.missing),
     )
@@ -188,14 +188,6 @@ def _ends(mechanism: Mechanism) -> load_cases.CaseFactors:
     cases = [each for name in mechanism.paths for each in load_cases.path_cases(mechanism, name)]
     demand = asked_factor(mechanism)
     return load_cases.critical_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
-
-
-def _second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
-    """The error of small displacements over a box of motions; None where nobody asks for one, or no part is known to turn or bend."""
-    if not command or not kinematics.coordinates:
-        return None
-    found = small_motion(mechanism, kinematics).second_order(command)
-    return replace(found, held_twice=bool(kinematics.redundant)) if found.error else None
 
 
 def _buckling(mechanism: Mechanism, model: LinearModel, reach: Workspace | None) -> Buckling:

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.course import course
+from flexstage.analysis.stability import give_way
 from flexstage.analysis.stance import coordinate
 from flexstage.analysis.standing import drawn, load_factors
 from flexstage.analysis.workspace.reach import input_limits
@@ -104,7 +105,7 @@ class CaseFactors(InNotebook):
             least = min(short, key=lambda case: case.factor)
             asked = f" ({self.demand:g} is asked for)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases bear less than {bound:g} times theirs" if short[1:] else ""
-            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {least.gives_way} gives way{others}"
+            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.gives_way)}{others}"
             yield Finding(least.place, what, "Ask for less stroke, lighten the load, or make what it presses on stiffer")
         for case in self.cases:
             if np.isnan(case.factor):

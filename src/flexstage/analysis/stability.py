@@ -74,7 +74,7 @@ class Stability:
             return ()
         what = (
             f"the drawn position does not hold: weight, payloads and forces are {1.0 / least:.3g} times what it can bear "
-            f"(load factor {least:.3g}), {' and '.join(self.moving)} gives way"
+            f"(load factor {least:.3g}), {give_way(' and '.join(self.moving))}"
         )
         return (Finding("stage", what, "Lighten the load, make the parts it presses on stiffer, or turn them so that it hangs"),)
 
@@ -87,7 +87,7 @@ class Stability:
         dead, worst, stiffer = (float(each) for each in (np.min(np.real(self.dead)), np.min(np.real(self.worst)), np.max(self.stiffens)))
         if 1.0 <= dead < DOUBTFUL:
             what = (
-                f"weight, payloads and forces soften it: load factor {dead:.3g}, where {' and '.join(self.moving)} gives way. In that "
+                f"weight, payloads and forces soften it: load factor {dead:.3g}, where {give_way(' and '.join(self.moving))}. In that "
                 f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
             )
             advice = "stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
@@ -101,6 +101,15 @@ class Stability:
             what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
             advice = "stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
             yield Finding("stage", what, f"{advice}; elsewhere count on higher frequencies in that motion")
+
+
+def give_way(bodies: str) -> str:
+    """That bodies give way, one or several.
+
+    >>> give_way("table"), give_way("table and frame")
+    ('table gives way', 'table and frame give way')
+    """
+    return f"{bodies} {'give' if ' and ' in bodies else 'gives'} way"
 
 
 def _lower(factor: float) -> float:

@@ -217,7 +217,8 @@ def time_section(found: LoopStudy) -> Section | None:
         pictures.append(Picture(drawn, caption, reading=reading(figure)))
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
-    return section("Over time", [*blocks, *pictures])
+    small = None if found.second_order is None else found.second_order.text
+    return section("Over time", [small, *blocks, *pictures])
 
 
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:

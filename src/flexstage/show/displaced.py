@@ -131,7 +131,7 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
         _misaligned_stage(seen, data),
         _misaligned_curves(found),
         caveat_section(mechanism, found.cautions),
-        section("Point by point", [*result_tables(found)]),
+        section("Point by point", misaligned_tables(found)),
         drawing_section(mechanism, seen),
     )
     headline = Headline(to_typography(_misaligned_text(found)), not bool(np.any(_beyond(found))))
@@ -156,6 +156,16 @@ def _misaligned_text(found: Misaligned) -> str:
     return f"{found.copy} misaligned {kind} {found.axis[-1]}: {critical_text(found)}"
 
 
+def misaligned_tables(found: Misaligned) -> list[Table]:
+    """Where the stage gives way, what it does on the way to the last misalignment, and the loads in all flexures there."""
+    last = format_value(float(found.along.values[-1, 0]), "rad" if found.axis.startswith("r") else "m", 4)
+    return [
+        make_table("Misaligned", ["copy", "axis", "what it bears"], [[found.copy, found.axis, critical_text(found)]]),
+        matrix_table("Point by point", found.along),
+        matrix_table(f"Loads in flexures at {last}, on each end in the frame of its start", found.loads),
+    ]
+
+
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
     """What each copy bears, as a page of HTML; the worst of them is played."""
     seen, worst = scene(mechanism), found.worst
@@ -165,7 +175,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         section("Copy by copy", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.cautions),
-        None if worst is None else section("The worst, point by point", [*result_tables(worst)]),
+        None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
         drawing_section(mechanism, seen),
     )
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"

@@ -7,7 +7,7 @@ Linear kinematics leave out theta^2/2 of what a turned lever does, and u/L of a 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -33,6 +33,7 @@ class SecondOrder:
     """By how much linear models may be off over a box of motions: the relative `error` of second order, of the part `link`, and why.
 
     `shortening` is how far the ends of the leaf or rod `shortened` come nearer as it bends, by which a guide goes aside; empty of none.
+    `held_twice`: redundant constraints may stretch flexures besides.
     """
 
     error: Annotated[float, RATIO]
@@ -125,6 +126,20 @@ class SmallMotion:
 
 
 _SMALL = float(np.sqrt(2.0 * ERROR))
+
+
+def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
+    """The error of small displacements over a box of motions; None where nobody asks for one, or no part is known to turn or bend.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> second_order(double_triangle(), ideal(double_triangle()), {"x": 50e-6}).link
+    'B4/lower'
+    """
+    if not command or not kinematics.coordinates:
+        return None
+    found = small_motion(mechanism, kinematics).second_order(command)
+    return replace(found, held_twice=bool(kinematics.redundant)) if found.error else None
 
 
 def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:

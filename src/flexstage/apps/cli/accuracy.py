@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
@@ -14,7 +14,9 @@ from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.reach import reach
+from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.quantity import TEMPERATURE
+from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
@@ -60,22 +62,42 @@ def workspace(
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
         reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
-        answer("workspace", mechanism, lambda: reached, lambda: reach_tables(reached), model=model, json=json, csv=csv, xlsx=xlsx)
+        small = second_order(mechanism, kinematics, motions(command or ()) or required_command(mechanism))
+        answer(
+            "workspace",
+            mechanism,
+            lambda: _with_error(reached, small),
+            lambda: [_small_text(small), *reach_tables(reached)],
+            model=model,
+            json=json,
+            csv=csv,
+            xlsx=xlsx,
+        )
         return
     stands = footing(mechanism, Place(), model)
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, stands.links)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
+    small = second_order(mechanism, kinematics, found.command)
     answer(
         "workspace",
         mechanism,
-        lambda: stands.body(found),
-        lambda: [*stands.tables(), *_workspace_tables(found)],
+        lambda: _with_error(stands.body(found), small),
+        lambda: [*stands.tables(), _small_text(small), *_workspace_tables(found)],
         model=model,
         json=json,
         csv=csv,
         xlsx=xlsx,
     )
+
+
+def _with_error(body: Any, small: SecondOrder | None) -> Any:
+    """A result, and beside it by how much small-displacement theory is off over the motions that it is about."""
+    return body if small is None else SideBySide((body, {"second_order": small}))
+
+
+def _small_text(small: SecondOrder | None) -> str | None:
+    return None if small is None else small.text
 
 
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
@@ -180,11 +202,12 @@ def budget(
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     stands = footing(mechanism, Place())
     found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
+    small = second_order(mechanism, ideal(mechanism), asked)
     answer(
         "budget",
         mechanism,
-        lambda: stands.body(found),
-        lambda: [*stands.tables(), *error_budget_tables(found)],
+        lambda: _with_error(stands.body(found), small),
+        lambda: [*stands.tables(), _small_text(small), *error_budget_tables(found)],
         model=Model.LUMPED,
         json=json,
         csv=csv,

@@ -484,8 +484,9 @@ def _about(found: LoopStudy) -> str:
     return f"{said}. Not in it, analogue and around it: force feedback, stroke = {form} tension / k, {numbers}, k: {gains}"
 
 
-def _tables(found: LoopStudy) -> Iterator[Table | None]:
+def _tables(found: LoopStudy) -> Iterator[Table | str | None]:
     yield tables.loop_table(found)
+    yield None if found.second_order is None else found.second_order.text
     yield tables.charge_table(found)
     yield tables.damping_table(found)
     yield tables.law_table(found)

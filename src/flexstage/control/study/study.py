@@ -12,6 +12,7 @@ from flexstage.analysis.load_effect import LoadEffect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.analysis.stance import Stance
+from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -111,6 +112,15 @@ class LoopStudy(InNotebook):
     def loaded(self) -> Annotated[LoadEffect | None, VIEW]:
         """What the dead load changes as drawn: where that is felt, the plant is the loaded stage's."""
         return self.settled.loaded
+
+    @property
+    def second_order(self) -> Annotated[SecondOrder | None, VIEW]:
+        """By how much small-displacement theory, by which the plant is as drawn, is off over the runs; null where no motion is known."""
+        given = self.settled
+        if given.displaced or not self.runs:
+            return None
+        most = np.max([np.max(np.abs(run.simulated.reference), axis=0, initial=0.0) for run in self.runs], axis=0)
+        return second_order(given.mechanism, given.kinematics, dict(zip(given.plant.coordinates.names, most, strict=True)))
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
