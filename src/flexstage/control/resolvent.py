@@ -12,6 +12,8 @@ from flexstage.base.number import Array
 from flexstage.control.system import System
 
 _CHUNK = 2_000_000
+_FEW = 12
+"""Points that are solved one by one: the rows of a triangle cost more than these, if each is a step of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +37,16 @@ class Resolvent:
         return np.where(np.isfinite(frequencies)[:, None, None], found, self.system.D)
 
     def _at(self, points: Array) -> Array:
+        if len(points) <= _FEW and len(self.triangle):
+            return np.stack([self.exit @ self._solved(point) for point in points]) + self.system.D
+        return self._at_many(points)
+
+    def _solved(self, point: complex) -> Array:
+        shifted = -self.triangle
+        np.einsum("ii->i", shifted)[:] += point
+        return scipy.linalg.blas.ztrsm(1.0, shifted, self.entry)
+
+    def _at_many(self, points: Array) -> Array:
         """Back substitution, row by row, for all points."""
         size, width = self.entry.shape
         solved = np.zeros((size, len(points) * width), complex)

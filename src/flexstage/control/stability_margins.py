@@ -69,8 +69,8 @@ class Margins(InNotebook):
         return Matrix(values, rows, kinds, (("1", "1", "rad", "s", "1"),) * len(rows))
 
 
-def margins(closed: Loop, cut: Cut) -> Margins:
-    """Margins of one loop at a time, the others closed.
+def margins(closed: Loop, cut: Cut, found: Curves | None = None) -> Margins:
+    """Margins of one loop at a time, the others closed; `found` are its `curves` where they are known already.
 
     An edge is where S_ii = 1/(1 + L_i) is real, below 0 or above 1 (L_i real and negative: a gain), or has real part 1/2 (|L_i| = 1: a
     phase, a delay), found to rounding between frequencies so dense that no L_i jumps. alpha_i = 1/||S_ii - 1/2|| (Seiler, Packard,
@@ -82,7 +82,7 @@ def margins(closed: Loop, cut: Cut) -> Margins:
     (4.49, 1.56, 0.0)
     """
     require_stable(closed, "margins")
-    found, whole = curves(closed, cut), sensitivity(open_at(closed, cut))
+    found, whole = found or curves(closed, cut), sensitivity(open_at(closed, cut))
     return Margins(cut, tuple(_channel(found, whole, number) for number in range(len(found.names))))
 
 
@@ -162,8 +162,10 @@ class Bandwidths(InNotebook):
     half_rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
 
 
-def bandwidths(closed: Loop) -> Bandwidths:
-    """Bandwidths by coordinate. Raises `DesignError` for an unstable loop.
+def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
+    """Bandwidths by coordinate; `found` are the `curves` at the pose where they are known already.
+
+    Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = bandwidths(integral_loop(gain=100.0))
@@ -171,7 +173,7 @@ def bandwidths(closed: Loop) -> Bandwidths:
     ([15.9], [15.9])
     """
     require_stable(closed, "bandwidths")
-    found = curves(closed, Cut.POSE)
+    found = found or curves(closed, Cut.POSE)
     level = np.sqrt(0.5)
     return Bandwidths(
         found.names,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -50,7 +51,7 @@ class System:
         """Names of the outputs."""
         return tuple(channel.name for channel in self.outputs)
 
-    @property
+    @cached_property
     def poles(self) -> Array:
         """Eigenvalues (n,) of A: in 1/s, or in the z plane where the system is sampled."""
         return np.linalg.eigvals(self.A)

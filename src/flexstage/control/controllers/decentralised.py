@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
 from flexstage.control.coordinates import Coordinates
-from flexstage.control.system import System, connect, rename, select, side_by_side
+from flexstage.control.system import System, select, side_by_side
 from flexstage.models.linear.model import Channel
 
 
@@ -99,9 +99,16 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
 def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> System:
     found = law.system(step)
     for each in notches:
-        found = connect([rename(found, {"command": "raw"}), each.system(step)], {}, found.inputs, ["notched"])
-        found = rename(found, {"notched": "command"})
+        found = _filtered(found, each.system(step))
     return found
+
+
+def _filtered(law: System, notch: System) -> System:
+    """A law whose command passes a notch: what is wired here is always the same, `connect` finds out what is."""
+    rows, columns = len(law.A), len(notch.A)
+    A = np.block([[law.A, np.zeros((rows, columns))], [notch.B @ law.C, notch.A]])
+    B = np.vstack([law.B, notch.B @ law.D])
+    return replace(law, A=A, B=B, C=np.hstack([notch.D @ law.C, notch.C]), D=notch.D @ law.D)
 
 
 def channels(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:

@@ -184,6 +184,7 @@ def loop_study(
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
     still = simulate_rest(given, control, closed)
     resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
+    seen = curves(closed, Cut.POSE) if is_closed else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -191,10 +192,10 @@ def loop_study(
         closed=closed,
         stability=found,
         growth_all_modes=growth,
-        margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE)) if is_closed else None,
+        margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE, seen)) if is_closed else None,
         peaks=peaks(closed, Cut.POSE) if is_closed else None,
-        bandwidths=bandwidths(closed) if is_closed else None,
-        curves=curves(closed, Cut.POSE) if is_closed else None,
+        bandwidths=bandwidths(closed, seen) if is_closed else None,
+        curves=seen,
         crosstalk=crosstalk(closed),
         disk_margin=disk_margins(closed, Cut.POSE) if is_closed else None,
         static_errors=rest,

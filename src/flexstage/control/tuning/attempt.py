@@ -18,8 +18,9 @@ from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.resolvent import resolvent
+from flexstage.control.system import System
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
-from flexstage.control.tuning.judge import crossing_frequency, judge_loop, open_gains
+from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, open_gains, own_bandwidths
 from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.view import View, resonances
 
@@ -52,17 +53,27 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """A controller, how it came out, and its notches by loop."""
+    """A controller, its notches by loop, and its `gains`, the `open_gains` of the plant that is `seen`."""
 
+    seen: View
     controller: Decentralised | LQG
-    judgement: Judgement
+    gains: Array
     notches: tuple[tuple[Notch, ...], ...]
+
+    @cached_property
+    def system(self) -> System:
+        """The controller, sampled."""
+        return self.controller.system(self.seen.step)
+
+    @cached_property
+    def judgement(self) -> Judgement:
+        """How it comes out."""
+        return judge_loop(self.seen, self.system, self.gains)
 
     def reaches(self, frequency: float, goal: Goal) -> bool:
         """Whether it is stable, no peak too high, and every loop passes 1 within 1 % of the frequency."""
-        found = self.judgement
-        passed = all(abs(each / frequency - 1.0) < 0.01 for each in found.bandwidths)
-        return found.stable and found.peak <= goal.sensitivity and passed
+        passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
+        return passed and keeps_peak(self.seen, self.system, self.gains, goal.sensitivity)
 
 
 def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
@@ -79,20 +90,41 @@ def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Atte
     >>> round(found.judgement.bandwidths[0], 1), found.notches
     (20.0, ((),))
     """
+    tried: list[Attempt] = []
+    for found in _attempts(seen, task, frequency, calm):
+        if found.reaches(frequency, task.goal):
+            return found
+        tried.append(found)
+    return min(tried, key=lambda each: each.judgement.score, default=None)
+
+
+def reach(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
+    """What reaches a frequency [Hz] as the goal says; None where nothing that the kind can do does. Faster than to find what comes nearest.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> plant = integral_loop().plant
+    >>> seen = view(plant, platform_loops(plant.coordinates), 0.0)
+    >>> reach(seen, Task(Kind.PI, Goal()), 20.0) is None, reach(seen, Task(Kind.PI, Goal()), 2000.0) is None
+    (False, True)
+    """
+    return next((found for found in _attempts(seen, task, frequency, calm) if found.reaches(frequency, task.goal)), None)
+
+
+def _attempts(seen: View, task: Task, frequency: float, calm: float) -> Iterator[Attempt]:
+    """What the kind can do, from what is simplest on."""
     if task.kind is Kind.LQG:
-        return _attempt_lqg(seen, task, frequency)
+        yield from _attempts_lqg(seen, task, frequency)
+        return
     stated: _Options = ((task.notches,),) * len(seen.loops.names)
     first = _decentralised(seen, task, frequency, calm, stated)
-    if first is None or not task.automatic or not _is_notched(task.kind) or first.reaches(frequency, task.goal):
-        return first
-    best = first
-    for options in _choices(_place_notches(seen, first, frequency)):
-        found = _decentralised(seen, task, frequency, calm, options)
-        if found is not None and found.judgement.score < best.judgement.score:
-            best = found
-        if best.reaches(frequency, task.goal):
-            break
-    return best
+    if first is None:
+        return
+    yield first
+    if task.automatic and _is_notched(task.kind):
+        found = (_decentralised(seen, task, frequency, calm, options) for options in _choices(_place_notches(seen, first, frequency)))
+        yield from (each for each in found if each is not None)
 
 
 def _is_notched(kind: Kind | Family) -> bool:
@@ -130,7 +162,7 @@ def _together(seen: View, task: Task, found: list[_Chosen]) -> Attempt:
     notches = tuple(each.notches for each in found)
     controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
     gains = (seen.responses @ seen.loops.drive) * np.stack([each.response for each in found], axis=-1)[:, None, :]
-    return Attempt(controller, judge_loop(seen, controller.system(seen.step), gains), notches)
+    return Attempt(seen, controller, gains, notches)
 
 
 def _first_alike(seen: View, options: _Options, loop: int) -> int:
@@ -196,10 +228,9 @@ def _candidates(
 ) -> Iterator[_Chosen]:
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
     first = next((each.frequency for each in resonances(seen, loop)), None)
-    filters = [notch.system(seen.step) for notch in notches]
-    filtered = _product([resonant.at(seen.frequencies) for resonant in map(resolvent, filters)])
-    notched = gain * complex(_product([each.transfer(np.array([frequency])) for each in filters])[0])
-    known = [(law, _sampled_response(law, seen)) for law in laws(kind, Place(frequency, notched, static, first), seen.step)]
+    filtered = np.prod([_notch_response(seen, notch) for notch in notches], axis=0) if notches else 1.0
+    notched = gain * complex(np.prod([notch.system(seen.step).transfer(np.array([frequency]))[0, 0, 0] for notch in notches]))
+    known = _law_responses(seen, kind, Place(frequency, notched, static, first))
     possible = [(law, response * filtered) for law, response in known if response is not None]
     if not possible:
         return
@@ -208,17 +239,33 @@ def _candidates(
         yield _Chosen(law, notches, whole, score, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
 
 
-def _product(responses: list[Array]) -> Array:
-    return np.prod([each[:, 0, 0] for each in responses], axis=0) if responses else np.ones(1)
+def _notch_response(seen: View, notch: Notch) -> Array:
+    """Its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
+    if notch not in seen.notched:
+        seen.notched[notch] = resolvent(notch.system(seen.step)).at(seen.frequencies)[:, 0, 0]
+    return seen.notched[notch]
+
+
+def _law_responses(seen: View, kind: Kind | Family, place: Place) -> list[tuple[Law, Array | None]]:
+    """Laws with their responses (f,), None of those too fast for the samples; PI and PID at one frequency differ by a factor alone."""
+    found = laws(kind, place, seen.step)
+    if kind not in (Kind.PI, Kind.PID):
+        return [(law, _sampled_response(law, seen)) for law in found]
+    if kind not in seen.tried:
+        seen.tried[kind] = [_sampled_response(law, seen) for law in laws(kind, replace(place, gain=1.0), seen.step)]
+    size = 1.0 / abs(place.gain)
+    return [(law, None if unit is None else size * unit) for law, unit in zip(found, seen.tried[kind], strict=True)]
 
 
 def _sampled_response(law: Law, seen: View) -> Array | None:
     """Response from error to command, the pose being what the error leaves; None for a law too fast for the samples."""
     try:
-        response = resolvent(law.system(seen.step)).at(seen.frequencies)
+        found = law.system(seen.step)
     except DesignError:
         return None
-    return response[:, 0, 0] - response[:, 0, 1]
+    entry = found.B[:, [0]] - found.B[:, [1]]
+    alone = replace(found, B=entry, D=found.D[:, [0]] - found.D[:, [1]], inputs=found.inputs[:1])
+    return resolvent(alone).at(seen.frequencies)[:, 0, 0]
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
@@ -247,7 +294,7 @@ def _encircles(returned: Array) -> Array:
 
 def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
     """By loop, sets of notches of several widths on the modes above the crossing that stand out of it; none where no mode does."""
-    gains = np.abs(open_gains(seen, found.controller.system(seen.step))[0])
+    gains = np.abs(found.gains[0])
     result = []
     for loop, given in enumerate(found.notches):
         own = gains[:, loop, loop]
@@ -261,19 +308,13 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
     return tuple(sets or (given,) for sets, given in zip(result, found.notches, strict=True)) if any(result) else ()
 
 
-def _attempt_lqg(seen: View, task: Task, frequency: float) -> Attempt | None:
+def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
-    best, wanted = None, np.full(len(seen.loops.names), frequency)
+    wanted = np.full(len(seen.loops.names), frequency)
     for trust in _TRUST:
         found, wanted = _balance_bandwidths(seen, _designer(seen, task, trust), frequency, wanted)
-        if found is None:
-            continue
-        tried = Attempt(found, judge_loop(seen, found.system(seen.step)), ((),) * len(wanted))
-        if best is None or tried.judgement.score < best.judgement.score or tried.reaches(frequency, task.goal):
-            best = tried
-        if best.reaches(frequency, task.goal):
-            break
-    return best
+        if found is not None:
+            yield Attempt(seen, found, open_gains(seen, found.system(seen.step)), ((),) * len(wanted))
 
 
 def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:

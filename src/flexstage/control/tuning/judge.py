@@ -14,6 +14,7 @@ from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
 
 _ROUNDING = 1e-9
+_COARSE = 8
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
@@ -30,18 +31,45 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
     (True, 15.7)
     """
     gains = open_gains(seen, control) if gains is None else gains
-    poses = seen.loops.coordinates.scale[:, None] * np.linalg.inv(seen.loops.sense)
-    peaks = [highest_gain(poses @ np.linalg.inv(np.eye(gains.shape[-1]) + each) @ np.linalg.inv(poses)) for each in gains]
+    peaks = [highest_gain(_sensitivity(seen, each)) for each in gains]
     growths = [closed_growth(system, control) for system in seen.systems]
     worst = int(np.argmax(growths)) if max(growths) >= 0.0 else int(np.argmax([peak for peak, _ in peaks]))
-    count = len(seen.loops.names)
     return Judgement(
-        bandwidths=tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(count)),
+        bandwidths=own_bandwidths(seen, gains),
         peak=max(peak for peak, _ in peaks),
         frequency=float(seen.frequencies[peaks[worst][1]]),
         growth=float(max(growths)),
         offset=seen.offsets[worst],
     )
+
+
+def keeps_peak(seen: View, control: System, gains: Array, peak: float) -> bool:
+    """Whether `judge_loop` finds a loop stable and no `peak` of S above this one: asked first where no is told soonest.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> closed = integral_loop(gain=100.0)
+    >>> seen = view(closed.plant, platform_loops(closed.plant.coordinates), 0.02)
+    >>> [keeps_peak(seen, closed.controller, open_gains(seen, closed.controller), peak) for peak in (1.01, 10.0)]
+    [False, True]
+    """
+    return (
+        all(highest_gain(_sensitivity(seen, each[::_COARSE]))[0] <= peak for each in gains)
+        and all(closed_growth(system, control) < 0.0 for system in seen.systems)
+        and all(highest_gain(_sensitivity(seen, each))[0] <= peak for each in gains)
+    )
+
+
+def own_bandwidths(seen: View, gains: Array) -> tuple[float, ...]:
+    """Where the gain of each loop [Hz] first falls through 1, of the plant as modelled."""
+    return tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(len(seen.loops.names)))
+
+
+def _sensitivity(seen: View, gains: Array) -> Array:
+    """S (f, k, k) of poses, rotations times the stage's length, from open loops in the loops' coordinates."""
+    poses = seen.loops.coordinates.scale[:, None] * np.linalg.inv(seen.loops.sense)
+    return poses @ np.linalg.inv(np.eye(gains.shape[-1]) + gains) @ np.linalg.inv(poses)
 
 
 def open_gains(seen: View, control: System) -> Array:

@@ -12,9 +12,8 @@ from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
 from flexstage.control.plants import Plant
-from flexstage.control.tuning.attempt import Attempt, Task, attempt
+from flexstage.control.tuning.attempt import Attempt, Task, attempt, reach
 from flexstage.control.tuning.goal import Judgement, Kind, Tuning, goal_findings
-from flexstage.control.tuning.judge import open_gains
 from flexstage.control.tuning.view import View, view
 
 _SLOWEST = 0.002
@@ -65,15 +64,13 @@ def _stiffest(seen: View, task: Task, bandwidth: float, found: Attempt) -> Attem
     """
     if task.kind not in (Kind.PI, Kind.PID):
         return found
-    tried = [attempt(seen, task, bandwidth, share * task.goal.sensitivity) for share in _CALM]
-    kept = [found, *(each for each in tried if each is not None and each.reaches(bandwidth, task.goal))]
-    return max(kept, key=lambda each: _weakest(seen, each))
+    tried = [reach(seen, task, bandwidth, share * task.goal.sensitivity) for share in _CALM]
+    return max([found, *(each for each in tried if each is not None)], key=_weakest)
 
 
-def _weakest(seen: View, found: Attempt) -> float:
+def _weakest(found: Attempt) -> float:
     """The lowest of the loops' own gains at the lowest frequency."""
-    slow = replace(seen, frequencies=seen.frequencies[:1], responses=seen.responses[:1, :1])
-    return float(np.min(np.abs(np.diag(open_gains(slow, found.controller.system(seen.step))[0, 0]))))
+    return float(np.min(np.abs(np.diag(found.gains[0, 0]))))
 
 
 def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
@@ -96,8 +93,8 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     while places[-1] > slowest:
         places.append(places[-1] / (finer if places[-1] > _FINE * seen.modes[0] else coarser))
     for number, place in enumerate(places):
-        found = attempt(seen, task, place)
-        if found is not None and found.reaches(place, task.goal):
+        found = reach(seen, task, place)
+        if found is not None:
             return _bisect(seen, task, (place, found), places[number - 1] if number else place)
     return 0.0, None
 
@@ -105,8 +102,8 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
 def _bisect(seen: View, task: Task, low: tuple[float, Attempt], high: float) -> tuple[float, Attempt]:
     while high > _WITHIN * low[0]:
         middle = float(np.sqrt(low[0] * high))
-        found = attempt(seen, task, middle)
-        if found is not None and found.reaches(middle, task.goal):
+        found = reach(seen, task, middle)
+        if found is not None:
             low = (middle, found)
         else:
             high = middle

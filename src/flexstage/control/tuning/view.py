@@ -10,6 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
+from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
@@ -57,6 +58,11 @@ class View:
     @cached_property
     def tried(self) -> dict[Any, Any]:
         """What a search has tried at its present frequency, kept by it: the same laws come again with other sets of notches beside them."""
+        return {}
+
+    @cached_property
+    def notched(self) -> dict[Notch, Array]:
+        """Responses (f,) of the notches that a search has tried."""
         return {}
 
 
