@@ -12,6 +12,9 @@ from scipy.optimize import brentq
 import flexstage as fs
 from flexstage.beams.flexure.law import Resolution
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.models.linear import eigen, model
+from flexstage.models.linear.eigen import eigenvalues
+from flexstage.models.linear.model import assemble, strain_forces
 from flexstage.models.linear.static import static_gain
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.linearise import linearise
@@ -109,3 +112,14 @@ def test_cases_of_a_state_are_cases_of_its_model():
     alone = fs.modes(linearise(equilibrium(model, loads(wrench[1, 0]))))
     assert whole.frequencies.shape[:2] == (2, 2)
     assert whole.frequencies[1, 0, :8] == pytest.approx(alone.frequencies[:8], rel=1e-8)
+
+
+def test_matrices_of_many_coordinates_are_the_sums_of_what_their_parts_do(monkeypatch: pytest.MonkeyPatch):
+    about = linearise(equilibrium(nonlinear(guide()), loads(np.array([[0.0], [1.0]]) * SPACE * UNIT)))
+    frequencies = eigenvalues(about)[:, :12]
+    for module in (eigen, model):
+        monkeypatch.setattr(module, "_WIDE", 0)
+    for parts in (about.stiffness, about.inertia):
+        whole = strain_forces(parts, {name: item.operator for name, item in parts.items()})
+        assert np.max(np.abs(assemble(parts, len(about.coordinates)) - whole)) < 1e-13 * np.max(np.abs(whole))
+    assert eigenvalues(about)[:, :12] == pytest.approx(frequencies, rel=1e-9)

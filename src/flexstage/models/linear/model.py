@@ -18,6 +18,8 @@ from flexstage.models.linear.large import Quadratic, Solver
 
 _DENSE = 3000
 """Freedoms up to which dense matrices of a sparse model are made: all its modes take a minute."""
+_WIDE = 128
+"""Coordinates from which on each part's share is worked out for those that strain it alone: one product of all is slower then."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,9 +190,26 @@ def assemble(contributions: Contributions, size: int) -> Array:
     """
     if not contributions:
         return np.zeros((size, size))
-    total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})
-    total = total if isinstance(total, np.ndarray) else total.toarray()
+    sparse = any(isinstance(item.operator, Sparse) for item in contributions.values())
+    if size > _WIDE and not sparse:
+        total = _sum_by_columns(contributions, size)
+    else:
+        total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})
+        total = total if isinstance(total, np.ndarray) else total.toarray()
     return 0.5 * (total + _transpose(total))
+
+
+def _sum_by_columns(contributions: Contributions, size: int) -> Array:
+    """The sum (..., n, n), by the coordinates alone that strain each part."""
+    arrays = [each for item in contributions.values() for each in (item.operator, item.law)]
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in arrays))
+    total = np.zeros((*batch, size, size), dtype=np.result_type(*arrays))
+    for item in contributions.values():
+        columns = np.flatnonzero(np.any(item.operator, axis=tuple(range(item.operator.ndim - 1))))
+        own = item.operator[..., columns]
+        whole = own.ndim == 2 and np.array_equal(own, np.eye(*own.shape))
+        total[..., columns[:, None], columns] += item.law if whole else _transpose(own) @ (item.law @ own)
+    return total
 
 
 def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) -> Array:

@@ -150,12 +150,12 @@ def _assembled(
     for name, item in links.items():
         select = order.link(name, joins[name])
         stiffness[name] = Contribution(select if item.rows is None else item.rows @ select, item.elastic, _loss(model, name))
-        bending += select.T @ item.geometric @ select
+        _add(bending, select, item.geometric)
     rows, remains = _hinges(state)
     for place, name in enumerate(model.hinges.names):
         select = order.link(name, joins[name])
         stiffness[name] = Contribution(rows[place] @ select, model.hinges.stiffness[place], _loss(model, name))
-        bending += select.T @ remains[place] @ select
+        _add(bending, select, remains[place])
     for element in model.elements:
         stiffness[element.name], rest = _strained(state, order, element)
         bending += rest
@@ -164,7 +164,7 @@ def _assembled(
     inertia, seen = _inertia(state, order, joins, links)
     force, output, feedthrough = _channels(state, order, rows, joins)
     basis, kept = _free(_locked(state, order, rows, locked), order)
-    known = np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
+    known = 1.0 if state.converged.all() else np.where(state.converged.ravel(), 1.0, np.nan)[:, None, None]
     imposed = {name: model.hinges.stroke[place] for place, name in enumerate(model.hinges.names) if np.any(model.hinges.stroke[place])}
     rigid = np.zeros((len(state.pose.position), order.size, 6))
     rigid[:, : model.freedoms] = _rigid(state)
@@ -192,6 +192,12 @@ def _assembled(
             viscous=_viscous(model),
         ),
     )
+
+
+def _add(matrix: Array, select: Array, own: Array) -> None:
+    """Add what a link (b, k, k) does to the freedoms (b, n, n) that its selector (k, n) names; its bodies differ, the ground has none."""
+    rows, columns = np.nonzero(select)
+    matrix[:, columns[:, None], columns] += own[:, rows[:, None], rows]
 
 
 def _shaped(state: State, model: LinearModel) -> LinearModel:
