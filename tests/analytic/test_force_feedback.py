@@ -1,5 +1,7 @@
 """Force feedback in the legs: closed forms of Preumont, poles by an independent eigenvalue solve, and what stiffness it costs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy
@@ -10,6 +12,7 @@ from flexstage.control.closed import loop
 from flexstage.control.damping.damped_plant import as_felt, close_damping, describe_damping
 from flexstage.control.damping.force_feedback import ForceFeedback, best_gain, most_damping
 from flexstage.control.damping.legs import legs, pair_zeros
+from flexstage.control.damping.sampled import sample_legs
 from flexstage.control.electronics import AmplifierSettings, hardware
 from flexstage.control.plants import plant
 from flexstage.control.reduction import reduce_modes
@@ -224,11 +227,50 @@ def test_positive_feedback_keeps_within_the_amplifiers_limits(kind):
     assert np.max(np.abs(np.diff(seen.given[:, 0]))) <= most * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_computers_law_is_the_bilinear_one(order):
+    law, rate = ForceFeedback(900.0, 3.0, order), 40e3
+    _, felt, _, _ = damped_by(case("double-triangle"), law)
+    made = sample_legs(law, felt, rate, 4)
+    tensions = np.random.default_rng(2).normal(size=(300, len(felt)))
+    top, bottom = scipy.signal.bilinear(law.numerator, law.denominator, rate)
+    wanted = scipy.signal.lfilter(top, bottom, tensions, axis=0) / [each.stiffness for each in felt]
+    np.testing.assert_allclose(made.strokes(tensions), wanted, rtol=0.0, atol=1e-9 * np.max(np.abs(wanted)))
+
+
+def sampled_pole(bare, leg, law, step):
+    """The pole of the leg's mode where a computer senses, computes a sample late and holds, exactly: by the matrix exponential."""
+    system = bare.system
+    row, column = system.output_names.index(f"{leg.sensed}.fx"), system.input_names.index(leg.actuator)
+    assert system.D[row, column] == 0.0
+    stage = scipy.signal.cont2discrete((system.A, system.B[:, [column]], system.C[[row]], np.zeros((1, 1))), step)
+    held = scipy.signal.tf2ss(*scipy.signal.bilinear(law.numerator, law.denominator, 1.0 / step))
+    F, G, H, J = held[0], held[1], held[2] / leg.stiffness, held[3] / leg.stiffness
+    n, m = len(system.A), len(F)
+    whole = np.block([[stage[0], stage[1], np.zeros((n, m))], [J @ stage[2], np.zeros((1, 1)), H], [G @ stage[2], np.zeros((m, 1)), F]])
+    return np.log(scipy.linalg.eigvals(whole).astype(complex)) / step
+
+
+def test_a_computers_delay_and_hold_are_those_of_one_and_a_half_samples():
+    """The damped mode as told by the continuous plant; what it is off falls with the square of the step."""
+    amplifiers, off = AmplifierSettings(bandwidth=5e3), []
+    for rate in (50e3, 100e3, 200e3):
+        law = ForceFeedback(3000.0, 19.0)
+        _, (leg,), bare, told = damped_by(case("parallelogram"), replace(law, delay=1.5 / rate), amplifiers=amplifiers)
+        poles = told.system.poles
+        mode = poles[np.argmin(np.abs(poles - 2j * np.pi * 1700.0))]
+        found = sampled_pole(bare, leg, law, 1.0 / rate)
+        off.append(np.min(np.abs(found - mode)) / np.abs(mode))
+    assert off[0] < 1e-3
+    np.testing.assert_allclose(np.divide(off[:-1], off[1:]), 4.0, rtol=0.15)
+
+
 BAD = {
     "no stack is in a leg": ("voice-coil-stage", DampingSetup()),
     "the stage has no strain gauge of this name": ("parallelogram", DampingSetup(gauges=("Q",))),
     "both a damping ratio and a gain are given": ("parallelogram", DampingSetup(ratio=0.3, gain=100.0)),
     "found 3. Give 2": ("parallelogram", DampingSetup(order=3)),
+    "damping.rate: 25000 Hz is 2.5 times the rate of the loop": ("parallelogram", DampingSetup(rate=25e3)),
 }
 
 

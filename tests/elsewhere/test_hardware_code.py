@@ -22,6 +22,7 @@ from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
+from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.hardware import FLAGS, Hardware, Precision, hardware_code
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.run import simulate
@@ -93,6 +94,21 @@ def test_strokes_are_those_of_the_simulation(tmp_path, kind, precision):
     step = np.max(laws(kind)[0].amplifiers.step)  # where a converter rounds, the other way at times
     assert worst < precision.tolerance or step > 0.0
     assert worst > 0.0 or step > 0.0
+
+
+@needs_compiler
+@pytest.mark.parametrize("precision", Precision)
+def test_force_feedback_in_legs_is_that_of_the_law(tmp_path, precision):
+    """By its test, which tells a gain that is wrong too; in single precision with a pole that is a thousandth of the rate."""
+    given, law = laws("pi")
+    inner = SampledLegs(given.actuators[1:4], np.array([3e-8, 4e-8, 5e-8]), 1e-3, 2, 0.1 * given.step, 10)
+    made = hardware_code(given, law, simulate(given, way(given, 20)[0]), name="stage", precision=precision, legs=inner)
+    worst, _ = here(tmp_path, made)
+    assert 0.0 < worst < precision.tolerance
+    wrong = made.source.replace("* set->leg[i]", "* 0.999f * set->leg[i]" if precision is Precision.SINGLE else "* 0.999 * set->leg[i]")
+    assert wrong != made.source
+    with pytest.raises(AssertionError, match=r"e-0[34]"):
+        here(tmp_path, replace(made, source=wrong))
 
 
 @needs_compiler

@@ -14,9 +14,11 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.base.native import compiler
 from flexstage.base.number import Table
+from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.example import integral_loop
-from flexstage.control.export.code.compiled import simulate_compiled
+from flexstage.control.export.code.compiled import _run_program, simulate_compiled
 from flexstage.control.export.code.controller import controller_code
+from flexstage.control.export.code.legs import with_legs
 from flexstage.control.export.code.program import FLAGS, WARNINGS, Program
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.export.files import write_controller, write_fmu, write_plant
@@ -131,6 +133,35 @@ def test_the_exported_controller_gives_the_volts_of_the_simulation(tmp_path):
     for field in ("pose", "error", "command", "asked", "given", "volts"):
         ours = getattr(known, field)
         assert np.max(np.abs(found[field] - ours)) < 1e-12 * np.max(np.abs(ours)), field
+
+
+@needs_compiler
+def test_force_feedback_is_part_of_the_exported_controller():
+    """Three samples of the legs to one of the pose: what the pose's loop gives stays, and both together keep within the amplifiers."""
+    given = full_loop(inverse=True)
+    known, names = simulate(given, *way(given, 120)), (given.actuators[4], given.actuators[1])
+    inner = SampledLegs(names, np.array([3e-8, 5e-8]), 0.02, 2, given.step / 3.0, 3)
+    tensions = 40.0 * np.random.default_rng(4).normal(size=(360, 2)).cumsum(axis=0)
+    tensions[7, 1] = np.nan
+    program = with_legs(controller_code(given), given, inner)
+    assert program.step == inner.step
+    rows = _run_program(program, np.hstack([np.repeat(known.reference, 3, axis=0), np.repeat(known.readings, 3, axis=0), tensions]))
+    ends = np.cumsum([0, *(len(signal.channels) for signal in program.outputs)])
+    found = {signal.field: rows[:, slice(*ends[place : place + 2])] for place, signal in enumerate(program.outputs)}
+    assert found["given"] == pytest.approx(np.repeat(known.given, 3, axis=0), abs=1e-12 * np.max(np.abs(known.given)))
+    assert np.flatnonzero(found["tension_status"]).tolist() == [15]
+    tensions[7, 1] = tensions[6, 1]
+    assert found["added"] == pytest.approx(inner.strokes(tensions), abs=1e-12 * np.max(np.abs(found["added"])))
+    wanted, last = found["given"].copy(), np.zeros(6)
+    wanted[:, [4, 1]] += found["added"]
+    powers, limited = given.amplifiers, 0
+    for total, volts, asked, alone in zip(found["total"], found["volts"], wanted, found["given"], strict=True):
+        most = powers.slew * inner.step
+        last = np.clip(np.clip(asked, powers.low, powers.high), last - most, last + most)
+        limited += np.any(last != asked)
+        assert total == pytest.approx(last, abs=1e-18)
+        assert np.all((volts - powers.bias)[[0, 2, 3, 5]] != 0.0) or not np.any(alone)
+    assert 0 < limited < 360
 
 
 def lost(count: int, gauges: int) -> np.ndarray:

@@ -105,8 +105,9 @@ def damping_table(found: LoopStudy) -> Table | None:
     ]
     rest = ", ".join(f"{name} {percent(share)}" for name, share in zip(inner.coordinates, inner.left_at_rest, strict=True))
     least = ", ".join(f"{name} {percent(share)}" for name, share in zip(inner.coordinates, inner.softest, strict=True))
+    corner = f"{number(inner.corner, 4)} Hz" + ("" if inner.rate is None else f", sampled at {number(1e-3 * inner.rate, 4)} kHz")
     notes = [
-        f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {number(inner.corner, 4)} Hz: {', '.join(inner.legs)}.",
+        f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {corner}: {', '.join(inner.legs)}.",
         _FORCE_NOTE,
         f"Static stiffness left at rest: {rest}. Left at least, below the first mode: {least}.",
     ]

@@ -27,11 +27,19 @@ from flexstage.base.quantity import (
 from flexstage.control import error_tables as errors
 from flexstage.control import tables
 from flexstage.control.controllers.decentralised import Decentralised
-from flexstage.control.export.code.controller import controller_code
+from flexstage.control.damping.sampled import SampledLegs, sample_legs
 from flexstage.control.export.code.hardware import NO_INVERSE, Precision
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.code.whole import loop_code
-from flexstage.control.export.files import WHOLE, controller_files, export_findings, hardware_files, hardware_findings, plant_file
+from flexstage.control.export.files import (
+    WHOLE,
+    controller_files,
+    export_findings,
+    hardware_files,
+    hardware_findings,
+    plant_file,
+    whole_controller,
+)
 from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
@@ -454,7 +462,9 @@ def _hardware_files(target: Path | None) -> Iterator[tuple[str, Path]]:
 def _export_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
     machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
     law = made_of if isinstance(made_of, Decentralised) else None
-    files = hardware_files(target, machine, law, found.runs[0].simulated.reference, precision=precision, about=_about(found))
+    files = hardware_files(
+        target, machine, law, found.runs[0].simulated.reference, precision=precision, about=_about(found), legs=_legs(found)
+    )
     for path, content in files.items():
         write(path, content, "--hardware")
         announce(f"Wrote {path}")
@@ -466,10 +476,18 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
         return {target: plant_file(found.plant)}
     machine = driven_machine(found.settled, found.controller, found.stacks)
     if target.suffix == ".c":
-        return controller_files(target, machine, _about(found))
+        return controller_files(target, machine, _about(found), _legs(found))
     if target.name.endswith(WHOLE):
         return {target: fmu(loop_code(machine, target.stem))}
-    return {target: fmu(controller_code(machine, target.stem, _about(found)))}
+    return {target: fmu(whole_controller(machine, target.stem, _about(found), _legs(found)))}
+
+
+def _legs(found: LoopStudy) -> SampledLegs | None:
+    """Force feedback that is part of what is exported: that of a computer."""
+    inner = found.damping
+    if inner is None or inner.rate is None:
+        return None
+    return sample_legs(inner.law, inner.sensed, inner.rate, round(inner.rate / found.settled.rate))
 
 
 def _about(found: LoopStudy) -> str:
@@ -481,7 +499,8 @@ def _about(found: LoopStudy) -> str:
     gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
     form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
     numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
-    return f"{said}. Not in it, analogue and around it: force feedback, stroke = {form} tension / k, {numbers}, k: {gains}"
+    where = "With" if found.damping.rate is not None else "Not in it, analogue and around it:"
+    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}"
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | str | None]:

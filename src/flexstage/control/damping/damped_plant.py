@@ -47,7 +47,7 @@ class ActiveDamping:
 
     `modes` are those of the plant. By `coordinates`, `left_at_rest` is the share of the platform's static stiffness that is left,
     `softest` the least share below the first mode, at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below`
-    [Hz] (order 1: below none).
+    [Hz] (order 1: below none). `rate` [Hz] is that of the computer that runs it, absent where it is analogue.
     """
 
     legs: tuple[str, ...]
@@ -62,6 +62,7 @@ class ActiveDamping:
     softest_at: Annotated[Array, FREQUENCY, Along("coordinates")]
     law: Annotated[ForceFeedback, INNER]
     sensed: Annotated[tuple[Leg, ...], INNER]
+    rate: Annotated[float | None, FREQUENCY] = None
 
     @property
     def least(self) -> Annotated[float, VIEW]:

@@ -16,8 +16,10 @@ from flexstage.base.number import Array
 from flexstage.base.store import move_all, write, write_temporary
 from flexstage.base.text import printable
 from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.hardware import Precision, hardware_code
+from flexstage.control.export.code.legs import with_legs
 from flexstage.control.export.code.program import Program
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.fmu.unit import fmu
@@ -62,10 +64,11 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
         yield from export_findings(path)
 
 
-def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "") -> dict[Path, str]:
+def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
     """Texts by file of the controller of a machine as C99: `controller.c` and its header beside it, named as its functions.
 
-    Raises `DesignError` for a name that does not end in `.c` or that functions cannot have.
+    With `legs` force feedback in them is part of it. Raises `DesignError` for a name that does not end in `.c` or that functions cannot
+    have.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -75,12 +78,25 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
     """
     source = _suffix_findings(path, ".c")
     require(export_findings(path))
-    program = controller_code(given, source.stem, about)
+    program = whole_controller(given, source.stem, about, legs)
     return {source: program.source, source.with_suffix(".h"): program.header}
 
 
+def whole_controller(given: Machine, name: str, about: str = "", legs: SampledLegs | None = None) -> Program:
+    """The controller of a machine as a program, with force feedback in `legs` where there is one that a computer runs."""
+    outer = controller_code(given, name, about)
+    return outer if legs is None else with_legs(outer, given, legs)
+
+
 def hardware_files(
-    path: str | os.PathLike[str], given: Machine, law: Decentralised | None, reference: Array, *, precision: Precision, about: str = ""
+    path: str | os.PathLike[str],
+    given: Machine,
+    law: Decentralised | None,
+    reference: Array,
+    *,
+    precision: Precision,
+    about: str = "",
+    legs: SampledLegs | None = None,
 ) -> dict[Path, str]:
     """Texts by file of a controller for hardware (see `hardware_code`): `controller.c`, its header, and `controller_test.c`.
 
@@ -89,7 +105,8 @@ def hardware_files(
     """
     source = Path(path)
     require(hardware_findings(path))
-    made = hardware_code(given, law, simulate(given, reference[:_TESTED]), name=source.stem, precision=precision, about=about)
+    tested = simulate(given, reference[:_TESTED])
+    made = hardware_code(given, law, tested, name=source.stem, precision=precision, about=about, legs=legs)
     return {source: made.source, source.with_suffix(".h"): made.header, source.with_name(f"{source.stem}_test.c"): made.test}
 
 

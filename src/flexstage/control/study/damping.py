@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.control.damping.damped_plant import ActiveDamping, as_felt, close_damping, describe_damping, gain_for, with_damped_modes
 from flexstage.control.damping.force_feedback import ForceFeedback
 from flexstage.control.damping.legs import Leg, Pairs, pair_zeros
@@ -17,6 +18,7 @@ from flexstage.models.linear.model import LinearModel
 
 _USUAL = 0.5
 _CORNER = 0.1
+_WHOLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +33,16 @@ class Damped:
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> Damped:
     """Close the inner loops of a set-up around both plants, which have the links' forces.
 
-    Raises `DesignError` where they are unstable, with all modes below half the sampling rate or with those that the loop feels.
+    Raises `DesignError` where they are unstable, with all modes below half the sampling rate or with those that the loop feels, and for a
+    rate that is no multiple of the loop's.
     """
+    require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)
     sensed = tuple(replace(each, noise=asked.noise) for each in legs) if asked.noise is not None else legs
     felt = as_felt(reduce_modes(plant, np.inf), sensed)
     lags = [each for each in (asked.lag, *(leg.lag for leg in sensed)) if each is not None]
     corner = asked.corner if asked.corner is not None else _CORNER * _lowest_zero(plant, pairs)
-    law = ForceFeedback(asked.gain or 1.0, corner, asked.order, min(lags, default=np.inf), asked.delay or 0.0)
+    law = ForceFeedback(asked.gain or 1.0, corner, asked.order, min(lags, default=np.inf), _delay(asked))
     if asked.gain is None:
         law = replace(law, gain=gain_for(plant, law, felt, asked.ratio or _USUAL))
     closed, both = close_damping(plant, law, felt), close_damping(whole, law, felt)
@@ -46,8 +50,24 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
     if growth >= 0.0:
         what = f"with a gain of {law.gain:.4g} 1/s the inner loops are unstable: they grow by {growth:.3g} 1/s"
         raise refuse("damping", what, "Ask for less damping; faster amplifiers, a higher lag and a shorter delay let it be more")
-    found = describe_damping(plant, closed, law, felt, pairs)
+    found = replace(describe_damping(plant, closed, law, felt, pairs), rate=asked.rate)
     return Damped(with_damped_modes(closed, found), both, found)
+
+
+def _delay(asked: DampingSetup) -> float:
+    """From tension to stroke [s]; of a computer a sample, if nothing is stated, and half a one of the hold behind it."""
+    if asked.rate is None:
+        return asked.delay or 0.0
+    return (1.0 / asked.rate if asked.delay is None else asked.delay) + 0.5 / asked.rate
+
+
+def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding]:
+    if inner is None or outer is None:
+        return
+    turns = max(round(inner / outer), 1)
+    if abs(inner / (turns * outer) - 1.0) > _WHOLE:
+        what = f"{inner:.6g} Hz is {inner / outer:.6g} times the rate of the loop, {outer:.6g} Hz"
+        yield Finding("damping.rate", what, f"Take a whole multiple of it: {turns * outer:.6g} Hz")
 
 
 def _lowest_zero(plant: Plant, pairs: Pairs) -> float:

@@ -205,7 +205,8 @@ class DampingSetup:
     `ratio` is the damping wanted of the modes that the loop feels most, or the `gain` is stated. `corner` of the high pass (absent: a tenth
     of the lowest of these modes without the stacks' stiffness) and its `order`: 2 keeps the stiffness at rest, 1 leaves a / (a + gain) of
     it. The tension is that of a sensor of force in each leg, of white `noise`, or of strain `gauges` on links of the legs, whose noise and
-    bandwidth are theirs. `lag` and `delay` are those of the electronics, which are analogue.
+    bandwidth are theirs. `lag` and `delay` are those of the electronics, which are analogue; or a computer runs the law at a `rate`, a
+    whole multiple of the loop's, and gives its strokes after `delay` (absent: one sample of that rate).
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -216,6 +217,7 @@ class DampingSetup:
     noise: Annotated[float, FORCE_NOISE, NOT_NEGATIVE] | None = None
     lag: Annotated[float, FREQUENCY, POSITIVE] | None = None
     delay: Annotated[float, TIME, NOT_NEGATIVE] | None = None
+    rate: Annotated[float, FREQUENCY, POSITIVE] | None = None
 
 
 @dataclass(frozen=True)

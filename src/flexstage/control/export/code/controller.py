@@ -131,9 +131,9 @@ def controller_states(given: Machine, linear: Parts) -> tuple[State, ...]:
 def _tables(given: Machine) -> list[str]:
     """Tables and functions of what is not linear: limits, volts, and the inverse of the hysteresis."""
     amplifiers, lines = given.amplifiers, table("reach", given.reach)
-    if _has_range(given):
+    if has_range(given):
         lines += [*table("low", amplifiers.low), *table("high", amplifiers.high)]
-    lines += table("most", amplifiers.slew * given.step) if _has_slew(given) else []
+    lines += table("most", amplifiers.slew * given.step) if has_slew(given) else []
     lines += table("converter", amplifiers.step) if np.any(amplifiers.step) else []
     if has_volts(given):
         lines += [*table("gain", amplifiers.gain), *table("bias", amplifiers.bias)]
@@ -144,11 +144,13 @@ def _tables(given: Machine) -> list[str]:
     return lines
 
 
-def _has_range(given: Machine) -> bool:
+def has_range(given: Machine) -> bool:
+    """Whether an amplifier has ends."""
     return bool(np.any(np.isfinite(np.concatenate([given.amplifiers.low, given.amplifiers.high]))))
 
 
-def _has_slew(given: Machine) -> bool:
+def has_slew(given: Machine) -> bool:
+    """Whether an amplifier's speed is bounded."""
     return bool(np.any(np.isfinite(given.amplifiers.slew)))
 
 
@@ -214,8 +216,8 @@ def _one_actuator(given: Machine) -> list[str]:
     if np.any(amplifiers.step):
         lines.append("if (converter[i] > 0.0) stroke = rint(stroke / converter[i]) * converter[i];")
     lines += [f"if (!(fabs(stroke) <= {_LARGEST})) stroke = state->last[i];", "out->asked[i] = stroke;"]
-    lines += _clamp("high[i]", "low[i]") if _has_range(given) else []
-    lines += _clamp("state->last[i] + most[i]", "state->last[i] - most[i]") if _has_slew(given) else []
+    lines += clamp("high[i]", "low[i]") if has_range(given) else []
+    lines += clamp("state->last[i] + most[i]", "state->last[i] - most[i]") if has_slew(given) else []
     lines.append("out->given[i] = state->last[i] = stroke;")
     if has_volts(given):
         lines.append("out->volts[i] = stroke / gain[i] + bias[i];")
@@ -224,5 +226,10 @@ def _one_actuator(given: Machine) -> list[str]:
     return lines
 
 
-def _clamp(high: str, low: str) -> list[str]:
+def clamp(high: str, low: str) -> list[str]:
+    """Statements that keep `stroke` between two bounds.
+
+    >>> clamp("high", "low")
+    ['if (stroke > high) stroke = high;', 'if (stroke < low) stroke = low;']
+    """
     return [f"if (stroke > {high}) stroke = {high};", f"if (stroke < {low}) stroke = {low};"]

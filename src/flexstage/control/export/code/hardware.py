@@ -17,7 +17,9 @@ from flexstage.control.controllers.law import Law, tracking_rate
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import with_prefilters
-from flexstage.control.export.code.controller import has_volts
+from flexstage.control.damping.sampled import SampledLegs
+from flexstage.control.export.code.controller import clamp, has_volts
+from flexstage.control.export.code.hardware_legs import LegWriter
 from flexstage.control.export.code.modal import modal_form
 from flexstage.control.export.code.product import MULTIPLY, Term, product
 from flexstage.control.export.code.text import comment, identifier, indent, number, table
@@ -89,24 +91,33 @@ class _Core:
 
 
 def hardware_code(
-    given: Machine, law: Decentralised | None, tested: Simulated, *, name: str, precision: Precision, about: str = ""
+    given: Machine,
+    law: Decentralised | None,
+    tested: Simulated,
+    *,
+    name: str,
+    precision: Precision,
+    about: str = "",
+    legs: SampledLegs | None = None,
 ) -> Hardware:
     """The controller of a machine as C99 for hardware; `law` where it is one of single loops under PI or PID, whose gains can be changed.
 
     Any other law is in modal form with fixed gains. `tested` is a simulation of the machine: a test beside the code replays its reference
     and readings and compares the strokes. In the step there is no call of a library and no heap; sums have one order; rounding is to
-    nearest, contraction off, subnormals kept: finite inputs give the same bits on every processor of IEEE 754. Raises `DesignError` for an
+    nearest, contraction off, subnormals kept: finite inputs give the same bits on every processor of IEEE 754. With `legs` there is a
+    second function, `<name>_damp`, for force feedback in samples of its own; the test replays tensions too. Raises `DesignError` for an
     inverse of hysteresis, which has no such form.
     """
     if given.compensation is not None:
         raise refuse("--hardware", *NO_INVERSE)
     core = _loops(given, law) if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws) else _modal(given)
     name = identifier(name)
-    writer = _Writer(given, core, name, precision, about)
+    inner = None if legs is None else LegWriter(given, legs, name, number(_largest(precision)))
+    writer = _Writer(given, core, name, precision, about, inner)
     return Hardware(
         header=_typed(writer.header(), precision),
         source=_typed(writer.source(), precision),
-        test=_typed(_test(given, tested, name, precision), precision),
+        test=_typed(_test(given, tested, name, precision, inner), precision),
         flops=int(writer.flops),
         state=precision.bytes * writer.numbers + 4,
         parameters=precision.bytes * writer.settings + 4,
@@ -337,6 +348,7 @@ class _Writer:
     name: str
     precision: Precision
     about: str
+    legs: LegWriter | None
 
     @property
     def _sizes(self) -> tuple[int, int, int]:
@@ -346,7 +358,7 @@ class _Writer:
     def states(self) -> tuple[tuple[str, int], ...]:
         """Arrays that are kept."""
         f, g, m = self._sizes
-        return (*self.core.states, ("last", m), ("seen", g), ("wanted", f))
+        return (*self.core.states, ("last", m), ("seen", g), ("wanted", f), *(self.legs.states if self.legs else ()))
 
     @property
     def settings_arrays(self) -> tuple[tuple[str, Array, str], ...]:
@@ -357,6 +369,7 @@ class _Writer:
             ("low", amplifiers.low, "limits of the strokes (or inputs)"),
             ("high", amplifiers.high, ""),
             ("most", amplifiers.slew * self.given.step, "largest change in a sample"),
+            *(self.legs.settings if self.legs else ()),
         )
 
     @property
@@ -435,6 +448,7 @@ class _Writer:
             f"void {name}_init({name}_state *state, {name}_parameters *set);",
             f"void {name}_step({name}_state *state, const {name}_parameters *set, const {name}_input *in, {name}_output *out);",
             *(setter if self.core.parameters else []),
+            *(self.legs.header() if self.legs else []),
             "",
             "#endif",
         ]
@@ -467,6 +481,7 @@ class _Writer:
             *indent(body),
             "}",
             *self._setter(),
+            *(self.legs.source() if self.legs else []),
         ]
 
     def _init(self) -> list[str]:
@@ -519,10 +534,8 @@ class _Writer:
         lines += [
             f"if (!(stroke <= {largest} && stroke >= -{largest}) || !set->enable) stroke = state->last[i];",
             "out->asked[i] = stroke;",
-            "if (stroke > set->high[i]) stroke = set->high[i];",
-            "if (stroke < set->low[i]) stroke = set->low[i];",
-            "if (stroke > state->last[i] + set->most[i]) stroke = state->last[i] + set->most[i];",
-            "if (stroke < state->last[i] - set->most[i]) stroke = state->last[i] - set->most[i];",
+            *clamp("set->high[i]", "set->low[i]"),
+            *clamp("state->last[i] + set->most[i]", "state->last[i] - set->most[i]"),
             "out->given[i] = state->last[i] = stroke;",
             "applied[i] = stroke - out->asked[i];",
         ]
@@ -583,8 +596,8 @@ def _struct(name: str, arrays: Sequence[tuple[str, int, str]], last: str = "") -
     return [*lines, *([f"    {last}"] if last else []), f"}} {name};", ""]
 
 
-def _test(given: Machine, tested: Simulated, name: str, precision: Precision) -> list[str]:
-    """A program that replays a simulated loop: how far strokes are from it, and a hash of all outputs' bits."""
+def _test(given: Machine, tested: Simulated, name: str, precision: Precision, legs: LegWriter | None) -> list[str]:
+    """A program that replays a simulated loop: how far strokes are from it, and a hash of all outputs' bits; then tensions of legs."""
     rows, upper = len(tested.times), name.upper()
     f, g, m = len(given.names), len(given.gauges), len(given.actuators)
     scale = max(float(np.max(np.abs(tested.given))), 1e-300)
@@ -624,12 +637,14 @@ def _test(given: Machine, tested: Simulated, name: str, precision: Precision) ->
         f"    return worst / {number(scale)};",
         "}",
         "",
+        *(legs.test() if legs else []),
         f"#ifdef {upper}_MAIN",
         "#include <stdio.h>",
         "int main(void)",
         "{",
         "    unsigned long long hash;",
-        f"    const double worst = {name}_worst(&hash);",
+        f"    double worst = {name}_worst(&hash);",
+        *([f"    if (!({name}_legs_worst() <= worst)) worst = {name}_legs_worst();"] if legs else []),
         '    printf("%.3e %016llx\\n", (double)worst, hash);'.replace("(double)", "1.0 * "),
         f"    return !(worst <= {number(allowed)});",
         "}",
