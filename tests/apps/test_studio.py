@@ -29,17 +29,18 @@ from flexstage.apps.studio import solids
 from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.palette import insert, snippets
 from flexstage.apps.studio.questions import slopes
-from flexstage.apps.studio.reading import _made, design, follow
+from flexstage.apps.studio.reading import _made, design, follow, read
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.travel import travelled
 from flexstage.apps.studio.wire import array, encode
-from flexstage.apps.studio.writing import _in_its_line, write, written
+from flexstage.apps.studio.writing import _differ_alone, _in_its_line, _is_another, write, written
+from flexstage.base.finding import DesignError
 from flexstage.base.quantity import LENGTH
 from flexstage.base.unit import show
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import set_value
+from flexstage.mechanism.address import quantity_of, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.contact import gaps
 from flexstage.mechanism.store import dumps, loads, patch
@@ -444,6 +445,34 @@ def test_a_number_written_into_its_line_is_what_patch_writes():
     tagged = dumps(double_triangle())
     patched = patch(tagged, {"parts.neck.thickness": "1.6 mm"})
     assert write(tagged, "stage.toml", "parts.neck.thickness", 1.6e-3) == patched != _in_its_line(tagged, "parts.neck.thickness", "1.6 mm")
+
+
+def test_a_design_that_is_not_read_anew_is_what_its_text_says():
+    """Every twelfth number of a stage, those in lists too: most of them are set without reading the text number by number."""
+    stage, quick = double_triangle(), 0
+    text = dumps(stage)
+    for amount in [each for each in read(text, "quick.toml", text).amounts if each.value][::12]:
+        stated = show(1.013 * amount.value, quantity_of(stage, amount.address), digits=6)
+        line = _in_its_line(text, amount.address, stated)
+        try:
+            if not line or not _is_another(text, line, "quick.toml", amount.address, stated):
+                continue
+        except DesignError:
+            continue
+        quick += 1
+        assert design(line, "quick.toml") == loads(line)
+        assert quick % 4 or line == patch(text, {amount.address: stated})
+    assert quick > 8
+
+
+def test_a_value_that_others_follow_is_read_anew():
+    """A named number with formulas of it: not one value alone changes."""
+    text = TEXT.replace("[parts", '[numbers]\nthin = "1 mm"\n\n[parts', 1).replace('thickness = "1 mm"', 'thickness = "thin"', 1)
+    wrote = written(text, "named.toml", "numbers.thin", 0.9e-3)
+    assert 'thin = "0.9 mm"' in wrote.text
+    assert design(wrote.text, "named.toml") == loads(wrote.text)
+    assert not _differ_alone({"a": ["1 m", "2 m", "3 m"], "b": 1}, {"a": ["4 m", "2 m", "3 m"], "b": 2}, ("a", "x"), "4 m")
+    assert _differ_alone({"a": ["1 m", "2 m", "3 m"], "b": 1}, {"a": ["1 m", "2 m", "4 m"], "b": 1}, ("a", "z"), "4 m")
 
 
 def test_a_followed_number_gives_the_design_that_the_text_says():

@@ -7,7 +7,7 @@ from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Annotated, TypeAlias, TypeVar, cast
@@ -252,17 +252,18 @@ class _Pieces:
         return result
 
     @cached_property
-    def shapes(self) -> Mapping[str, Array]:
-        """By link, the motion (..., 12 + k, n + k) of its ends and of its inner bending."""
-        found: dict[str, Array] = {}
+    def shapes(self) -> Mapping[str, tuple[Array, Array]]:
+        """By link, the coordinates that move it, and the motion (..., 12 + k, c) of its ends and of its inner bending in those alone."""
+        found: dict[str, tuple[Array, Array]] = {}
         place = len(self.model.coordinates)
         for name, link in self.assembly.links.items():
-            inner, shape = self.parts[name].inner.shape[-1], self.ends(link)
-            wide = np.zeros((*shape.shape[:-2], ENDS + inner, self.size), dtype=shape.dtype)
-            wide[..., :ENDS, : shape.shape[-1]] = shape
-            wide[..., range(ENDS, ENDS + inner), range(place, place + inner)] = 1.0
+            inner, ends = self.parts[name].inner.shape[-1], self.ends(link)
+            moving = _moving(ends)
+            shape = np.zeros((*ends.shape[:-2], ENDS + inner, len(moving) + inner), dtype=ends.dtype)
+            shape[..., :ENDS, : len(moving)] = ends[..., moving]
+            shape[..., range(ENDS, ENDS + inner), range(len(moving), len(moving) + inner)] = 1.0
+            found[name] = np.concatenate([moving, np.arange(place, place + inner)]), shape
             place += inner
-            found[name] = wide
         return found
 
     def ends(self, link: PlacedLink) -> Array:
@@ -281,20 +282,18 @@ class _Pieces:
         forces: dict[str, list[tuple[Array, Array]]] = {name: [] for name in self.assembly.bodies}
         for name, acting in loads.items():
             forces[name] += [(load[..., :3], point) for load, point in acting]
-        total: Array = np.zeros((self.size, self.size))
+        pieces: list[tuple[Array, Array]] = []
         for name, link in self.assembly.links.items():
-            part, wrench, wide = self.parts[name], wrenches[name], self.shapes[name]
+            part, wrench, (moving, shape) = self.parts[name], wrenches[name], self.shapes[name]
             law = np.einsum("...i,...iab->...ab", wrench, part.per_force)
-            total = total + _transposed(wide) @ law @ wide
+            pieces.append((moving, _transposed(shape) @ law @ shape))
             force = link.frame.direction(wrench[..., :3])
             arm = link.frame.direction(part.half[..., None] * np.eye(3)[0])
             for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
                 if body != GROUND:
                     forces[body].append((sign * force, link.frame.position - sign * arm))
-        for name, acting in forces.items():
-            if acting:
-                total = total + self._turning(name, acting)
-        return total
+        pieces += [self._turning(name, acting) for name, acting in forces.items() if acting]
+        return _assembled(pieces, self.size)
 
     def quadratics(self) -> Quadratic:
         """K as strains, the inner bending of every part beside those of the model."""
@@ -334,13 +333,11 @@ class _Pieces:
                 parts.append((Sparse(turns.columns, turns.values, self.size), _turning_law(self.assembly.bodies[name].reference, acting)))
         return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], self.size)
 
-    def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> Array:
-        law = _turning_law(self.assembly.bodies[name].reference, acting)
+    def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> tuple[Array, Array]:
         turns = self.twists[name][..., 3:, :]
-        small = _transposed(turns) @ law @ turns
-        result = np.zeros((*small.shape[:-2], self.size, self.size), dtype=small.dtype)
-        result[..., : small.shape[-1], : small.shape[-1]] = small
-        return result
+        moving = _moving(turns)
+        turns = turns[..., moving]
+        return moving, _transposed(turns) @ _turning_law(self.assembly.bodies[name].reference, acting) @ turns
 
     def moving(self, shapes: Array) -> tuple[str, ...]:
         """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
@@ -349,6 +346,21 @@ class _Pieces:
         sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
         largest = max(sizes.values(), default=0.0)
         return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
+
+
+def _moving(shape: Array) -> Array:
+    """The coordinates (c,) whose columns of a shape (..., r, n) are not nought."""
+    return np.flatnonzero(np.any(shape != 0.0, axis=tuple(range(shape.ndim - 1))))
+
+
+def _assembled(pieces: Sequence[tuple[Array, Array]], size: int) -> Array:
+    """The sum (..., n, n) of matrices (..., c, c), each of some coordinates (c,)."""
+    smalls = [small for _, small in pieces]
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in smalls))
+    result = np.zeros((*batch, size, size), dtype=np.result_type(float, *smalls))
+    for places, small in pieces:
+        result[..., places[:, None], places] += small
+    return result
 
 
 def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:

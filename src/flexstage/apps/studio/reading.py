@@ -41,7 +41,12 @@ def design(text: str, file: str) -> Mechanism:
 
 def follow(text: str, file: str, before: str, address: str, stated: str) -> None:
     """Take a text for another one with a number set, as `write` has found it to be: parts that stay are those of that design."""
-    _made(_Source(text, file, lambda: set_text(design(before, file), address, stated)))
+    keep(text, file, lambda: set_text(design(before, file), address, stated))
+
+
+def keep(text: str, file: str, make: Callable[[], Mechanism]) -> None:
+    """Take a description for what a text says, as it has been found to be; raises what making it raises."""
+    _made(_Source(text, file, make))
 
 
 @dataclass(frozen=True)
