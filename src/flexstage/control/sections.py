@@ -35,7 +35,7 @@ from flexstage.control.tables import (
 from flexstage.show.display import format_value, number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
-from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Section, fold, section
+from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, section
 from flexstage.show.table import matrix_table
 
 _GOAL = 2.0
@@ -217,7 +217,7 @@ def time_section(found: LoopStudy) -> Section | None:
         pictures.append(Picture(drawn, caption, reading=reading(figure)))
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
-    small = None if found.second_order is None else found.second_order.text
+    small = None if found.second_order is None else Prose(found.second_order.text)
     return section("Over time", [small, *blocks, *pictures])
 
 
