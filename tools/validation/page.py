@@ -79,12 +79,19 @@ def summary(found: list[Chapter]) -> str:
 def scoreboard(found: Iterable[Chapter]) -> str:
     """Every number that others printed of a stage of theirs: the printed one, ours, how far apart, the verdict."""
     sections = [section for chapter in found if chapter.name == _PUBLISHED for section in chapter.sections]
-    heads = ("stage", "quantity", "by", "printed", "ours", "unit", "difference", "verdict")
+    heads = ("stage", "quantity", "verdict", "difference", "printed", "ours", "unit", "by")
     lines = [
-        (section.title if row is section.rows[0] else "", *cells[:5], f"{100.0 * (row.ours / float(row.reference) - 1.0):+.2f} %", cells[7])
+        (
+            section.title if row is section.rows[0] else "",
+            what,
+            verdict,
+            f"{100.0 * (row.ours / float(row.reference) - 1.0):+.2f} %",
+            *numbers,
+            by,
+        )
         for section in sections
         for row in section.rows
-        for cells in (row.cells(),)
+        for what, by, *numbers, _, _, verdict in (row.cells(),)
     ]
     return table(heads, lines)
 
