@@ -129,8 +129,9 @@ def test_lqg_by_search_is_better_than_the_one_of_one_bandwidth_in_every_column()
 
 
 @pytest.mark.full
-def test_four_kinds_are_laid_side_by_side():
+def test_every_kind_is_laid_side_by_side_or_has_its_reason():
     found = compare_controllers(parallelogram())
-    assert sorted(found.controllers) == ["lqg", "pi", "pid", "resonant"]
+    assert {*found.controllers, *found.reasons} == {"pi", "pid", "resonant", "lqg", "ppf", "pvf", "pi, damped"}
+    assert sorted(found.reasons) == ["pvf"]  # a spread of 2 % of the modes is more than positive velocity feedback bears there
     assert all(each.peak <= 2.01 for each in found.controllers.values())
     assert found.wins["rejection"] in found.front

@@ -314,7 +314,8 @@ def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]
     for trust in _TRUST:
         found, wanted = _balance_bandwidths(seen, _designer(seen, task, trust), frequency, wanted)
         if found is not None:
-            yield Attempt(seen, found, open_gains(seen, found.system(seen.step)), ((),) * len(wanted))
+            alone = replace(found, feedforward=None)
+            yield Attempt(seen, found, open_gains(seen, alone.system(seen.step)), ((),) * len(wanted))
 
 
 def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
@@ -334,7 +335,8 @@ def _balance_bandwidths(seen: View, design: Callable[[Array], LQG], frequency: f
         if not np.all(np.isfinite(wanted)) or (seen.step is not None and np.max(wanted) >= 0.5 / seen.step):
             return None, np.full(len(wanted), frequency)
         found = design(wanted)
-        gains = np.abs(open_gains(near, found.system(seen.step))[0])
+        alone = replace(found, feedforward=None)  # which passes no loop
+        gains = np.abs(open_gains(near, alone.system(seen.step))[0])
         passed = np.array([crossing_frequency(near.frequencies, gains[:, loop, loop]) for loop in range(len(wanted))])
         ratio = np.clip(passed / frequency, 1.0 / _AROUND, _AROUND)
         if np.all(np.abs(ratio - 1.0) < _AGREES):
