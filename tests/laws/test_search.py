@@ -84,6 +84,17 @@ def test_a_point_is_its_law_and_its_notches(law):
         assert slope == pytest.approx((ends[0] - ends[1]) / value / 2e-6, rel=1e-5, abs=1e-7)
 
 
+def test_notches_that_take_nothing_away_are_left_out():
+    """A depth at its bound is no notch: its pole at 4.5 kHz was told as the least stable one of a guide's loop."""
+    shape, kept = Shape(2, 1e-4), Notch(106.0, 0.1, 0.7)
+    point = shape.point(PI(0.7, 300.0), (kept, Notch(4500.0, 1.0, 0.03)))
+    one = Found((shape,), (point,), (100.0,))
+    assert [each.frequency for each in one.notches[0]] == pytest.approx([106.0])
+    left = Found((Shape(1, 1e-4),), (Shape(1, 1e-4).point(PI(0.7, 300.0), one.notches[0]),), (100.0,))
+    frequencies = np.geomspace(3.0, 4900.0, 40)
+    assert left.responses(frequencies) == pytest.approx(one.responses(frequencies), rel=1e-12)
+
+
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_what_passes_the_bounds_has_exact_derivatives(count):
     """Of coupled loops, by differences: peaks of S, rejection, noise and steps all pass theirs. Two loops have formulas of their own."""

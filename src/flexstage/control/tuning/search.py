@@ -257,8 +257,9 @@ class Found:
 
     @property
     def notches(self) -> tuple[tuple[Notch, ...], ...]:
-        """Notches by loop."""
-        return tuple(shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
+        """Notches by loop, without those that came to take nothing away: their depth is 1, and they would add a pole that does nothing."""
+        every = (shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
+        return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
 
 def search(seen: View, within: Field, kind: Kind) -> Found | None:
