@@ -54,7 +54,7 @@ class Bench:
         self.command = command
         self._corrections: dict[str, Matrix] = {}
         self._reaches: dict[str, ForceReach] = {}
-        self._strokes: dict[tuple[str, float | None], strokes.Stroke] = {}
+        self._points: dict[tuple[str, float | None], strokes.Points] = {}
         self._along: dict[str, Bench] = {}
 
     @cached_property
@@ -62,12 +62,12 @@ class Bench:
         """The stage for large displacements."""
         return displaced.nonlinear(self.mechanism)
 
-    def along(self, name: str, at: float | None = None) -> strokes.Stroke:
+    def along(self, name: str, at: float | None = None) -> strokes.Points:
         """What the stage does along a path that the design states, or at one value of its drive."""
-        if (name, at) not in self._strokes:
+        if (name, at) not in self._points:
             found = course(self.mechanism, name)
-            self._strokes[name, at] = found.stroke(self.nonlinear, None if at is None else np.array([at]))
-        return self._strokes[name, at]
+            self._points[name, at] = found.points(self.nonlinear, None if at is None else np.array([at]))
+        return self._points[name, at]
 
     def over(self, name: str) -> Bench:
         """The bench of small motions about all points of a path, as a batch."""

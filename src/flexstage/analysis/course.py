@@ -56,11 +56,22 @@ class Course:
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
         """Equilibria along it, or at other values of its drive."""
+        wanted, hold = self._wanted(model, rest, values)
+        return paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+
+    def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
+        """Values of the drive, counted from where it is drawn, and what stays locked where."""
         wanted = self.values if values is None else values
         driven = self.drive in {channel.name for channel in model.inputs}
         start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
-        hold = {name: float(stance.coordinate(rest, name)) for name in self.locked}
-        return paths.path(model, self.drive, start + wanted, loads=self.loads, hold=hold, weight=self.weight)
+        return start + wanted, {name: float(stance.coordinate(rest, name)) for name in self.locked}
+
+    def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
+        """The points of its stroke, of which single columns may be asked."""
+        rest = self.rest(model)
+        wanted, hold = self._wanted(model, rest, values)
+        state = paths.equilibria_along(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        return strokes.Points(self.drive, wanted, state, self.locked, rest)
 
     def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
         """What the stage does along it, counted from where it rests."""

@@ -456,11 +456,11 @@ def _one_design(stage: Mechanism, place: int, step: float, work: Callable[[Mecha
 def _column(bench: Bench, asked: Measure, name: str) -> Array:
     """A column of a stroke: at the place that is asked for, or all of it. Refused where no equilibrium was found."""
     found = bench.along(asked.name, asked.place)
-    if name not in found.along.columns:
+    if name not in found.columns:
         raise refuse(asked.key, f"{found.drive} is no coordinate, so nothing holds it", "Drive a coordinate, for example platform.y")
-    values = found.along.values[:, found.along.columns.index(name)]
+    values = found.column(name)
     if np.any(np.isnan(values)):
-        where = found.along.values[np.isnan(values)][0, 0]
+        where = found.column(found.drive)[np.isnan(values)][0]
         raise refuse(asked.key, f"at {found.drive} = {where:.4g} the stage has no equilibrium, or a free one that is not stable", _LESS)
     return values
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Annotated
 
 import numpy as np
@@ -18,13 +19,14 @@ from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.model import LinearModel
+from flexstage.models.nonlinear.critical import unstable_motions
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.path import Path
 from flexstage.models.nonlinear.strain import Strains, strains
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
-_FREQUENCIES = 3
+_FREQUENCIES = ("f1", "f2", "f3")
 _AT_ONCE = 2
 """Points between which it is told how far it is."""
 _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
@@ -82,40 +84,96 @@ def stroke(path: Path, rest: State | None = None, *, told: Callable[[int], None]
     return replace(first, along=along, strained=strained, doubts=tuple(left_out(path.state)))
 
 
+@dataclass(frozen=True, eq=False)
+class Points:
+    """States (k,) along a drive's `values`, from `rest` if it is given, and what a stroke tells of them, worked out when first asked for.
+
+    `locked` coordinates stay held where the stage is free.
+    """
+
+    drive: str
+    values: Array
+    state: State
+    locked: tuple[str, ...]
+    rest: State | None
+
+    @cached_property
+    def about(self) -> LinearModel:
+        """Small motions about them."""
+        return linearise(self.state, locked=self.locked)
+
+    @cached_property
+    def strained(self) -> Strains:
+        """Strain and stress of the flexures."""
+        return strains(self.state)
+
+    @cached_property
+    def motions(self) -> Array:
+        """In how many ways each would be left, what a held drive holds counted as held; -1 where there is none."""
+        return unstable_motions(self.state)
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Natural frequencies (k, n) of the free stage [Hz]; NaN where it is not stable."""
+        with np.errstate(invalid="ignore"):
+            return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
+
+    @cached_property
+    def columns(self) -> dict[str, tuple[Callable[[], Array], str]]:
+        """What gives each column, and its unit."""
+        return dict(_columns(self))
+
+    def column(self, name: str) -> Array:
+        """A column (k,), alone."""
+        return self.columns[name][0]()
+
+
 def _portion(path: Path, rest: State | None) -> Stroke:
-    about = linearise(path.state, locked=path.locked)
-    strained = strains(path.state)
-    columns = dict(_columns(path, about, strained, rest))
-    values = np.stack([values for values, _ in columns.values()], axis=-1)
+    points = Points(path.drive, path.values, path.state, path.locked, rest)
+    points.__dict__["motions"] = path.motions
+    none = _FREQUENCIES[points.frequencies.shape[-1] :]
+    columns = tuple(name for name in points.columns if name not in none)
+    values = np.stack([points.column(name) for name in columns], axis=-1)
     rows = tuple(str(number + 1) for number in range(len(path.values)))
-    units = tuple(tuple(unit for _, unit in columns.values()) for _ in rows)
+    units = (tuple(points.columns[name][1] for name in columns),) * len(rows)
     sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
-    return Stroke(path.drive, Matrix(values, rows, tuple(columns), units), sag, strained, (), about.provenance)
+    along = Matrix(values, rows, columns, units)
+    return Stroke(path.drive, along, sag, points.strained, (), points.about.provenance)
 
 
-def _columns(path: Path, about: LinearModel, strained: Strains, rest: State | None) -> Iterator[tuple[str, tuple[Array, str]]]:
-    owner, _, component = path.drive.rpartition(".")
-    held = component in COMPONENTS and path.state.held[:1] == (path.drive,)
+def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], str]]]:
+    drive, state, rest = points.drive, points.state, points.rest
+    owner, _, component = drive.rpartition(".")
+    held = component in COMPONENTS and state.held[:1] == (drive,)
     units: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
-    known = {channel.name: channel.unit for channel in about.inputs}
-    begun = 0.0 if rest is None or not held else coordinate(rest, path.drive)
-    yield path.drive, (path.values - begun, units[component] if held else known.get(path.drive, "1"))
+    known = {channel.name: channel.unit for channel in state.model.inputs}
+    begun = 0.0 if rest is None or not held else coordinate(rest, drive)
+    yield drive, (lambda: points.values - begun, units[component] if held else known.get(drive, "1"))
     if held:
         force = WRENCH_UNITS[COMPONENTS.index(component)]
-        yield "force", (path.state.reactions[..., 0], force)
+        yield "force", (lambda: state.reactions[..., 0], force)
         conjugate = f"{owner}.{_FORCE_OF[component]}"
         if conjugate in known:
-            yield "stiffness", (_stiffness(about, path.drive, conjugate), f"{force}/{units[component]}")
-    twist = path.state.twist(PLATFORM) - (0.0 if rest is None else rest.twist(PLATFORM))
+            yield "stiffness", (lambda: _stiffness(points.about, drive, conjugate), f"{force}/{units[component]}")
+    twist = state.twist(PLATFORM) - (0.0 if rest is None else rest.twist(PLATFORM))
     yield from (
-        (f"platform.{name}", (twist[..., place], units[name])) for place, name in enumerate(COMPONENTS) if f"platform.{name}" != path.drive
+        (f"platform.{name}", (partial(_take, twist, place), units[name]))
+        for place, name in enumerate(COMPONENTS)
+        if f"platform.{name}" != drive
     )
-    with np.errstate(invalid="ignore"):  # of what is not stable
-        frequencies = np.sqrt(eigenvalues(about)) / (2.0 * np.pi)
-    yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
-    yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
-    yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
-    yield "unstable", (np.where(path.motions < 0, np.nan, path.motions), "1")
+    yield from ((name, (partial(_frequency, points, place), "Hz")) for place, name in enumerate(_FREQUENCIES))
+    yield "stress", (lambda: np.max(points.strained.stress, axis=-1, initial=0.0), "Pa")
+    yield "strain", (lambda: np.max(points.strained.largest, axis=-1, initial=0.0), "1")
+    yield "unstable", (lambda: np.where(points.motions < 0, np.nan, points.motions), "1")
+
+
+def _take(twist: Array, place: int) -> Array:
+    return twist[..., place]
+
+
+def _frequency(points: Points, place: int) -> Array:
+    few = place >= points.frequencies.shape[-1]
+    return np.full(len(points.values), np.nan) if few else points.frequencies[..., place]
 
 
 def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:

@@ -78,6 +78,28 @@ def path(
     >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
+    values = np.asarray(values, dtype=float)
+    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, effort=effort)
+    return Path(drive, values, found, unstable_motions(found), tuple(hold or {}))
+
+
+def equilibria_along(
+    model: Nonlinear,
+    drive: str,
+    values: Array,
+    *,
+    loads: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> State:
+    """The states (k,) of a `path`, of which nothing is asked but where they are.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> equilibria_along(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4]), weight=0.0).reactions[:, 0].round(0).tolist()
+    [0.0, 1939.0]
+    """
     values, rest, locked, effort = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(effort, arcs=0)
     known = {channel.name for channel in model.inputs}
 
@@ -92,7 +114,7 @@ def path(
         found = at(values, _neighbour(found))
         if int(np.sum(found.converged)) <= count:
             break
-    return Path(drive, values, found, unstable_motions(found), tuple(locked))
+    return found
 
 
 def _neighbour(found: State) -> State:
