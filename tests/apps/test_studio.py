@@ -678,6 +678,7 @@ async def test_jobs_that_cannot_be_are_refused(page, studio):
         {"command": "identify", "study": None, "record": "nowhere.uff", "options": ()},
         {"command": "sweep", "study": None, "record": None, "options": ()},
         {"command": "loop", "study": None, "record": None, "options": ("--json=/tmp/x",)},
+        {"command": "loop", "study": None, "record": None, "options": ("--hardware=x.c",)},
     ):
         assert isinstance(await page.ask(say.Run, **fields), say.Refusal)
     assert isinstance(await page.ask(say.Cancel, job=99), say.Refusal)

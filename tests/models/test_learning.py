@@ -9,6 +9,7 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.control.closed import loop
+from flexstage.control.figures.time import lesson_figure
 from flexstage.control.learning.learn import fade_ends, filter_path, robust_band
 from flexstage.control.learning.responses import Band, readings, through
 from flexstage.control.learning.shaper import zv, zvd
@@ -29,6 +30,7 @@ from flexstage.control.study.setup import (
     StepMotion,
 )
 from flexstage.control.system import select
+from flexstage.show.figures.export import to_svg
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
@@ -112,6 +114,13 @@ def test_the_shipped_stage_learns_a_raster_along_z(damping):
     assert seen.rms[0, 2] > 50.0 * seen.noise[2]
     assert np.all(seen.above_noise < 2.0)
     assert np.all(seen.beyond > 0.0)
+
+
+@pytest.mark.parametrize(("least", "told"), [(1e-9, "0.1"), (2e-7, "0.5")])
+def test_errors_by_pass_are_drawn_with_plain_numbers(least, told):
+    drawn = to_svg(lesson_figure(np.geomspace(1e-6, least, 4)[:, None], ["x"], ["m"], "passes"), "lessons", "Errors by pass")
+    assert f">{told}<" in drawn
+    assert "mathdefault" not in drawn
 
 
 def test_noise_that_begins_at_once_is_faded():

@@ -279,8 +279,13 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
     if quiet:
         yield f"no amplifier noise is stated of {', '.join(quiet)}: counted as none"
     unbounded = list(band_spectra(closed, {}, outputs))
-    if unbounded:
-        yield f"the amplifiers of {', '.join(unbounded)} have no lag: their noise is counted over the band only"
+    heard = [name for name in unbounded if name.startswith(f"{SENSED}.")]
+    driven = [name for name in unbounded if name not in heard]
+    if driven:
+        yield f"the amplifiers of {', '.join(driven)} have no lag: their noise is counted over the band only"
+    if heard:
+        legs = ", ".join(name.removeprefix(f"{SENSED}.") for name in heard)
+        yield f"noise of what senses the legs of {legs} is counted over the band only"
 
 
 def _half_step(sensors: list[Sensor], unit: str) -> str:

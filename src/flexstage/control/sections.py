@@ -224,7 +224,7 @@ def time_section(found: LoopStudy) -> Section | None:
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.course.plane is not None:
         drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
-        yield Picture(drawn, f"The {test.course.name} in plan, to scale; the true error is drawn magnified.")
+        yield Picture(drawn, f"The {test.course.name} in plan, to scale, its true error as many times as stands above.")
     drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
     yield Picture(drawn, "Reference less true pose over time.")
     if test.learned is not None:

@@ -146,7 +146,7 @@ def heat_table(runs: Sequence[Run]) -> Table | None:
         for run in runs
         for name, each in run.heat.items()
     ]
-    heads = ["course", "actuator", "rms", "held for ever", "heat", "warms by"]
+    heads = ["course", "actuator", *(Column(head) for head in ("rms", "held for ever", "heat", "warms by"))]
     note = "Each course as simulated, over and over, without heat carried off by motion; what the data do not tell is absent."
     return make_table("Heat of force actuators", heads, rows, notes=[note]) if rows else None
 
@@ -165,7 +165,7 @@ def leg_table(runs: Sequence[Run]) -> Table | None:
         for run in runs
         for name, each in run.legs.items()
     ]
-    heads = ["course", "actuator", "added at most", "of the stroke", "of the speed", "held"]
+    heads = ["course", "actuator", *(Column(head) for head in ("added at most", "of the stroke", "of the speed")), "held"]
     note = "Of stroke and speed that the amplifier gives, what both loops take together. Beyond, the simulation goes on as if it gave them."
     return make_table("Force feedback and amplifiers", heads, rows, notes=[note]) if rows else None
 
@@ -185,7 +185,7 @@ def learning_table(runs: Sequence[Run]) -> Table | None:
         notes.append(f"{run.course.name}: {passes} passes of gain {seen.gain:g} up to {end} Hz; {contraction}.")
     if not rows:
         return None
-    heads = ["path", "motion", "before", "learned", "does not repeat", "beyond the band"]
+    heads = ["path", "motion", *(Column(head) for head in ("before", "learned", "does not repeat", "beyond the band"))]
     last = (
         "Rms errors as the gauges tell them, the first three in the band. What is beyond it is not learnable: there the loop is not known."
     )
@@ -205,7 +205,7 @@ def repetition_table(runs: Sequence[Run]) -> Table | None:
         left = f"a period leaves {percent(seen.contraction, 3)} at most of what repeats, all modes up to {percent(seen.spread)} off"
         notes.append(f"{run.course.name}: {len(seen.rms)} periods of {period} s, gain {seen.gain:g} up to {end} Hz; {left}.")
         notes.append(f"What does not repeat is made up to {number(seen.amplifies, 3)} times as large between the harmonics of {period} s.")
-    heads = ["path", "motion", "first period", "halfway", "last period", "beyond the band"]
+    heads = ["path", "motion", *(Column(head) for head in ("first period", "halfway", "last period", "beyond the band"))]
     last = (
         "Rms errors as the gauges tell them, the first three in the band. What is beyond it is not learnable: there the loop is not known."
     )

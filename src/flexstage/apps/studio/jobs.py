@@ -19,7 +19,7 @@ from flexstage.base.jobs import environment
 from flexstage.base.progress import LINE, LINES
 from flexstage.base.store import make_temporary_folder, write
 
-_WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx")
+_WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx", "--hardware", "--example")
 _STUDIES = ("sweep", "optimise")
 _ENDS = {"optimise": "done; the optimum is pinned among the figures"}
 _LINES = 12

@@ -53,7 +53,7 @@ def open_loop_figure(found: Curves, marks: Array, noun: str = "open loop L", spo
         upper.tick_params(labelbottom=False)
         lower.set_ylabel("phase [°]")
         _phase_ticks(lower)
-        _plain(lower.xaxis, upper.yaxis)
+        plain_ticks(lower.xaxis, upper.yaxis)
         lower.set_xlabel("frequency [Hz]")
         lower.set_xlim(*_span(found))
         _legend(upper, len(found.names))
@@ -78,7 +78,7 @@ def sensitivity_figure(sensitivity: Curves, complementary: Curves, highest: floa
             axes.axhline(1.0, color=INK, linewidth=0.7)
             axes.set_xlim(*_span(curves))
             axes.set_ylim(1e-3, 10.0)
-            _plain(axes.xaxis, axes.yaxis)
+            plain_ticks(axes.xaxis, axes.yaxis)
             axes.set_xlabel("frequency [Hz]")
             axes.set_ylabel(title)
         if highest is not None:
@@ -125,7 +125,7 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
     axes.set_ylim(min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5), 130.0)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("damping ratio [%]")
-    _plain(axes.xaxis, axes.yaxis)
+    plain_ticks(axes.xaxis, axes.yaxis)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2, handletextpad=0.2)
 
 
@@ -189,12 +189,12 @@ def _phase_ticks(axes: Any) -> None:
     axes.set_yticks(np.arange(step * np.ceil(low / step), high + 1.0, step))
 
 
-def _plain(*axes: Any) -> None:
-    """Ticks of logarithmic axes at powers of ten, as plain numbers."""
+def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
+    """Ticks of logarithmic axes at these multiples of powers of ten, as plain numbers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     for axis in axes:
-        axis.set_major_locator(LogLocator(subs=(1.0,), numticks=12))
+        axis.set_major_locator(LogLocator(subs=steps, numticks=12))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_locator(NullLocator())
 

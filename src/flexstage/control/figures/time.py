@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.control.figures.frequency import plain_ticks
 from flexstage.control.simulation.result import Simulated
 from flexstage.show.display import display_unit_of, to_typography
 from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
@@ -16,6 +17,8 @@ _ACROSS = 3
 _POINTS = 320
 _OF_SIZE = 0.05
 _BAND, _SHOWN = 0.02, 2.5
+_FEW = 1.5
+"""Decades; fewer are ticked between powers of ten too."""
 
 
 def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
@@ -119,6 +122,8 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
                     axes.axhline(form.factor * float(floor[index]), color=SERIES[index % 7], linewidth=0.7, linestyle=":")
             axes.set_ylabel(to_typography(f"rms error [{form.unit}]"))
             axes.set_xlim(0.0, len(rms) - 1.0)
+            axes.xaxis.get_major_locator().set_params(integer=True)
+            plain_ticks(axes.yaxis, steps=(1.0, 2.0, 5.0) if np.ptp(np.log10(rms[:, chosen])) < _FEW else (1.0,))
         handles = [line for axes in grid[:, 0] for line in axes.get_lines() if not line.get_label().startswith("_")]
         figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=6, handlelength=1.4, borderaxespad=0.2)
         grid[-1, 0].set_xlabel(noun)
