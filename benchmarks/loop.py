@@ -34,7 +34,8 @@ from flexstage.base.native import compiler
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.compiled import simulate_compiled
-from flexstage.control.export.code.hardware import FLAGS, Precision, hardware_code
+from flexstage.control.export.code.hardware import FLAGS, hardware_code
+from flexstage.control.export.code.precision import Precision
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import ControllerKind

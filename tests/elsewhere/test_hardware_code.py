@@ -23,7 +23,8 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.damping.sampled import SampledLegs
-from flexstage.control.export.code.hardware import FLAGS, Hardware, Precision, hardware_code
+from flexstage.control.export.code.hardware import FLAGS, Hardware, hardware_code
+from flexstage.control.export.code.precision import Precision
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import ControllerKind

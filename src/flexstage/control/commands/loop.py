@@ -28,7 +28,8 @@ from flexstage.control import error_tables as errors
 from flexstage.control import tables
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.damping.sampled import SampledLegs, sample_legs
-from flexstage.control.export.code.hardware import NO_INVERSE, Precision
+from flexstage.control.export.code.hardware import NO_INVERSE
+from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.export.files import (

@@ -18,8 +18,9 @@ from flexstage.base.text import printable
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.export.code.controller import controller_code
-from flexstage.control.export.code.hardware import Precision, hardware_code
+from flexstage.control.export.code.hardware import hardware_code
 from flexstage.control.export.code.legs import with_legs
+from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.code.program import Program
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.fmu.unit import fmu
