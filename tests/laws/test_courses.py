@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,8 @@ import flexstage as fs
 from flexstage.analysis.load_cases import REST, LoadCase, critical_factors
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.lines import centre_lines, critical_motion, mode_motions
-from flexstage.show.displaced import buckling_report, stroke_report
+from flexstage.show.displaced import along_table, buckling_report, stroke_report
+from flexstage.show.table import matrix_table
 from flexstage.show.viewer.course import NODES, stroke_data
 from flexstage.spatial.rotation import exponential, logarithm
 
@@ -91,3 +94,17 @@ def test_reports_are_small_and_the_same_again() -> None:
     assert len(told) < 2e6
     assert told == stroke_report(STAGE, PATH, found)
     assert "MPa of " in told
+
+
+def test_points_stand_in_columns_of_one_unit() -> None:
+    """Numbers of the table are those of the course in the units above them; what is not known has no unit."""
+    found = fs.stroke(PATH)
+    gone = replace(found.along, values=np.where(np.arange(len(found.along.rows))[:, None] == 1, np.nan, found.along.values))
+    heads, *rows = along_table("Along", gone).texts()
+    told = dict(zip(heads, zip(*rows, strict=True), strict=True))
+    stress = told["stress [MPa]"]
+    known = np.delete(found.along.values[:, found.along.columns.index("stress")], 1)
+    np.testing.assert_allclose([float(each) for each in np.delete(stress, 1)], 1e-6 * known, rtol=1e-3)
+    assert stress[1] == "-"
+    assert "strain [um/m]" in told
+    assert set(matrix_table("Points", gone).texts()[2][1:]) == {"-"}

@@ -90,7 +90,7 @@ class Stability:
                 f"weight, payloads and forces soften it: load factor {dead:.3g}, where {give_way(' and '.join(self.moving))}. In that "
                 f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
             )
-            advice = "stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
+            advice = "Stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
             yield Finding("stage", what, f"{advice}; elsewhere count on the lower values; stiffen what the load presses on, or let it hang")
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
@@ -99,7 +99,7 @@ class Stability:
             yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
             what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
-            advice = "stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
+            advice = "Stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
             yield Finding("stage", what, f"{advice}; elsewhere count on higher frequencies in that motion")
 
 

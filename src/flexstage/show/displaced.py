@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
+
 import numpy as np
 
 import flexstage
@@ -9,7 +12,7 @@ from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors
 from flexstage.analysis.misalign import Misaligned, Misalignments
 from flexstage.analysis.stroke import Stroke
 from flexstage.base.digest import digest
-from flexstage.base.labelled import Matrix
+from flexstage.base.labelled import NOISE_RULE, Matrix, quiet
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import Kind
@@ -21,8 +24,8 @@ from flexstage.show.page import Fact, Facts, Head, Headline, Picture, Section, p
 from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
-from flexstage.show.table import Column, Table, make_table, matrix_table, result_tables
-from flexstage.show.viewer.course import buckling_data, curves_of, limits, misalign_data, stroke_data
+from flexstage.show.table import Column, Table, make_table, matrix_table, number_cells
+from flexstage.show.viewer.course import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -46,12 +49,31 @@ def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
         ),
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
         caveat_section(mechanism, found.cautions),
-        section("Point by point", [*result_tables(found)]),
+        section("Point by point", stroke_tables(found)),
         drawing_section(mechanism, seen),
     )
     good = not beyond
     text = words if good else f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}"
     return _page(mechanism, "A stroke at large displacements", found.provenance, (Headline(to_typography(text), good), sections), data)
+
+
+def stroke_tables(found: Stroke) -> list[Table]:
+    """What the stage does at every point of its stroke, and where it sags to before."""
+    start = "where the stage sags to" if found.sag is not None else "the drawn place"
+    free = "Of f1 to f3 and of the ways in which it would leave (unstable), the stage is free under the force that holds it."
+    table = along_table(f"Along {found.drive}", found.along, [f"Counted from {start}. {free} Stress: von Mises, the largest of a flexure."])
+    sag = [] if found.sag is None else [matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)]
+    return [table, *sag]
+
+
+def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
+    """What is told of every point of a path: a row a point, a column a quantity in its own display unit."""
+    kept = quiet(along.values)
+    told = list(quantities_of(replace(along, values=kept)))
+    heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in told]
+    rows = zip(*(number_cells(values, form) for _, values, form in told), strict=True)
+    said = [NOISE_RULE] if np.any((kept == 0.0) & (along.values != 0.0)) else []
+    return make_table(title, heads, rows, notes=[*notes, *said])
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: tuple[Path, Stroke] | None = None) -> str:
@@ -103,8 +125,10 @@ def buckling_tables(found: CaseFactors, after: tuple[Path, Stroke] | None = None
     least = found.least
     if least is None:
         return [table]
-    beyond = [] if after is None else [matrix_table("Beyond", after[1].along)]
-    return [table, matrix_table(f"Shape: {least.load}, {least.place}", shape_of(least)), *beyond]
+    beyond = [] if after is None else [along_table("Beyond", after[1].along)]
+    shape, size = shape_of(least), "It has no size of its own: here its largest number is 1 mm, or 1 mrad."
+    scaled = replace(shape, values=1e-3 * shape.values)
+    return [table, matrix_table(f"Shape: {least.load}, {least.place}", scaled, notes=[size]), *beyond]
 
 
 def _factor_text(case: CaseFactor) -> str:
@@ -161,7 +185,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
     last = format_value(float(found.along.values[-1, 0]), "rad" if found.axis.startswith("r") else "m", 4)
     return [
         make_table("Misaligned", ["copy", "axis", "what it bears"], [[found.copy, found.axis, critical_text(found)]]),
-        matrix_table("Point by point", found.along),
+        along_table(f"Along {found.axis}", found.along),
         matrix_table(f"Loads in flexures at {last}, on each end in the frame of its start", found.loads),
     ]
 

@@ -343,7 +343,8 @@ def _entry(value: float) -> Cell:
 
 def _with_unit(value: float, unit: str) -> Cell:
     text = format_value(float(value), unit)
-    return Cell(text.split()[0] if text[0] in "0-" and value == 0.0 else text, _mark_of(text.split()[0]))
+    bare = text.split()[0]
+    return Cell(bare if bare in ("0", NO_VALUE) else text, _mark_of(bare))
 
 
 def _mark_of(text: str) -> Mark:

@@ -26,6 +26,8 @@ from flexstage.parts.shape import Shaped
 
 ERROR = 0.01
 """Relative error of second order that linear models may have."""
+_ATOM = 1e-10
+"""What comes nearer by less is not told [m]."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,9 @@ class SecondOrder:
             "; redundant constraints may stretch flexures besides, which flexstage stroke tells" if self.held_twice and not more else ""
         )
         aside = (
-            f", and leaves out that {self.shortened} gets shorter by {show(self.shortening, LENGTH, digits=2)}" if self.shortened else ""
+            f", and leaves out that {self.shortened} gets shorter by {show(self.shortening, LENGTH, digits=2)}"
+            if self.shortening > _ATOM
+            else ""
         )
         what = f"Over the strokes small-displacement theory is off by up to {100.0 * self.error:.2g} %"
         return f"{what} ({self.link} {self.why}){aside}{more}{besides}."

@@ -42,8 +42,8 @@ from flexstage.show.displaced import (
     misalignments_text,
     shape_of,
     stroke_report,
+    stroke_tables,
 )
-from flexstage.show.table import result_tables
 from flexstage.spatial.frame import COMPONENTS
 
 
@@ -85,7 +85,7 @@ def stroke(  # noqa: PLR0913 (its options)
         "stroke",
         mechanism,
         lambda: found,
-        lambda: result_tables(found),
+        lambda: stroke_tables(found),
         json=json,
         csv=csv,
         xlsx=xlsx,

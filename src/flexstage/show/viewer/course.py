@@ -31,6 +31,7 @@ _BYTES = 400_000
 """What the poses of a path may take in a page."""
 _MODES = 6
 _MILLIMETRES = DisplayUnit("mm", 1e3)
+_MICROSTRAIN = DisplayUnit("um/m", 1e6)
 
 
 @dataclass(frozen=True)
@@ -96,16 +97,20 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
     """What is told of every point, a row a point, in display units: the drive first."""
-    unit, columns = along.unit, along.columns
-    units = (unit,) * len(columns) if isinstance(unit, str) else unit[0]
-    values = np.moveaxis(along.values, -1, 0)
-    return tuple(_curve(*each) for each in zip(columns, values, units, strict=True) if each[0] != "unstable")
+    return tuple(
+        Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
+        for name, values, form in quantities_of(along)
+        if name != "unstable"
+    )
 
 
-def _curve(name: str, values: Array, unit: str) -> Curve:
-    largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
-    form = _MILLIMETRES if unit == "m" and largest >= 1e-3 else display_unit_of(unit, largest)
-    return Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
+def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
+    """Columns of what is told of every point: name, SI values, and the unit in which a curve or column of them is shown."""
+    units = (along.unit,) * len(along.columns) if isinstance(along.unit, str) else along.unit[0]
+    for name, values, unit in zip(along.columns, np.moveaxis(along.values, -1, 0), units, strict=True):
+        largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
+        far = unit == "m" and largest >= 1e-3
+        yield name, values, _MICROSTRAIN if name == "strain" else _MILLIMETRES if far else display_unit_of(unit, largest)
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
