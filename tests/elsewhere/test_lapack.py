@@ -1,4 +1,4 @@
-"""LAPACK without the rest of `scipy.linalg`: its results to the last bit."""
+"""LAPACK and assignments without the rest of scipy: its results to the last bit."""
 
 import subprocess
 import sys
@@ -8,6 +8,7 @@ import pytest
 import scipy
 
 from flexstage.base import lapack
+from flexstage.base.assignment import assignment
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
@@ -37,8 +38,19 @@ def test_a_matrix_that_is_not_definite_and_a_singular_triangle_are_refused():
         lapack.solve_triangular(np.zeros((2, 2)), np.ones(2), lower=True)
 
 
-def test_the_rest_of_scipy_is_not_loaded():
-    asked = (
-        "import sys, numpy; from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2)); assert 'scipy.linalg' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", asked], check=True)
+def test_assignments_are_those_of_scipy():
+    random = np.random.default_rng(0)
+    for shape in ((1, 1), (3, 7), (7, 3), (20, 20)):
+        cost = random.integers(0, 4, shape).astype(float)
+        np.testing.assert_array_equal(assignment(cost), scipy.optimize.linear_sum_assignment(cost))
+
+
+@pytest.mark.parametrize(
+    ("asked", "package"),
+    [
+        ("from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2))", "scipy.linalg"),
+        ("from flexstage.base.assignment import assignment as f; f(numpy.eye(2))", "scipy.optimize"),
+    ],
+)
+def test_the_rest_of_scipy_is_not_loaded(asked, package):
+    subprocess.run([sys.executable, "-c", f"import sys, numpy; {asked}; assert {package!r} not in sys.modules"], check=True)

@@ -5,35 +5,16 @@ Routines, workspace and order in memory are those that `scipy.linalg` takes, so 
 
 from __future__ import annotations
 
-import sys
-from contextlib import suppress
-from functools import cache
-from importlib import import_module
-from importlib.machinery import PathFinder
-from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 import numpy as np
 
+from flexstage.base.binding import binding
 from flexstage.base.number import Array
 
-_BINDINGS = "scipy.linalg._flapack"
 
-
-@cache
 def _lapack() -> Any:
-    """The bindings alone; all of `scipy.linalg` where they are not found, or do not load alone."""
-    if _BINDINGS in sys.modules:
-        return sys.modules[_BINDINGS]
-    package = find_spec("scipy")
-    folders = [f"{each}/linalg" for each in (package.submodule_search_locations or ())] if package else []
-    found = PathFinder.find_spec(_BINDINGS, folders)
-    if found is not None and found.loader is not None:
-        with suppress(ImportError):  # where what it links to is found says scipy itself
-            module = module_from_spec(found)
-            found.loader.exec_module(module)
-            return sys.modules.setdefault(_BINDINGS, module)
-    return import_module("scipy.linalg.lapack")
+    return binding("scipy.linalg._flapack", "scipy.linalg.lapack")
 
 
 def cholesky(matrix: Array) -> Array:

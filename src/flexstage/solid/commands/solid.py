@@ -39,7 +39,7 @@ from flexstage.solid import calibration, verification
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
-from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.install import require_installed
 from flexstage.solid.fea.parts import Parts, Ways
 from flexstage.solid.fea.remote import Limits
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
@@ -262,7 +262,7 @@ def _size(memory: str | None) -> float | None:
 
 
 def _solids(asked: _Request, shown: ProgressBar) -> Solids:
-    require_solver()
+    require_installed()
     reduce = solids(asked.ways(shown), _notice)
 
     def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:

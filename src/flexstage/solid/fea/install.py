@@ -31,6 +31,16 @@ def require_solver() -> None:
     require(solver_findings())
 
 
+def require_installed() -> None:
+    """Raise a `DesignError` that names the remedy if NGSolve or netgen is missing or of another version; they are not loaded.
+
+    For what may have all its results at hand: what computes asks `require_solver`.
+
+    >>> require_installed()
+    """
+    require(_versions())
+
+
 def _versions() -> Iterator[Finding]:
     for name in ("ngsolve", "netgen-mesher"):
         try:

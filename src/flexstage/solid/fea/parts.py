@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -74,6 +75,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     return jobs
 
 
+@lru_cache(maxsize=256)
 def content_in_stage(part: Component) -> str:
     """The content of what is reduced for a component, the same for a unit alone and in its stage.
 
