@@ -148,7 +148,7 @@ export class FigureTable {
   private table(rows: Figure[]): HTMLElement {
     const pins = (this.studio.state.value?.pins ?? []).filter((each) => each !== this.studio.against.value && this.compared?.designs.includes(each));
     const head = ["", this.studio.against.value || "old", "new", "change", ...pins];
-    return h("div", { className: "wide" }, table(head, rows.map((each) => this.row(each, pins)), "figures"));
+    return h("div", { className: "wide" }, table(head, rows.map((each) => this.row(each, pins)), pins.length ? "figures many" : "figures"));
   }
 
   private row(each: Figure, pins: string[]): (string | Node)[] {
@@ -220,7 +220,7 @@ export function matrix(each: Matrix): HTMLElement {
   const unit = each.unit;
   const cells = each.values.map((row, at) => [
     each.rows[at] ?? "",
-    ...row.map((value, column) => h("span", { title: typeof unit === "string" ? unit : (unit[at]?.[column] ?? "") }, digits(value, 4))),
+    ...row.map((value, column) => h("span", { title: `${digits(value, 6)} ${typeof unit === "string" ? unit : (unit[at]?.[column] ?? "")}` }, digits(value, 3))),
   ]);
   return h("div", { className: "wide" }, table([typeof unit === "string" ? unit : "", ...each.columns], cells, "matrix"));
 }

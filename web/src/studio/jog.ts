@@ -43,6 +43,7 @@ export class Jog {
     studio.mode.watch((mode) => mode !== null && this.leave());
     studio.other.watch((other) => other !== null && this.leave());
     studio.painted.watch(() => this.isActive() && this.judge());
+    studio.strip.watch((strip) => strip !== "jog" && this.isActive() && this.reset());
   }
 
   private isShown(): boolean {

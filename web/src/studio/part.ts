@@ -18,7 +18,7 @@ export class PartCard {
     private readonly lighten: (card: Card) => void,
   ) {
     fill(byId("pane-part"), h("div", { className: "bar" }, h("label", {}, "part ", this.pick)), this.body);
-    fill(this.body, h("p", { className: "quiet" }, "Click a part of the stage, or put the cursor into its line of the file."));
+    this.hint();
     studio.state.watch(() => this.offer());
     studio.link.watch((link) => this.choose(link));
     studio.reach.watch(() => this.refresh());
@@ -35,7 +35,11 @@ export class PartCard {
   private choose(link: string | null): void {
     this.pick.value = link ?? "";
     if (link) this.studio.connection.newest("part", { kind: "part", link }, (said) => said.kind === "card" && said.link === this.studio.link.value && this.show(said, true));
-    else fill(this.body);
+    else this.hint();
+  }
+
+  private hint(): void {
+    fill(this.body, h("p", { className: "quiet" }, "Click a part of the stage, or put the cursor into its line of the file."));
   }
 
   private refresh(): void {

@@ -124,7 +124,11 @@ export class Responses {
       if (what !== "magnitude" || x < free) continue;
       ctx.fillStyle = style.getPropertyValue(isPlaying ? "--accent" : "--quiet");
       ctx.font = `${10 * devicePixelRatio}px sans-serif`;
-      ctx.fillText(String(mode.number), x + 2 * devicePixelRatio, bbox.top + 10 * devicePixelRatio);
+      const [left, foot] = [x + 2 * devicePixelRatio, bbox.top + 10 * devicePixelRatio];
+      ctx.strokeStyle = style.getPropertyValue("--paper");
+      ctx.lineWidth = 4 * devicePixelRatio;
+      ctx.strokeText(String(mode.number), left, foot);
+      ctx.fillText(String(mode.number), left, foot);
       free = x + 14 * devicePixelRatio;
     }
     ctx.restore();
@@ -173,7 +177,7 @@ const named = (curve: Curve): string => `${curve.output.replace("platform.", "")
 const colour = (at: number): (() => string) => () => getComputedStyle(document.documentElement).getPropertyValue(`--curve-${at % 4}`);
 
 function line(curve: Curve, at: number, isOld: boolean): Series {
-  return { label: named(curve), stroke: colour(at), width: isOld ? 1 : 1.6, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
+  return { label: named(curve), stroke: colour(at), width: isOld ? 1 : 1.6, pxAlign: 0, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
 }
 
 /** Magnitudes over eight decades below the largest; what is less is rounding noise of the solve. */
