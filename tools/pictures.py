@@ -86,8 +86,10 @@ def stage() -> Any:
     """The double-triangular stage from three sides and above the corner, all to one scale but for the corner."""
     drawn = scene(double_triangle())
     with style_context():
-        figure = canvas(FULL, 0.82 * FULL)
-        panels = figure.subplots(2, 2, height_ratios=(2.6, 1.0))
+        figure = canvas(FULL, 0.68 * FULL)
+        panels = figure.subplots(
+            2, 2, height_ratios=(2.6, 1.0), gridspec_kw={"left": 0, "right": 1, "bottom": 0, "top": 1, "wspace": 0, "hspace": 0}
+        )
         for side, place in _SIDES:
             _side(panels[place], drawn, side)
     return figure

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -14,13 +14,14 @@ from flexstage.cases.double_triangle import SM_REF_A, double_triangle
 from flexstage.cases.registry import case
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import GROUND
+from flexstage.show.figures.style import canvas
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind, Paint, extrude, loft, rectangle
 from flexstage.show.scene.hidden import are_visible
 from flexstage.show.scene.inner import outer
 from flexstage.show.scene.order import partition, sort_by_depth
 from flexstage.show.scene.stage import displace, largest_motion, scene
-from flexstage.show.scene.view import Side, order_facets, rejoin, view
+from flexstage.show.scene.view import Side, order_facets, rejoin, view, write
 from flexstage.spatial.rotation import exponential
 from tests.conftest import examples
 from tests.show.stages import NAMES, analysed, seldom
@@ -212,3 +213,15 @@ def test_bodies_that_stand_as_they_did_are_not_built_anew():
     assert all(one is other for one, other in zip(before, hinged, strict=True))
     known = {id(facet): facet.paint.kind for facet in before}
     assert {known.get(id(facet)) for facet in grown} == {Kind.BODY, None}
+
+
+@pytest.mark.parametrize("inches", [2.0, 7.0])
+def test_names_cover_no_other_names(inches):
+    """Boxes of names as they are drawn, in a narrow picture and in a wide one."""
+    drawn, seen, figure = scene(double_triangle()), view(Side.ISOMETRIC), canvas(inches, inches)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(-200.0, 200.0), ylim=(-200.0, 200.0), aspect="equal")
+    write(axes, drawn.labels, seen)
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) == 12
+    assert not [pair for pair in combinations(boxes, 2) if pair[0].overlaps(pair[1])]

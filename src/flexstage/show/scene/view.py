@@ -208,17 +208,28 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
     >>> axes.texts[0].get_text()
     'B1'
     """
-    width = 0.045 * (axes.get_xlim()[1] - axes.get_xlim()[0])
-    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), np.array([width, 0.55 * width]))
+    sizes = np.array([(_LETTER * len(label.text) + _ROUND, _LINE) for label in labels]).reshape(-1, 2)
+    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), _per_point(axes) * sizes)
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     for label, (x, y) in zip(labels, places, strict=True):
         colour = _LABEL_COLOURS.get(label.kind, INK)
         axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box, parse_math=False)
 
 
-def _spread(places: Array, size: Array) -> Array:
-    """Places (n, 2) pushed apart, a little a round, until boxes of that size no longer overlap."""
-    places = np.array(places)
+_LETTER, _ROUND, _LINE = 5.0, 4.0, 11.5
+"""Width of a letter of a name, what its box adds, and the box's height [pt]."""
+
+
+def _per_point(axes: Any) -> float:
+    """Length per point of paper, both ways alike."""
+    low, high = axes.viewLim.min, axes.viewLim.max
+    paper = 72.0 * axes.get_figure().get_size_inches() * axes.get_position(original=True).size
+    return float(np.max((high - low) / paper))
+
+
+def _spread(places: Array, sizes: Array) -> Array:
+    """Places (n, 2) pushed apart, a little a round, until boxes of those sizes (n, 2) no longer overlap."""
+    places, size = np.array(places), 0.5 * (sizes[:, None] + sizes[None, :])
     for _ in range(60):
         gap = places[:, None] - places[None, :]
         overlap = np.clip(1.0 - np.abs(gap) / size, 0.0, None).prod(axis=-1)
@@ -227,7 +238,7 @@ def _spread(places: Array, size: Array) -> Array:
             break
         first = np.triu(np.ones_like(overlap))
         sense = np.where(gap[..., 1] == 0.0, first - first.T, np.sign(gap[..., 1]))
-        places[:, 1] += 0.25 * size[1] * np.sum(sense * (overlap > 1e-9), axis=1)
+        places[:, 1] += 0.25 * sizes[:, 1] * np.sum(sense * (overlap > 1e-9), axis=1)
     return places
 
 
