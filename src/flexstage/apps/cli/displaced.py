@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -31,7 +31,7 @@ from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
-from flexstage.show.command.output import save
+from flexstage.show.command.output import announce, save
 from flexstage.show.displaced import (
     buckling_report,
     buckling_tables,
@@ -50,13 +50,15 @@ from flexstage.spatial.frame import COMPONENTS
 def stroke(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    named: Annotated[str, text_option("--path", "NAME", "A path of the design, [paths.NAME]. Default: the one that it states.")] = "",
+    named: Annotated[str, text_option("--path", "NAME", "A path of the design, [paths.NAME]. Default: the first that it states.")] = "",
     drive: Annotated[
-        str, text_option("--drive", "NAME", "What is driven: a coordinate, a stroke (B1), a force. Default: platform.x.")
+        str, text_option("--drive", "NAME", "What is driven: a coordinate, a stroke (B1), a force. Default: platform.x, without paths.")
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
-    points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points of the stroke.")] = 11,
+    points: Annotated[
+        int | None, typer.Option("--points", metavar="N", min=2, help="Points of it. Default: as the path states, 11.")
+    ] = None,
     load: Load = None,
     report: Report = None,
     changes: Changes = None,
@@ -71,10 +73,12 @@ def stroke(  # noqa: PLR0913 (its options)
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     model = nonlinear(mechanism)
-    free = not (drive or start or end or load)
-    stated = named or (next(iter(mechanism.paths)) if free and len(mechanism.paths) == 1 else "")
+    elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
+    if named and elsewhere:
+        raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
+    stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
-        _stated(mechanism, stated) if stated else _asked(model, drive or "platform.x", (start, end), (points, loads_of(model, load or ())))
+        _stated(mechanism, stated, points, loads) if stated else _asked(model, drive or "platform.x", (start, end), (points or 11, loads))
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
@@ -94,10 +98,21 @@ def stroke(  # noqa: PLR0913 (its options)
     )
 
 
-def _stated(mechanism: Mechanism, name: str) -> Course:
+def _first_path(mechanism: Mechanism) -> str:
+    """The first path of a design, "" without one; others are told of."""
+    first, *others = mechanism.paths or ("",)
+    if others:
+        announce(f"Path {first}; of the others: {', '.join(f'--path {each}' for each in others)}")
+    return first
+
+
+def _stated(mechanism: Mechanism, name: str, points: int | None, loads: dict[str, float]) -> Course:
+    """A path of a design, under `loads` too."""
     if name not in mechanism.paths:
         raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
-    return course(mechanism, name)
+    found = course(mechanism, name)
+    values = found.values if points is None else np.linspace(found.values[0], found.values[-1], points)
+    return replace(found, values=values, loads=found.loads | loads)
 
 
 def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int, dict[str, float]]) -> Course:

@@ -1,0 +1,46 @@
+"""The command `stroke`: which path it plays, over which points, under which loads."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.apps.command import Command, design_in
+
+PATHS = """
+[paths.out]
+drive = "platform.x"
+to = ["0 mm", "0.1 mm"]
+points = 3
+[paths.back]
+drive = "platform.x"
+to = ["0 mm", "-0.1 mm"]
+"""
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Path:
+    """A guide with two paths."""
+    design_in(tmp_path, "parallelogram")
+    design = tmp_path / "stage.toml"
+    design.write_text(design.read_text() + PATHS)
+    return tmp_path
+
+
+def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, two: Path) -> None:
+    ended = flexstage("stroke", "stage.toml", "--json", "first.json")
+    assert "Path out; of the others: --path back" in ended.err
+    flexstage("stroke", "stage.toml", "--path", "back", "--points", "2", "--load", "platform.fx=1 N", "--json", "back.json")
+    first, back = (json.loads((two / name).read_text())["along"] for name in ("first.json", "back.json"))
+    assert [row[0] for row in first["values"]] == pytest.approx([0.0, 0.5e-4, 1e-4])
+    assert [row[0] for row in back["values"]] == pytest.approx([0.0, -1e-4])
+
+
+@pytest.mark.usefixtures("two")
+def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
+    ended = flexstage("stroke", "stage.toml", "--path", "out", "--to", "1 mm")
+    assert (ended.code, "a path states its drive and its ends" in ended.err) == (2, True)
+    ended = flexstage("stroke", "stage.toml", "--path", "up")
+    assert (ended.code, "the design states no such path" in ended.err) == (2, True)
