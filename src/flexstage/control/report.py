@@ -12,7 +12,7 @@ from flexstage.control.sections import error_section, frequency_section, headlin
 from flexstage.control.study.compare import Comparison
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.study import LoopStudy
-from flexstage.control.tables import comparison_table, rivals_table
+from flexstage.control.tables import comparison_table, kind_name, rivals_table
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, page, section
@@ -51,9 +51,9 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     """Controllers side by side as a page of HTML: which wins for what, the front between what they trade, motion by motion."""
     origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", flexstage.__version__))
     data = stage_data(mechanism)
-    best = ", ".join(f"{aim} by {name}" for aim, name in found.wins.items())
+    best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
     lines = [
-        FrontLine(name, name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
+        FrontLine(kind_name(name), name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
         for name, each in found.controllers.items()
         if (one := each.turned) is not None and len(one.gains)
     ]
@@ -65,6 +65,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     sections = (
         stage_section(scene(mechanism), motion=first_motion(data)),
         section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
+        caveat_section(mechanism, found.cautions),
         section("Motion by motion", [rivals_table(found)]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))

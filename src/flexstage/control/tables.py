@@ -407,15 +407,17 @@ def tracking_table(tests: Sequence[Run]) -> Table | None:
 def comparison_table(found: Comparison) -> Table:
     """Controllers side by side, the best of each column marked."""
     wins = found.wins
-    rows = [[Cell(_kind_name(name), Mark.STRONG), *_rival_cells(each, wins, name)] for name, each in found.controllers.items()]
-    best = "; ".join(f"{aim}: {name}" for aim, name in wins.items())
-    front = ", ".join(found.front)
+    rows = [[Cell(kind_name(name), Mark.STRONG), *_rival_cells(each, wins, name)] for name, each in found.controllers.items()]
+    best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in wins.items())
+    front = "; ".join(map(kind_name, found.front))
+    slow = [kind_name(name) for name, each in found.controllers.items() if each.slowly_rounding]
     notes = [
         "Worst of all motions: the lowest frequency up to which disturbances are rejected, the longest time to 2 % of a step.",
         "Noise: the largest rms at rest. Of gauges: the largest share of their noise and steps in a mean square.",
+        *([f"Rounding is counted as white noise, and is none with {'; '.join(slow)}: flexstage loop simulates its rms."] if slow else []),
         f"Best in {best}. No other is better at once in rejection, noise, settling and delay margin than {front}.",
-        *(f"{name}: {each.tuned}." for name, each in found.controllers.items()),
-        *(f"Not to be had: {name}: {reason}" for name, reason in found.reasons.items()),
+        *(f"{kind_name(name)}: {each.tuned}." for name, each in found.controllers.items()),
+        *(f"Not to be had: {kind_name(name)}: {reason}" for name, reason in found.reasons.items()),
     ]
     heads = [
         "controller",
@@ -434,7 +436,7 @@ def rivals_table(found: Comparison) -> Table:
     """What every controller comes to, motion by motion."""
     rows = [
         [
-            Cell(_kind_name(name), Mark.STRONG),
+            Cell(kind_name(name), Mark.STRONG),
             coordinate,
             number(float(each.rejection[place]), 4),
             format_value(float(each.noise[place]), each.units[place], 3),
@@ -448,8 +450,14 @@ def rivals_table(found: Comparison) -> Table:
     return make_table("Motion by motion", heads, rows)
 
 
-def _kind_name(name: str) -> str:
-    return name.upper() if len(name) < 4 else name
+def kind_name(name: str) -> str:
+    """The name of a kind of controller as it is read.
+
+    >>> kind_name("pi, damped"), kind_name("resonant")
+    ('PI, damped', 'resonant')
+    """
+    first, *rest = name.split(",")
+    return ",".join([first.upper() if len(first) < 4 else first, *rest])
 
 
 def _rival_cells(one: Rival, wins: Mapping[str, str], name: str) -> list[Content]:

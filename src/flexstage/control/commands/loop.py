@@ -269,7 +269,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             json=json,
             csv=csv,
             xlsx=xlsx,
-            cautions=stands.cautions,
+            cautions=(*stands.cautions, *rivals.cautions),
             beside=(report,),
         )
         return

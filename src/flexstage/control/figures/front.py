@@ -51,7 +51,7 @@ def front_figure(lines: Sequence[FrontLine]) -> Any:
             axes.set_xlabel("rejects to [Hz]")
             axes.set_ylabel(label)
             _plain(axes)
-        figure.legend(*grid[0].get_legend_handles_labels(), loc="upper left", ncols=6, handlelength=1.4, borderaxespad=0.2)
+        figure.legend(*grid[0].get_legend_handles_labels(), loc="upper left", ncols=7, handlelength=1.4, borderaxespad=0.2)
     return figure
 
 

@@ -16,7 +16,7 @@ from flexstage.base.jobs import CallError, Line, results
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, RATIO, TIME
-from flexstage.base.record import VIEW, Along
+from flexstage.base.record import INNER, VIEW, Along
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import Kind, NoiseBudget
@@ -24,7 +24,7 @@ from flexstage.control.study.choices import SEARCHED, ControllerKind, OfferedKin
 from flexstage.control.study.setup import ControllerSetup, DampingSetup, LoopSetup, StepMotion
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.judge import closed_growth
-from flexstage.control.tuning.outcome import bench, outcome
+from flexstage.control.tuning.outcome import Bench, bench, outcome
 from flexstage.control.tuning.search import field
 from flexstage.control.tuning.view import view
 from flexstage.control.tuning.wish import Wish
@@ -33,6 +33,8 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
+_SEEN = 0.97
+"""Share of the length of a step after which it counts as not settled within it."""
 _TURNED = np.geomspace(1.0, 0.1, 9)
 """Gains by which the output of a controller is multiplied for the front: a tenth is slower by ten, and quiet."""
 
@@ -41,8 +43,9 @@ _TURNED = np.geomspace(1.0, 0.1, 9)
 class Turned:
     """A controller as it was tuned, and turned down: its output times `gains` (g,), those that are stable.
 
-    By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` and `delay_margin`; `noise`
-    is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing disturbs).
+    By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` (NaN: longer than the step
+    that is looked at) and `delay_margin`; `noise` is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing
+    disturbs).
     """
 
     gains: Annotated[Array, RATIO]
@@ -59,7 +62,8 @@ class Rival:
     `peak` is the coupled peak of S, `rejection` where |S| first rises through 1, `noise` the rms at rest, `settling` the time
     to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
     the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `turned`
-    what it comes to with less gain.
+    what it comes to with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
+    `cautions` are the loop's.
     """
 
     coordinates: tuple[str, ...]
@@ -73,6 +77,8 @@ class Rival:
     delay_margin: Annotated[float, TIME]
     gauge_share: float | None
     turned: Turned | None = None
+    slowly_rounding: tuple[str, ...] = ()
+    cautions: Annotated[tuple[Finding, ...], INNER] = ()
 
     @property
     def figures(self) -> Mapping[str, float]:
@@ -100,6 +106,12 @@ class Comparison(InNotebook):
         every = {name: each.figures for name, each in self.controllers.items()}
         aims = dict.fromkeys(aim for figures in every.values() for aim in figures)
         return {aim: min((name for name in every if aim in every[name]), key=lambda name: every[name][aim]) for aim in aims}
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What holds of every controller."""
+        every = [each.cautions for each in self.controllers.values()]
+        return tuple(each for each in dict.fromkeys(every[0] if every else ()) if all(each in others for others in every))
 
     @property
     def front(self) -> Annotated[tuple[str, ...], VIEW]:
@@ -206,6 +218,7 @@ def rival(study: LoopStudy) -> Rival:
     steps = {run.course.moved[0]: run.step for run in study.runs if run.step is not None}
     if study.peaks is None or study.bandwidths is None or study.margins is None:
         raise refuse("controller", "the loop is open", "Compare controllers that close it")
+    settling = np.array([steps[name].settling for name in names])
     return Rival(
         coordinates=names,
         units=study.noise.units,
@@ -213,16 +226,18 @@ def rival(study: LoopStudy) -> Rival:
         peak=study.peaks.sensitivity.value,
         rejection=study.bandwidths.rejection,
         noise=study.noise.rms,
-        settling=np.array([steps[name].settling for name in names]),
+        settling=settling,
         overshoot=np.array([steps[name].overshoot for name in names]),
         delay_margin=min(each.delay.value for each in study.margins.channels),
         gauge_share=_gauge_share(study.noise),
-        turned=_turned(study),
+        turned=_turned(study, float(np.max(settling))),
+        slowly_rounding=study.noise.slowly_rounding,
+        cautions=study.cautions,
     )
 
 
-def _turned(study: LoopStudy) -> Turned:
-    """The same controller with less gain."""
+def _turned(study: LoopStudy, settling: float) -> Turned:
+    """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
     tried = bench(seen, field(seen, Wish(spread=0.0), study.settled.floor))
@@ -230,14 +245,22 @@ def _turned(study: LoopStudy) -> Turned:
     quieter = ((gain, replace(control, C=gain * control.C, D=gain * control.D)) for gain in _TURNED)
     stable = [gain for gain, system in quieter if closed_growth(seen.systems[0], system) < 0.0]
     found = [outcome(tried, control, gain) for gain in stable]
-    noises = np.array([each.noise for each in found])
+    noises, settled = (np.array(each) for each in ([one.noise for one in found], [np.max(one.settling) for one in found]))
+    settled = np.where(settled < _SEEN * _step_length(tried), settled, np.nan)
+    settled = np.where(np.isnan(settled) & (np.array(stable) == 1.0), settling, settled)
     return Turned(
         gains=np.array(stable),
         rejection=np.array([np.min(each.rejection[0]) for each in found]),
         noise=np.exp(np.mean(np.log(noises), axis=1)) if found and np.all(noises > 0.0) else np.zeros(0),
-        settling=np.array([np.max(each.settling) for each in found]),
+        settling=settled,
         delay_margin=np.array([np.min(each.delay_margin) for each in found]),
     )
+
+
+def _step_length(tried: Bench) -> float:
+    """How long the steps last [s] that outcomes tell of."""
+    lines = tried.field.lines
+    return (len(lines) - 1) / float(lines[-1])
 
 
 def _gauge_share(noise: NoiseBudget) -> float | None:
