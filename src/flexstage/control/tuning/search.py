@@ -397,12 +397,12 @@ def _far(within: Field, found: Found) -> float:
 
 def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
     """From the first start that keeps what frequencies ask for: all farther, then each by itself, by ever smaller ratios."""
-    best = None
-    for _ in range(_LEVELS):
-        best = _first_kept(within, starts, wanted)
+    within, best = loud_enough(within, starts, wanted)
+    for _ in range(_LEVELS - 1):
         if best is not None:
             break
         wanted = [one / _RATIO for one in wanted]
+        best = _first_kept(within, starts, wanted)
     if best is None or within.wish.aim is Aim.NOISE:
         return replace(best or starts[0], reached=(0.0,) * len(wanted))
     ratio, groups, reached = _RATIO, sorted(set(within.alike)), wanted
@@ -416,6 +416,23 @@ def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
         else:
             ratio = np.sqrt(ratio)
     return replace(best, reached=tuple(reached))
+
+
+def loud_enough(within: Field, starts: list[Found], wanted: list[float]) -> tuple[Field, Found | None]:
+    """The first start that keeps what frequencies ask for; where noise alone stands in the way, with as much allowed as that takes.
+
+    What rejects far by next to nothing is quiet and never settles: its noise is none that a balance can be held to.
+    """
+    best = _first_kept(within, starts, wanted)
+    if best is not None or not within.allowed:
+        return within, best
+    free = replace(within, allowed=())
+    found = _first_kept(free, starts, wanted)
+    if found is None:
+        return within, None
+    calm = _fit_together(free, found, _all_bounds(free, wanted), _CALM)[0]
+    louder = replace(within, allowed=tuple(_NOISIER * each for each in _noises(free, calm)))
+    return louder, _first_kept(louder, [calm, found], wanted)
 
 
 def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> Found | None:
