@@ -152,10 +152,18 @@ def test_findings_of_the_drawing_come_back_as_they_are(folder: Path) -> None:
     assert told(job(apart)) == caught.value.findings
 
 
-def test_reductions_repeat_bit_by_bit(folder: Path) -> None:
+@pytest.mark.parametrize("workers", [1, 2])
+def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPatch, workers: int) -> None:
+    """In one process after the other, and side by side: no more processes than workers."""
     outcomes: list[bytes] = []
-    work_all([job(rod()), job(replace(rod(), name="again"))], lambda _job, data: outcomes.append(data), Limits())
+    started: list[remote.Worker] = []
+    plain = remote.Worker
+    monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
+    jobs = [job(rod()), job(replace(rod(), name="again"))]
+    work_all(jobs, lambda _job, data: outcomes.append(data), Limits(workers=workers))
     assert outcomes[0] == outcomes[1]
+    assert len(started) == workers
+    assert all(each.process.poll() is not None for each in started)
 
 
 @linux

@@ -24,8 +24,10 @@ from flexstage.solid.resolution import Converged, Resolution, converge
 from flexstage.solid.stage import solid_stage
 from flexstage.solid.stress import link_stress
 from flexstage.solid.surface import magnification, mode_surfaces, stress_surfaces
+from flexstage.solid.units import solid_units
 from flexstage.solid.verification import stage_rows, verdict
 from tests.models.small_solids import COARSE, propped
+from tests.models.solid_studies import COARSE as OF_SMALL
 from tests.models.solid_studies import small, small_stage, small_unit
 
 
@@ -37,6 +39,18 @@ def test_a_direct_unit_alone() -> None:
     assert unit.lateral[1] / unit.lateral[0] == pytest.approx(1.0, rel=1e-2)  # round all over; the mesh is not
     assert unit.gain == pytest.approx(1.0, abs=1e-6)
     assert unit.ideal_gain == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_unit_at_rest_needs_no_modes_of_its_components() -> None:
+    """Stiffness, gain and stress are exact by the responses to loads: components that are raised for a unit are reduced without modes."""
+    unit = small_unit()
+    everything = frozenset(unit.read.sizes)
+    lower = replace(OF_SMALL, fineness=replace(OF_SMALL.fineness, order=OF_SMALL.fineness.order - 1), raised=everything, static=True)
+    bare = solid_units(small(), lower)["drive"]
+    assert len(bare.read.model.coordinates) < len(unit.read.model.coordinates)
+    for figure, value in unit.figures.items():
+        assert bare.figures[figure] == pytest.approx(value, rel=1e-9)
+    np.testing.assert_allclose(bare.stress.highest, unit.stress.highest, rtol=1e-5, atol=1e3)  # kept in single precision
 
 
 def test_outputs_are_linear_in_the_command() -> None:

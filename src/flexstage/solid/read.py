@@ -120,7 +120,8 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     parts = reduce(shape, reduction)
     order = reduction.fineness.order
     orders = f"{order} and {order + 1}" if reduction.raised else f"{order}"
-    said = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component"
+    bare = f", none in those of order {order + 1}" if reduction.raised and reduction.static else ""
+    said = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component{bare}"
     return SolidRead(shape, linear_model(shape, assembly, parts, said), place_parts(assembly, parts))
 
 

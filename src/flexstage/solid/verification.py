@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -193,7 +193,7 @@ def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
         return {part: size for unit in found.values() for part, size in unit.read.sizes.items()}
 
     again = remember(reduce)
-    return converge(lambda way: solid_units(mechanism, way, again), figures, asked, sizes)
+    return converge(lambda way: solid_units(mechanism, replace(way, static=True), again), figures, asked, sizes)
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 from collections.abc import Iterator
 
@@ -11,7 +12,11 @@ from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.piece import form_digest
 from flexstage.spatial.frame import Frame
 
+KEPT = 512
+"""Components whose content is kept at hand."""
 
+
+@functools.lru_cache(maxsize=KEPT)
 def content(component: Component) -> str:
     """Digest of a component's geometry, media and joints, in its own axes; equal for all copies of a unit.
 

@@ -39,7 +39,8 @@ class Reduction:
     """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held.
 
     `residual`: it also keeps the static response, faces held, to the inertia of the faces' motions: what is left of the modes that are not
-    kept, to first order in frequency squared. Components whose content is `raised` get elements of one order more than the others.
+    kept, to first order in frequency squared. Components whose content is `raised` get elements of one order more than the others, and no
+    modes where they are `static`: the response to loads at rest does not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -47,12 +48,15 @@ class Reduction:
     hold: Hold = Hold.RIGID
     residual: bool = False
     raised: frozenset[str] = frozenset()
+    static: bool = False
 
     def of(self, content: str) -> Reduction:
         """What it asks of a component, by its content.
 
-        >>> Reduction(raised=frozenset({"lever"})).of("lever").fineness.order
-        4
+        >>> own = Reduction(raised=frozenset({"lever"}), static=True).of("lever")
+        >>> own.fineness.order, own.modes
+        (4, 0)
         """
-        order = self.fineness.order + (content in self.raised)
-        return replace(self, fineness=replace(self.fineness, order=order), raised=frozenset())
+        more = content in self.raised
+        modes, finer = 0 if more and self.static else self.modes, replace(self.fineness, order=self.fineness.order + more)
+        return replace(self, fineness=finer, modes=modes, raised=frozenset(), static=False)

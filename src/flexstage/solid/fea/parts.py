@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.base.progress import Progress
 from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, key_of
 from flexstage.solid.fea.component import Component, with_yielding_ends
-from flexstage.solid.fea.content import content
+from flexstage.solid.fea.content import KEPT, content
 from flexstage.solid.fea.fineness import Hold, Reduction
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.reducing import Reduce, StoredJob
@@ -70,12 +70,12 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     wholes = [with_yielding_ends(part) if yields and part.name not in springs else part for part in parts]
     jobs: list[Reduce] = []
     for part, whole in zip(parts, wholes, strict=True):
-        own, joined = reduction.of(content(whole)) if reduction.raised else reduction, springs.get(part.name)
+        own, joined = reduction.of(content(whole)), springs.get(part.name)
         jobs.append(Reduce(key_of(whole, own, joined), whole, own, joined))
     return jobs
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=KEPT)
 def content_in_stage(part: Component) -> str:
     """The content of what is reduced for a component, the same for a unit alone and in its stage.
 

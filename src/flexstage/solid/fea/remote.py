@@ -120,6 +120,7 @@ class _Run(Generic[AnyJob]):
         self.done, self.limits, self.progress = done, limits, progress
         self.waiting = deque((job, 0, time.monotonic()) for job in jobs)
         self.children: list[_Child[AnyJob]] = []
+        self.idle: list[Worker] = []  # processes whose job is done, for the next
         self.heard: Heard = queue.SimpleQueue()
         self.findings: list[Finding] = []
         self.planned = {job.mark: job.seconds() for job in jobs}
@@ -139,14 +140,14 @@ class _Run(Generic[AnyJob]):
 
     def end(self) -> None:
         """Leave no process behind."""
-        for child in self.children:
-            child.worker.end()
+        for worker in [*self.idle, *(child.worker for child in self.children)]:
+            worker.end()
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         memory = available() if self.limits.memory is None else self.limits.memory
         task = Task(job, attempt, memory, self.limits.seconds, versions())
         try:
-            worker = Worker(work, self.heard)
+            worker = self.idle.pop() if self.idle else Worker(work, self.heard)
         except OSError as error:
             raise _refuse_start(job.name, error) from error
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
@@ -162,6 +163,7 @@ class _Run(Generic[AnyJob]):
             if child.worker is worker:
                 self._take(child, word, value)
                 return
+        self.idle = [each for each in self.idle if each is not worker]  # it has ended
 
     def _take(self, child: _Child[AnyJob], word: Word, value: Any) -> None:
         match word:
@@ -169,7 +171,11 @@ class _Run(Generic[AnyJob]):
                 child.note(value)
             case Word.DONE:
                 self.done(child.job, value)
-                self._close(child)
+                self._leave(child)
+                if self.waiting:
+                    self.idle.append(child.worker)
+                else:
+                    child.worker.end()
             case Word.FAILED:
                 self._close(child, *_failure_findings(child, value))
             case Word.ENDED:
@@ -196,9 +202,12 @@ class _Run(Generic[AnyJob]):
 
     def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
         self.findings += findings
+        self._leave(child)
+        child.worker.end()
+
+    def _leave(self, child: _Child[AnyJob]) -> None:
         self.spent[child.job.mark] = time.monotonic() - child.begun
         self.children.remove(child)
-        child.worker.end()
 
     def _permit(self) -> None:
         """Permit what fits beside those that run; refuse what does not fit even alone."""
