@@ -5,8 +5,9 @@ E I / L, each taken at once from rest. Ours has plate action and 30 modes a leaf
 Exudyn (J. Gerstmayr, University of Innsbruck) has plane beams, geometrically exact, 8 a leaf (their least number below 1 % of
 error), on a sample of the grid, halving its step by itself where it must. CPU time on one thread, in one process, in turn, the least of
 the rounds. Targets: kernel 0.05 ms a case and a fifteenth of Exudyn's, numpy 1 ms, a single case 5 ms, tables of a leaf 5 ms, 41 points
-of a stroke on double parallelograms, with frequencies, 1 s. With `--million` instead: a million states, 240 s of processor, which is two
-minutes on two cores.
+of a stroke on double parallelograms, with frequencies, 1 s. Designs: the force along 21 points and at one, of 32 parallelograms with
+their stacks, in one run and each by itself. With `--million` instead: a million states, 240 s of processor, which is two minutes on two
+cores.
 """
 
 from __future__ import annotations
@@ -21,15 +22,21 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import flexstage as fs
+from flexstage.analysis.judge import measure_all
+from flexstage.analysis.requirements import measure
 from flexstage.base.native import SWITCH
 from flexstage.beams.flexure.law import leaf_law
 from flexstage.beams.flexure.strip import fields
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.voice_coil_stage import voice_coil_stage
+from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.design import design
 from flexstage.models.nonlinear.compiled import kernel
 from flexstage.models.nonlinear.stage import Nonlinear
 
@@ -52,7 +59,7 @@ from tests.laws.test_nonlinear import LEAF, STEEL, UNIT, guide
 
 COUNTS, SAMPLE, ELEMENTS, ROUNDS = (10, 15, 10), 25, 8, 4
 TARGETS = {"kernel": 0.05, "numpy": 1.0, "single": 5.0, "tables": 5.0, "stroke": 1000.0, "million": 240.0}
-MILLION, BLOCK = 1_000_000, 10_000
+MILLION, BLOCK, DESIGNS = 1_000_000, 10_000, 32
 Grid = np.ndarray
 
 
@@ -145,6 +152,24 @@ def stroke() -> object:
     return fs.stroke(fs.path(fs.nonlinear(voice_coil_stage()), "platform.x", np.linspace(-1e-3, 1e-3, 41)))
 
 
+def designs() -> fs.Mechanism:
+    """A parallelogram with its stack in thicknesses of which no tables are known."""
+    base = replace(parallelogram(), paths={"out": fs.StrokePath("platform.x", ("0 mm", "0.1 mm"), points=21)})
+    share = 1.0 + 0.1 * np.random.default_rng().uniform(-1.0, 1.0, DESIGNS)
+    return set_value(base, "parts.leaf.thickness", share * np.asarray(get(base, "parts.leaf.thickness")))
+
+
+def studied(key: str, *, together: bool) -> Callable[[], object]:
+    """A measure along a path of all designs, in one run or one by one."""
+
+    def study() -> object:
+        batch = designs()
+        asked = (measure(batch, key, "here"),)
+        return measure_all(batch, asked) if together else [measure_all(design(batch, place), asked) for place in range(DESIGNS)]
+
+    return study
+
+
 def million(model: Nonlinear) -> None:
     """A million states at random in the ranges of the grid, a block at a time in each of two threads, as the kernel leaves Python alone."""
     scale = np.array([10.0, 20.0, 3.0]) * [UNIT, UNIT, UNIT * LEAF.length]
@@ -178,6 +203,10 @@ def main() -> None:
         "single": (1, lambda: fs.equilibrium(model, loads(wrench[700:701]))),
         "tables": (1, tables),
         "stroke": (1, stroke),
+        "designs": (DESIGNS, studied("out.force", together=True)),
+        "each": (DESIGNS, studied("out.force", together=False)),
+        "at one": (DESIGNS, studied("out.force at 0.1 mm", together=True)),
+        "each one": (DESIGNS, studied("out.force at 0.1 mm", together=False)),
     }
     if kernel() is None:
         del actions["kernel"]

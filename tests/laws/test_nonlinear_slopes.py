@@ -7,19 +7,23 @@ forces and moments are s, s^2 and s^3 times as large moves s times as far.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.base.native import SWITCH
+from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import get, set_value
+from flexstage.models.nonlinear.compiled import kernel
 from flexstage.models.nonlinear.critical import critical
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.slopes import over_designs, slopes
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.models.nonlinear.strain import strains
-from tests.laws.test_nonlinear import LEAF, SPACE, UNIT, guide, loads
+from tests.laws.test_nonlinear import LEAF, NONE, SPACE, UNIT, guide, loads
 from tests.laws.test_nonlinear_extremes import stage, wrenches
 
 SHARES = np.array([[1.0 + 1e-4], [1.0 - 1e-4]])
@@ -86,6 +90,46 @@ def test_a_batch_of_designs_is_its_designs():
     alone = equilibrium(nonlinear(set_value(guide(), "parts.leaf.thickness", 0.6e-3)), loads(SPACE * UNIT)).twist()
     assert found[2, 0] == pytest.approx(alone, abs=1e-14)
     assert LEAF.thickness == thicknesses[1]
+
+
+def everywhere_larger(mechanism: fs.Mechanism, factor: float) -> fs.Mechanism:
+    """A stage with other moduli, stacks and places: all that is asked of links about centres and of held coordinates differs."""
+    softer = {name: replace(each, young=each.modulus / factor) for name, each in mechanism.materials.items()}
+    stacks = {
+        name: replace(part, stiffness=factor * part.stiffness) for name, part in mechanism.parts.items() if isinstance(part, fs.Piezo)
+    }
+    links = {name: replace(link, at=tuple(factor * place for place in link.at or NONE)) for name, link in mechanism.links.items()}
+    return replace(mechanism, materials=softer, parts={**mechanism.parts, **stacks}, links=links)
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+@pytest.mark.parametrize("seed", [0, 1, None])
+def test_designs_in_one_run_are_each_by_itself(seed: int | None, compiled: bool, monkeypatch: pytest.MonkeyPatch):
+    """Random stages of flexures under loads, and one with a stack, hinges and held coordinates: to the bit, in numpy to 1e-12."""
+    rng = np.random.default_rng([29, seed or 0])
+    base = parallelogram() if seed is None else stage(rng)
+    models = [nonlinear(everywhere_larger(base, factor)) for factor in (1.0, 1.02, 0.97)]
+    given = {"B": np.array([5e-6, 8e-6])} if seed is None else loads(0.02 * wrenches(rng, models[0], 2))
+    hold = [{"platform.rz": 1e-4 * place, "platform.y": 1e-6} for place in range(3)] if seed is None else {}
+    if not compiled:
+        monkeypatch.setenv(SWITCH, "off")
+    kernel.cache_clear()
+    together = equilibria(models, given, hold=hold)
+    alone = [equilibrium(model, given, hold=hold[place] if seed is None else {}) for place, model in enumerate(models)]
+    monkeypatch.undo()
+    kernel.cache_clear()
+    for one, other in zip(together, alone, strict=True):
+        assert one.converged.all()
+        assert one.pose.position == pytest.approx(other.pose.position, rel=0.0, abs=0.0 if compiled else 1e-12)
+        assert one.iterations.tolist() == other.iterations.tolist()
+        assert one.reactions == pytest.approx(other.reactions, rel=0.0 if compiled else 1e-9, abs=0.0)
+
+
+def test_designs_of_another_structure_are_refused_by_name():
+    other = guide()
+    other = replace(other, links={"left": other.links["left"], "far": other.links["right"]})
+    with pytest.raises(fs.DesignError, match=r"design 2: its flexures differ .*right of kind .* there, far of kind .* here"):
+        equilibria([nonlinear(guide()), nonlinear(other)])
 
 
 def test_slopes_are_by_numbers_that_are_stated():

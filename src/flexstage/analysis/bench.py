@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -68,6 +68,14 @@ class Bench:
             found = course(self.mechanism, name)
             self._points[name, at] = found.points(self.nonlinear, None if at is None else np.array([at]))
         return self._points[name, at]
+
+    @staticmethod
+    def all_along(benches: Sequence[Bench], name: str, at: float | None = None) -> None:
+        """Work out `along` of the benches of several designs of one structure, in one run."""
+        found = course(benches[0].mechanism, name)
+        points = found.points_of_designs([each.nonlinear for each in benches], None if at is None else np.array([at]))
+        for bench, each in zip(benches, points, strict=True):
+            bench._points[name, at] = each  # noqa: SLF001
 
     def over(self, name: str) -> Bench:
         """The bench of small motions about all points of a path, as a batch."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -49,10 +49,7 @@ class Course:
 
     def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
         """Where the stage rests. Raises `DesignError` where it does not."""
-        found = equilibrium.equilibrium(model, self.loads, weight=self.weight)
-        if not bool(found.converged):
-            raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
-        return found
+        return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
         """Equilibria along it, or at other values of its drive."""
@@ -68,15 +65,27 @@ class Course:
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
         """The points of its stroke, of which single columns may be asked."""
-        rest = self.rest(model)
-        wanted, hold = self._wanted(model, rest, values)
-        state = paths.equilibria_along(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
-        return strokes.Points(self.drive, wanted, state, self.locked, rest)
+        (found,) = self.points_of_designs((model,), values)
+        return found
+
+    def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
+        """The same of several designs of one structure, in one run."""
+        rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
+        asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
+        wanted, hold = [each for each, _ in asked], [each for _, each in asked]
+        states = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
 
     def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
         """What the stage does along it, counted from where it rests."""
         rest = self.rest(model)
         return strokes.stroke(self.path(model, rest, values), rest)
+
+
+def _resting(found: equilibrium.State) -> equilibrium.State:
+    if not bool(found.converged):
+        raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
+    return found
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial, wraps
@@ -41,7 +41,7 @@ from flexstage.base.quantity import (
 from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import design, designs, step_size
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, transport
@@ -429,8 +429,14 @@ def own_load(bench: Bench, asked: Measure) -> Array:
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
 
-def _each_design(work: Callable[[Bench, Measure], float]) -> Callable[[Bench, Measure], Array]:
-    """The same of batches and of complex numbers: design by design, derivatives by central differences along the imaginary parts."""
+Work = Callable[[Bench, Measure], float]
+
+
+def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None] | None = None) -> Callable[[Bench, Measure], Array]:
+    """The same of batches and of complex numbers: design by design, derivatives by central differences along the imaginary parts.
+
+    What `together` works out of many designs at once their benches have beforehand.
+    """
 
     @wraps(work)
     def works(bench: Bench, asked: Measure) -> Array:
@@ -438,19 +444,33 @@ def _each_design(work: Callable[[Bench, Measure], float]) -> Callable[[Bench, Me
         count, step = designs(stage), step_size(stage)
         if count is None and not step:
             return np.asarray(work(bench, asked))
-        return np.array(
-            [_one_design(stage, place, step, lambda one: work(Bench(one, bench.command), asked)) for place in range(count or 1)]
-        )
+        found: list[complex] = []
+        for first in range(0, count or 1, _AT_ONCE):
+            places = range(first, min(first + _AT_ONCE, count or 1))
+            benches = [[Bench(design(stage, place, share), bench.command) for share in _shares(step)] for place in places]
+            if together is not None:
+                together([each for group in benches for each in group], asked)
+            found += [_value_and_slope([work(each, asked) for each in group], step) for group in benches]
+        return np.array(found)
 
     return works
 
 
-def _one_design(stage: Mechanism, place: int, step: float, work: Callable[[Mechanism], float]) -> complex:
-    value = work(design(stage, place))
-    if not step:
-        return value
-    ahead, back = (work(design(stage, place, share)) for share in (step, -step))
-    return value + 1j * (ahead - back) / (2.0 * step)
+_AT_ONCE = 16
+"""Designs whose models at large displacements are kept at once."""
+
+
+def _shares(step: float) -> tuple[float, ...]:
+    """Which shares of imaginary parts are added to a design."""
+    return (0.0, step, -step) if step else (0.0,)
+
+
+def _value_and_slope(values: list[float], step: float) -> complex:
+    return values[0] if len(values) == 1 else values[0] + 1j * (values[1] - values[2]) / (2.0 * step)
+
+
+def _go_along(benches: Sequence[Bench], asked: Measure) -> None:
+    Bench.all_along(benches, asked.name, asked.place)
 
 
 def _column(bench: Bench, asked: Measure, name: str) -> Array:
@@ -472,7 +492,7 @@ def _worst_along(name: str, column: str, quantity: Quantity, meaning: str, about
     """What a column of a stroke has of the worst, over all of a path or at one place on it: of stiffness and frequency the least."""
     worst: Callable[[Array], Any] = np.min if name in _LEAST else _largest
 
-    @_each_design
+    @partial(_each_design, together=_go_along)
     def work(bench: Bench, asked: Measure) -> float:
         return float(worst(_column(bench, asked, column)))
 

@@ -86,7 +86,7 @@ def _answers(library: ctypes.CDLL) -> bool:
     return library.flexstage_equilibria_width() in (2, 4, 8)
 
 
-@functools.lru_cache(maxsize=16)
+@functools.lru_cache(maxsize=64)
 def tables(model: Nonlinear) -> Tables | None:
     """The stage's tables; `None` where it has something that the kernel does not know.
 

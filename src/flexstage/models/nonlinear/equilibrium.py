@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.arc import rescue
 from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, equilibrate, search
+from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibrate, equilibrate_designs, search
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
@@ -148,6 +149,65 @@ def equilibrium(
     first = _first(model, start, asked.hold, len(asked.loads.inputs))
     found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, effort), effort)
     return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
+
+
+def equilibria(
+    models: Sequence[Nonlinear],
+    loads: Mapping[str, Number] | None = None,
+    *,
+    hold: Mapping[str, Number] | Sequence[Mapping[str, Number]] | None = None,
+    weight: Number = 1.0,
+    stated: Number = 1.0,
+    effort: Effort = USUAL,
+) -> list[State]:
+    """The states of several designs of one structure under the same loads, in one run: those that `equilibrium` finds of each.
+
+    `hold` is that of all designs, or one of each. Links about centres and what is held are worked out of all designs together. Raises
+    `DesignError` where bodies, links or what they join differ.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.address import set_value
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> designs = [nonlinear(set_value(parallelogram(), "materials.steel.young", value)) for value in (180e9, 210e9)]
+    >>> [round(float(each.displacement()[0] * 1e6), 2) for each in equilibria(designs, {"platform.fx": 100.0}, weight=0.0)]
+    [5.29, 5.1]
+    """
+    _require_alike(models)
+    held = [hold or {}] * len(models) if isinstance(hold, Mapping | None) else hold
+    asked = [_asked(model, loads or {}, each, weight, stated) for model, each in zip(models, held, strict=True)]
+    starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, asked, strict=True)]
+    tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, asked, strict=True)]
+    found = equilibrate_designs(tasks, effort)
+    return [
+        state(task.model, each.loads, each.hold, rescue(task.model, each.loads, each.hold, one, effort), (each.shape, each.held))
+        for task, each, one in zip(tasks, asked, found, strict=True)
+    ]
+
+
+def _require_alike(models: Sequence[Nonlinear]) -> None:
+    """Refuse designs whose structures differ: the first such, by what differs."""
+    first = models[0]
+    for number, other in enumerate(models[1:], start=2):
+        for what, of in _STRUCTURE.items():
+            if of(first) != of(other):
+                said = f"its {what} differ from those of the first: {_first_difference(of(first), of(other))}"
+                raise refuse(f"design {number}", said, "Find the equilibria of designs of another structure by themselves")
+
+
+_STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {
+    "bodies": lambda model: list(model.bodies),
+    "flexures": lambda model: [f"{name} of kind {group.law.signature}" for group in model.flexures for name in group.names],
+    "links": lambda model: [f"{each.name} of {' and '.join(each.joins)}" for each in model.assembly.links.values()],
+    "other links": lambda model: list(model.hinges.names),
+    "locked freedoms": lambda model: model.hinges.locked.tolist(),
+    "superelements": lambda model: [each.name for each in model.elements],
+    "inputs": lambda model: [each.name for each in model.inputs],
+}
+
+
+def _first_difference(one: list[object], other: list[object]) -> str:
+    pairs = itertools.zip_longest(one, other, fillvalue="none")
+    return next(f"{ours} there, {theirs} here" for ours, theirs in pairs if ours != theirs)
 
 
 def corrected(

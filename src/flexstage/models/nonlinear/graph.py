@@ -12,7 +12,7 @@ from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.models.nonlinear.condense import Answer, condense, settle
 from flexstage.models.nonlinear.corotated import stiffen_ports
 from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
-from flexstage.models.nonlinear.hinge import Ends, Hinges, stiffen
+from flexstage.models.nonlinear.hinge import Ends, Hinges, imposed, stiffen
 from flexstage.models.nonlinear.hold import Hold, gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose
@@ -223,9 +223,9 @@ def _add_hinges(model: Nonlinear, pose: Pose, loads: Loads, tally: Tally) -> Non
     ends = hinge_ends(model, pose)
     force, own, deformation, rows = stiffen(hinges, ends, loads.inputs, loads.constant, held)
     _scatter(tally, hinges, force, own)
-    imposed = np.swapaxes(hinges.stroke @ loads.inputs.T, -1, -2)
+    free = imposed(hinges, loads.inputs)
     for place, (link, freedom) in enumerate(hinges.locked):
-        tally.residual[:, size + place] = deformation[link, :, freedom] - imposed[link, :, freedom]
+        tally.residual[:, size + place] = deformation[link, :, freedom] - free[link, :, freedom]
         for body, part in ((hinges.first[link], slice(0, 6)), (hinges.second[link], slice(6, 12))):
             columns = slice(6 * body, 6 * body + 6)
             at = slice(size + place, size + place + 1)

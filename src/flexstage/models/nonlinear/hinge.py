@@ -22,7 +22,8 @@ class Hinges:
     """Links about centres: bodies by number, the link's axes `turn` (l, 3, 3) as drawn, arms (l, 3) from the bodies' references.
 
     `stiffness` (l, 6, 6); per input the free deformation `stroke` and the wrench `thrust` on the second body, both (l, 6, m); `push` (l, 6)
-    is the wrench on it as drawn. `locked` (c, 2) are pairs of link and freedom without any deformation.
+    is the wrench on it as drawn. `locked` (c, 2) are pairs of link and freedom without any deformation. Where designs differ from case to
+    case, all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
 
     names: tuple[str, ...]
@@ -50,10 +51,10 @@ class Ends:
 
 def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
     """Deformations (..., 6) and their derivatives (..., 6, 12) by the motions of the two bodies; poses (..., l, b, 3)."""
-    turn = hinges.turn[:, None]
+    turn = _by_case(hinges.turn, 2)
     frame, other = ends.first_turn @ turn, ends.second_turn @ turn
-    arm = (ends.first_turn @ hinges.arm_first[:, None, :, None])[..., 0]
-    other_arm = (ends.second_turn @ hinges.arm_second[:, None, :, None])[..., 0]
+    arm = (ends.first_turn @ _by_case(hinges.arm_first, 1)[..., None])[..., 0]
+    other_arm = (ends.second_turn @ _by_case(hinges.arm_second, 1)[..., None])[..., 0]
     gap = ends.second + other_arm - ends.first - arm
     angle = logarithm(_transpose(frame) @ other)
     back = _transpose(frame @ exponential(0.5 * angle))
@@ -70,9 +71,22 @@ def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
     """What the links resist with (..., l, b, 6): elastic, less what inputs (b, m) and the pushes exert, and `held` by locked freedoms."""
-    free = np.swapaxes(hinges.stroke @ inputs.T, -1, -2)
-    own = np.swapaxes(hinges.thrust @ inputs.T, -1, -2) + pushing[:, None] * hinges.push[:, None]
-    return (hinges.stiffness[:, None] @ (deformation - free)[..., None])[..., 0] - own + held
+    own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
+    return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
+
+
+def imposed(hinges: Hinges, inputs: Array) -> Array:
+    """The free deformation (l, b, 6) that inputs (b, m) impose."""
+    return _by_input(hinges.stroke, inputs)
+
+
+def _by_input(table: Array, inputs: Array) -> Array:
+    return (_by_case(table, 2) @ inputs[..., None])[..., 0]
+
+
+def _by_case(table: Array, axes: int) -> Array:
+    """A table of links (l, ...), each entry of so many axes, as one of links and cases (l, 1 or b, ...)."""
+    return table if table.ndim == axes + 2 else table[:, None]
 
 
 def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Array) -> tuple[Array, Array, Array, Array]:

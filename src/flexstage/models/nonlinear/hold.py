@@ -18,7 +18,7 @@ class Hold:
     """Held coordinates: of bodies by number (h,), at drawn arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
 
     A translation is that of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
-    `origin` (h, 3) is where the points are drawn.
+    `origin` (h, 3) is where the points are drawn. Where designs differ from case to case, arms and origins are (b, h, 3).
     """
 
     body: Array
@@ -59,7 +59,7 @@ def _coordinate(hold: Hold, place: int, position: Array, turn: Array) -> tuple[A
         angle = logarithm(turn)
         rows = logarithm_rate(angle)[..., component - 3, :]
         return angle[..., component - 3], np.concatenate([np.zeros_like(rows), rows], axis=-1)
-    arm = turn @ hold.arm[place]
-    value = position[..., component] + arm[..., component] - hold.origin[place, component]
+    arm = (turn @ hold.arm[..., place, :, None])[..., 0]
+    value = position[..., component] + arm[..., component] - hold.origin[..., place, component]
     unit = np.broadcast_to(np.eye(3)[component], arm.shape)
     return value, np.concatenate([unit, np.cross(arm, unit)], axis=-1)

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
-from flexstage.models.nonlinear.graph import System, advance, apart, assemble, rest
+from flexstage.models.nonlinear.graph import Rest, System, advance, apart, assemble, rest
 from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
 from flexstage.models.nonlinear.walk import walked
 
-_CHUNK, _STREAM = 128, 2048
-"""Cases at once: what they need stays in the processor's caches; and of a stage whose iterations are all in C, where lanes refill."""
+_CHUNK, _STREAM, _DESIGNS = 128, 2048, 32
+"""Cases at once, which the processor's caches keep; of a stage whose iterations are all in C, where lanes refill; and designs."""
 
 
 USUAL = Effort()
 TOLD = ("status", "iterations", "residual", "reached")
 """What is told of every case."""
+_GOES_ON = -1
+_OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push")
+"""Tables of links about centres that differ from design to design."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +52,16 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort:
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), effort) for part in _split(cases, most)]
     found = join(chunks)
     return _by_steps(model, start, loads, hold, effort=effort, found=found)
+
+
+def equilibrate_designs(tasks: Sequence[Task], effort: Effort = USUAL) -> list[Found]:
+    """The same of several designs of one structure, as many at once as their cases are one chunk."""
+    several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
+    if several == 1:
+        return [equilibrate(*_parts(each), effort) for each in tasks]
+    chunks = [tasks[first : first + several] for first in range(0, len(tasks), several)]
+    found = [each for chunk in chunks for each in search_designs(chunk, effort)]
+    return [_by_steps(*_parts(task), effort=effort, found=each) for task, each in zip(tasks, found, strict=True)]
 
 
 def _split(cases: Array, most: int) -> list[Array]:
@@ -105,34 +119,133 @@ def _merge(found: Found, cases: Array, other: Found) -> Found:
 
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, effort: Effort) -> Found:
     """Iterate all cases together; those that are done leave. In C where there is a kernel that knows all of the stage's flexures."""
-    compiled = kernel() is not None and tables(model) is not None
-    if _all_compiled(model, hold):
-        found = iterate_compiled(model, start, loads, effort, None)
-        return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
-    count = len(loads.inputs)
-    status, iterations, residual = np.full(count, Status.NOT_CONVERGED), np.zeros(count, dtype=int), np.full(count, np.inf)
-    pose, active = start, np.arange(count)
+    (found,) = search_designs((Task(model, start, loads, hold),), effort)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """The cases of one design: where they start, their loads, what is held."""
+
+    model: Nonlinear
+    start: Pose
+    loads: Loads
+    hold: Hold
+
+    def of(self, cases: Array, pose: Pose) -> Task:
+        """Some of the cases, from a pose of all."""
+        return Task(self.model, pose.of(cases), self.loads.of(cases), self.hold.of(cases))
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """A search under way, its arrays written as it goes on: what is told of every case (b,), and which still go on."""
+
+    task: Task
+    status: Array
+    iterations: Array
+    residual: Array
+
+    @staticmethod
+    def of(task: Task) -> _Search:
+        count = len(task.loads.inputs)
+        return _Search(task, np.full(count, _GOES_ON), np.zeros(count, dtype=int), np.full(count, np.inf))
+
+    @property
+    def active(self) -> Array:
+        return np.flatnonzero(self.status == _GOES_ON)
+
+    def take(self, cases: Array, step: _Step, effort: Effort) -> None:
+        """What a step tells of the cases that made it."""
+        self.iterations[cases] += 1
+        self.residual[cases] = step.gap
+        lost = ~np.isfinite(step.size)
+        done = (step.size < effort.step) & (step.gap < effort.gap)
+        self.status[cases[done]], self.status[cases[lost]] = Status.CONVERGED, Status.SINGULAR
+
+    def found(self, pose: Pose) -> Found:
+        status = np.where(self.status == _GOES_ON, Status.NOT_CONVERGED, self.status)
+        return Found(pose, status, self.iterations, self.residual, 1.0 * (status == Status.CONVERGED))
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """The pose after an iteration, the step's `size` (b,), and how large the flexures' residuals were before it, `gap` (b,)."""
+
+    pose: Pose
+    size: Array
+    gap: Array
+
+
+def search_designs(tasks: Sequence[Task], effort: Effort) -> list[Found]:
+    """The same of several designs of one structure, each with its cases: what is not made of flexures is worked out together."""
+    first = tasks[0]
+    if _all_compiled(first.model, first.hold):
+        return [_search_compiled(task, effort) for task in tasks]
+    compiled = kernel() is not None and tables(first.model) is not None
+    searches, poses = [_Search.of(task) for task in tasks], [task.start for task in tasks]
     with np.errstate(all="ignore"):
         for _ in range(effort.iterations):
-            if not active.size:
+            going = [place for place, each in enumerate(searches) if each.active.size]
+            if not going:
                 break
-            here = pose.of(active)
-            step = _iterate_compiled if compiled else iterate
-            after, size, gap = step(model, here, loads.of(active), hold.of(active), effort)
-            pose = pose.put(active, after)
-            iterations[active] += 1
-            residual[active] = gap
-            lost = ~np.isfinite(size)
-            done = (size < effort.step) & (gap < effort.gap)
-            status[active[done]], status[active[lost]] = Status.CONVERGED, Status.SINGULAR
-            active = active[~(done | lost)]
-    return Found(pose, status, iterations, residual, 1.0 * (status == Status.CONVERGED))
+            cases = [searches[place].active for place in going]
+            here = [tasks[place].of(some, poses[place]) for place, some in zip(going, cases, strict=True)]
+            steps = _iterate_compiled(here, effort) if compiled else [_Step(*iterate(*_parts(each), effort)) for each in here]
+            for place, some, step in zip(going, cases, steps, strict=True):
+                poses[place] = poses[place].put(some, step.pose)
+                searches[place].take(some, step, effort)
+    return [each.found(pose) for each, pose in zip(searches, poses, strict=True)]
 
 
-def _iterate_compiled(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:
+def _parts(task: Task) -> tuple[Nonlinear, Pose, Loads, Hold]:
+    return task.model, task.start, task.loads, task.hold
+
+
+def _search_compiled(task: Task, effort: Effort) -> Found:
+    found = iterate_compiled(task.model, task.start, task.loads, effort, None)
+    return Found(found.pose, found.status, found.count, found.lack, 1.0 * (found.status == Status.CONVERGED))
+
+
+def _iterate_compiled(tasks: list[Task], effort: Effort) -> list[_Step]:
     """As `iterate`, flexures, loads and the solution in C."""
-    found = iterate_compiled(model, pose, loads, replace(effort, iterations=1), rest(model, pose, loads, hold))
-    return found.pose, found.moved, found.lack
+    once = replace(effort, iterations=1)
+    found = [iterate_compiled(each.model, each.start, each.loads, once, rest) for each, rest in zip(tasks, _rests(tasks), strict=True)]
+    return [_Step(each.pose, each.moved, each.lack) for each in found]
+
+
+def _rests(tasks: list[Task]) -> list[Rest | None]:
+    """What is not made of flexures, of all designs together; with superelements one after another."""
+    if len(tasks) == 1 or tasks[0].model.elements:
+        return [rest(*_parts(each)) for each in tasks]
+    counts = [len(each.loads.inputs) for each in tasks]
+    whole = rest(*_parts(_together(tasks, np.repeat(np.arange(len(tasks)), counts))))
+    if whole is None:
+        return [None] * len(tasks)
+    ends = np.cumsum(counts)[:-1]
+    parts = zip(np.split(whole.residual, ends), np.split(whole.stiffness, ends), strict=True)
+    return [Rest(residual, stiffness) for residual, stiffness in parts]
+
+
+def _together(tasks: list[Task], design: Array) -> Task:
+    """One task of all cases, in which links about centres and places of held coordinates go with the design (b,) of each case."""
+
+    def all_cases(of: Callable[[Task], Array]) -> Array:
+        return np.concatenate([of(each) for each in tasks])
+
+    model, hold = tasks[0].model, tasks[0].hold
+    tables = {name: np.stack([getattr(each.model.hinges, name) for each in tasks], axis=1)[:, design] for name in _OF_DESIGNS}
+    places = {name: np.stack([getattr(each.hold, name) for each in tasks])[design] for name in ("arm", "origin")}
+    pose = Pose(
+        all_cases(lambda each: each.start.position),
+        all_cases(lambda each: each.start.turn),
+        (),
+        (),
+        all_cases(lambda each: each.start.held),
+    )
+    loads = Loads(*(all_cases(lambda each, name=name: getattr(each.loads, name)) for name in ("inputs", "gravity", "constant")))
+    held = replace(hold, **places, value=all_cases(lambda each: each.hold.value))
+    return Task(replace(model, hinges=replace(model.hinges, **tables)), pose, loads, held)
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: Hold, effort: Effort) -> tuple[Pose, Array, Array]:

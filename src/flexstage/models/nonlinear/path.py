@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, Point, first_point, follow_course
 from flexstage.models.nonlinear.critical import Critical, Kind, course_of, critical, unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
+from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, state
 from flexstage.models.nonlinear.newton import USUAL, join
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads
@@ -115,6 +116,34 @@ def equilibria_along(
         if int(np.sum(found.converged)) <= count:
             break
     return found
+
+
+def equilibria_of_designs(
+    models: Sequence[Nonlinear],
+    drive: str,
+    values: Sequence[Array],
+    *,
+    loads: Mapping[str, float],
+    hold: Sequence[Mapping[str, float]],
+    weight: float = 1.0,
+) -> list[State]:
+    """The states of `equilibria_along` of several designs of one structure, in one run; values (k,) and locked coordinates of each.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> (found,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
+    >>> found.reactions[:, 0].round(0).tolist()
+    [1939.0]
+    """
+    alone = [
+        partial(equilibria_along, model, drive, some, loads=loads, hold=locked, weight=weight)
+        for model, some, locked in zip(models, values, hold, strict=True)
+    ]
+    if drive in {channel.name for channel in models[0].inputs}:
+        return [each() for each in alone]
+    held = [{drive: some, **locked} for some, locked in zip(values, hold, strict=True)]
+    found = equilibria(models, loads, hold=held, weight=weight, effort=replace(USUAL, arcs=0))
+    return [one if one.converged.all() else again() for one, again in zip(found, alone, strict=True)]
 
 
 def _neighbour(found: State) -> State:

@@ -14,13 +14,16 @@ from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.node import NumberNode
-from flexstage.models.nonlinear.equilibrium import State, corrected, equilibrium
+from flexstage.models.nonlinear.equilibrium import State, corrected, equilibria, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
 _SHARE = 1e-3
 """Step over the number, or over the flexures' length where it is zero."""
 _STENCIL: Mapping[float, float] = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
 """Weights of four points about one, of fourth order."""
+
+_AT_ONCE = 32
+"""Designs whose models are kept at once."""
 
 Results = Callable[[State], Any]
 """Numbers or arrays that are read from a state: `State.twist`, frequencies, a critical factor of its model."""
@@ -47,8 +50,11 @@ def over_designs(
     (2, 6)
     """
     count = designs(mechanism)
-    singles = [mechanism] if count is None else [design(mechanism, place) for place in range(count)]
-    found = [np.asarray(results(equilibrium(nonlinear(each), loads, hold=hold, weight=weight, stated=stated))) for each in singles]
+    found: list[Array] = []
+    for first in range(0, count or 1, _AT_ONCE):
+        places = range(first, min(first + _AT_ONCE, count or 1))
+        models = [nonlinear(mechanism if count is None else design(mechanism, place)) for place in places]
+        found += [np.asarray(results(each)) for each in equilibria(models, loads, hold=hold, weight=weight, stated=stated)]
     return found[0] if count is None else np.stack(found)
 
 
