@@ -20,6 +20,7 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import KINDS, AmplifierSetup, ControllerSetup, DampingSetup, LoopSetup, Motion, StepMotion
+from flexstage.control.study.study import loop_study
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
@@ -295,6 +296,15 @@ def test_a_computers_delay_and_hold_are_those_of_one_and_a_half_samples():
         off.append(np.min(np.abs(found - mode)) / np.abs(mode))
     assert off[0] < 1e-3
     np.testing.assert_allclose(np.divide(off[:-1], off[1:]), 4.0, rtol=0.15)
+
+
+def test_damping_that_is_not_reached_is_said():
+    """At the rate of the loop itself, delay and hold turn a mode at a sixth of it by 90 degrees: nothing is left to damp it."""
+    for rate, reached in ((None, 0.3), (10e3, 0.01)):
+        study = loop_study(case("parallelogram"), LoopSetup(damping=DampingSetup(ratio=0.3, rate=rate)))
+        assert study.damping.reached == pytest.approx(reached, rel=0.15)
+        told = [each.where for each in study.cautions if "was asked for, and the least" in each.what]
+        assert told == (["damping.ratio"] if rate else [])
 
 
 BAD = {

@@ -47,7 +47,8 @@ class ActiveDamping:
 
     `modes` are those of the plant. By `coordinates`, `left_at_rest` is the share of the platform's static stiffness that is left,
     `softest` the least share below the first mode, at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below`
-    [Hz] (order 1: below none). `rate` [Hz] is that of the computer that runs it, absent where it is analogue.
+    [Hz] (order 1: below none). `rate` [Hz] is that of the computer that runs it, absent where it is analogue. `reached` is the least
+    damping ratio of the modes that the loop feels most, as many as it has coordinates.
     """
 
     legs: tuple[str, ...]
@@ -62,6 +63,7 @@ class ActiveDamping:
     softest_at: Annotated[Array, FREQUENCY, Along("coordinates")]
     law: Annotated[ForceFeedback, INNER]
     sensed: Annotated[tuple[Leg, ...], INNER]
+    reached: float
     rate: Annotated[float | None, FREQUENCY] = None
 
     @property
@@ -146,7 +148,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
     Those are as many as the loop has coordinates. Raises `DesignError` where the inner loops are stable with no gain.
     """
-    felt = np.argsort(-resonances(given))[: len(given.coordinates.names)]
+    felt = felt_most(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
     gains = scale * np.geomspace(_FIRST, _LAST, _GAINS)
     poles = follow_poles(given, law, legs, gains)
@@ -163,6 +165,11 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     while close_damping(given, replace(law, gain=chosen), legs).system.growth >= 0.0:
         chosen *= 0.8
     return chosen
+
+
+def felt_most(given: Plant) -> Array:
+    """Places of the modes that a plant's loop feels most, as many as it has coordinates."""
+    return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 
 def _ratios(poles: Array) -> Array:
@@ -204,6 +211,7 @@ def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tupl
         softest_at=lines[place],
         law=law,
         sensed=legs,
+        reached=min(modes[place].damped_ratio for place in felt_most(given)),
     )
 
 

@@ -8,11 +8,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.control.damping.damped_plant import ActiveDamping, as_felt, close_damping, describe_damping, gain_for, with_damped_modes
+from flexstage.control.damping.damped_plant import (
+    ActiveDamping,
+    as_felt,
+    close_damping,
+    describe_damping,
+    felt_most,
+    gain_for,
+    with_damped_modes,
+)
 from flexstage.control.damping.force_feedback import ForceFeedback
 from flexstage.control.damping.legs import Leg, Pairs, pair_zeros
 from flexstage.control.plants import Plant
-from flexstage.control.reduction import reduce_modes, resonances
+from flexstage.control.reduction import reduce_modes
 from flexstage.control.study.setup import DampingSetup
 from flexstage.models.linear.model import LinearModel
 
@@ -72,5 +80,5 @@ def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding
 
 def _lowest_zero(plant: Plant, pairs: Pairs) -> float:
     """The lowest frequency [Hz] without the legs' stiffness, of the modes that the loop feels most."""
-    felt = np.argsort(-resonances(plant))[: len(plant.coordinates.names)]
-    return float(min(pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt]))
+    lowest = (pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt_most(plant)])
+    return float(min(lowest))

@@ -43,6 +43,8 @@ from flexstage.mechanism.mechanism import Mechanism
 
 _Found = TypeVar("_Found")
 _LOWEST = 0.1
+_ENOUGH = 0.98
+"""Of the damping asked for."""
 _NO_LOOP = "the stage is commanded in open loop"
 _NO_TEST = "no record of a test is given"
 _NO_STROKES = "forces drive the stage: no stroke is lost, and it stands where its stiffness lets it"
@@ -272,6 +274,13 @@ def _cautions(given: ResolvedSetup) -> list[Finding]:
         what = f"against forces on the platform the stage is down to {100.0 * yielding.softest[worst]:.3g} % of its stiffness at rest"
         advice = "The loop of the pose has to hold them; a higher corner or a lower ratio yields less"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
+        asked = None if given.setup.damping is None else given.setup.damping.ratio
+        if asked is not None and yielding.reached < _ENOUGH * asked:
+            what = f"a damping of {100.0 * asked:.3g} % was asked for, and the least of the modes that the loop feels most is "
+            advice = (
+                "Shorter delays, faster amplifiers and sensors, a higher rate let it be more; legs that do not feel a mode cannot damp it"
+            )
+            found.append(Finding("damping.ratio", f"{what}{100.0 * yielding.reached:.3g} %", advice))
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
             found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))

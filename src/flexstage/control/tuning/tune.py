@@ -122,10 +122,9 @@ def _findings(plant: Plant, task: Task) -> Iterator[Finding]:
 
 def _no_bandwidth(seen: View, task: Task) -> Finding:
     slowest = _SLOWEST * float(seen.modes[0])
-    best = attempt(seen, task, slowest)
-    return Finding(
-        "tuning", f"no bandwidth from {slowest:.3g} Hz up is reached: {_reason(task, best, slowest)}", _help(seen, task, slowest)
-    )
+    best, advice = attempt(seen, task, slowest), _help(seen, task, slowest)
+    what = f"no bandwidth from {slowest:.3g} Hz up is reached: {_reason(task, best, slowest)}"
+    return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
 
 def _unreached(seen: View, task: Task, best: Attempt | None, wanted: float) -> Finding:
@@ -165,9 +164,10 @@ def _help(seen: View, task: Task, wanted: float) -> str:
         if best is not None and any(best.notches):
             found.append(f"with {_notch_places(best)} {_three_digits(top)} Hz is reached")
     if seen.step is not None:
-        lag = 360.0 * wanted * (seen.plant.hardware.delay + 0.5 * seen.step)
+        acts = max(wanted, float(seen.modes[0])) if isinstance(task.kind, Family) and not task.kind.notched else wanted
+        lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
         if lag > _NOTICED:
-            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(wanted)} Hz")
+            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(acts)} Hz")
     others = {Kind.PI: "PID or LQG", Kind.PID: "LQG", Kind.RESONANT: "PI with notches, or LQG", Kind.LQG: "less noise of the gauges"}
     other = task.kind.others if isinstance(task.kind, Family) else others[task.kind]
     return "; ".join([*found, f"try {other}, more damping, or a smaller spread of the modes"])
