@@ -19,6 +19,8 @@ from flexstage.control.stability_margins import bandwidths, peaks
 from flexstage.control.study.choices import Criterion
 from flexstage.control.study.setup import Floor, LoopSetup, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.experiment.identification.identify import Search, identify
+from flexstage.experiment.identification.local_responses import local_responses
 from flexstage.experiment.pipeline import Identification, identification
 from flexstage.experiment.record import Channel, Responses, Role
 from flexstage.experiment.virtual_rig.rig import rig
@@ -27,6 +29,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
 from flexstage.models.lumped import lumped
+from tests.models.synthetic_records import record, truth
 
 SHAKEN = VibrationSetup(criterion=Criterion("VC-D"))
 SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN))
@@ -109,6 +112,21 @@ def test_a_loop_of_six_axes_designed_on_a_record_with_delay_is_the_one_of_the_tr
 @pytest.mark.full
 def test_a_loop_of_six_axes_designed_at_uneven_lines_is_the_one_of_the_truth() -> None:
     compared(double_triangle(), swept(double_triangle(), np.geomspace(30.0, 700.0, 1500), 200e-6), 200e-6)
+
+
+def test_responses_of_records_are_as_far_off_as_they_say_at_resonances_too() -> None:
+    known = truth((118.0, 119.4, 231.0), outputs=3, inputs=3)
+    made = record(known, 5, seconds=30.0, rate=1024.0, noise=0.02)
+    alone = [record(known, 6 + number, seconds=20.0, rate=1024.0, noise=0.02, active=(number,)) for number in range(3)]
+    for test in ([made], [each.select([f"u{number + 1}", "y1", "y2", "y3"]) for number, each in enumerate(alone)]):
+        found = identify(test, Search(band=(60.0, 400.0)))
+        seen = local_responses(test, found)
+        off = np.abs(seen.values - known.response(seen.frequencies))
+        for low, high in ((60.0, 400.0), (117.0, 121.0), (229.0, 233.0)):
+            near = (seen.frequencies > low) & (seen.frequencies < high)
+            assert np.sqrt(np.mean((off[near] / seen.deviations[near]) ** 2)) == pytest.approx(1.0, abs=0.15)
+        largest = np.max(np.abs(seen.values), axis=(1, 2))
+        assert np.max(np.max(off, axis=(1, 2))[largest > 0.5 * np.max(largest)] / np.max(largest)) < 0.02  # H1 is 10 % off
 
 
 def test_a_record_of_another_stage_is_refused() -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.dimension import dimension_of
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, FREQUENCY
@@ -21,12 +21,16 @@ from flexstage.control.coordinates import Coordinates
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.local_responses import LocalResponses, local_responses
 from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.record import Responses
 
 _DRAWS, _SEED = 100, 0
 _ENDS = (0.025, 0.975)
 _COHERENT = 0.5
 _AROUND = 1.5
+_LEAST_LINES = 16
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,21 @@ class ReadChannel:
 
 
 @dataclass(frozen=True, eq=False)
+class ReadLines:
+    """|S_ii| (f, n) over `frequencies` (f,) [Hz]: as measured, the ends that hold it by 95 % at each line, of fit and of model.
+
+    `low` and `high` are absent where the test does not say how sure its responses are.
+    """
+
+    frequencies: Array
+    measured: Array
+    low: Array | None
+    high: Array | None
+    fitted: Array
+    predicted: Array
+
+
+@dataclass(frozen=True, eq=False)
 class MeasuredMargins(InNotebook):
     """What the lines of a test say of the loop: the peak of S (largest singular value, rotations as lengths) and margins by coordinate.
 
@@ -65,6 +84,7 @@ class MeasuredMargins(InNotebook):
     peak: Reading
     peak_frequency: Annotated[float, FREQUENCY]
     channels: Annotated[tuple[ReadChannel, ...], INNER]
+    sensitivities: Annotated[ReadLines, INNER]
 
     @property
     def loops(self) -> Annotated[Mapping[str, ReadChannel], VIEW]:
@@ -75,33 +95,36 @@ class MeasuredMargins(InNotebook):
 def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
     """Margins of a loop on the responses of a test, hold and delay of the loop added: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
 
-    P is H1, or the analyser's response. Its errors are taken as circular and normal, of variance S_vv (S_xx^-1)_jj / n at entry ij
-    (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9; of stored responses |H|^2 (1 - g^2)/(n g^2)); ends are quantiles of 100 draws
-    about their median. Stored responses are taken as measured input by input, each driven alone.
+    P is what local polynomials tell of the records (`local_responses`), or the analyser's response. Its errors are taken as circular and
+    normal, of stored responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9); ends are
+    quantiles of 100 draws about their median. Stored responses are taken as measured input by input, each driven alone.
     H_0 is the hold's response; what folds back of frequencies above half the sampling rate is not counted.
 
     Only lines within the band that was searched, below half the sampling rate, count.
     """
     loop, found = closed.plant.coordinates, seen.found
-    lines = found.responses.frequencies
     step = closed.step or 0.0
+    known = _responses(seen)
+    lines = known.frequencies
     inside = (lines >= found.band[0]) & (lines <= found.band[1]) & (lines < (0.5 / step if step else np.inf))
     lines = lines[inside]
+    require(_few_lines(lines, found))
     rows = [[each.name for each in found.outputs].index(name) for name in loop.gauges]
     columns = [[each.name for each in found.inputs].index(name) for name in loop.actuators]
     outer = np.array([float(dimension_of(found.outputs[row].unit).size) for row in rows])
     inner = np.array([float(dimension_of(found.inputs[column].unit).size) for column in columns])
     chosen = np.ix_(np.flatnonzero(inside).tolist(), rows, columns)
     scale = outer[:, None] / inner
-    response = found.responses.values[chosen] * scale
+    response = known.values[chosen] * scale
     late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
     control = _control(closed.controller, loop, lines)
     whole = _Lines(lines, loop.scale, control)
     values = whole.read((loop.pose @ response) * late[:, None, None])
-    spread = _deviations(seen)
-    drawn = None if spread is None else _draws(whole, loop, response, spread[chosen] * scale, late)
+    sure = bool(np.all(np.isfinite(known.deviations)))
+    drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
     models = [whole.read(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
     names = loop.names
+    low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
 
     def reading(of: Callable[[_Read], float]) -> Reading:
         low, high = (None, None) if drawn is None else _ends(of(values), np.array([of(each) for each in drawn]))
@@ -121,6 +144,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
             )
             for row, name in enumerate(names)
         ),
+        sensitivities=ReadLines(lines, values.sizes, low, high, models[0].sizes, models[1].sizes),
     )
 
 
@@ -145,8 +169,9 @@ def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterat
 
 @dataclass(frozen=True, eq=False)
 class _Read:
-    """What is read off one set of responses."""
+    """What is read off one set of responses; `sizes` (f, n) are |S_ii|."""
 
+    sizes: Array
     peak: float
     peak_frequency: float
     gains: tuple[float, ...]
@@ -170,6 +195,7 @@ class _Lines:
         place = int(np.argmax(peaks))
         own = np.diagonal(sensitivity, axis1=1, axis2=2)
         return _Read(
+            np.abs(own),
             float(peaks[place]),
             float(self.lines[place]),
             tuple(_gain_high(1.0 / each - 1.0) for each in own.T),
@@ -200,19 +226,22 @@ def _control(controller: System, loop: Coordinates, lines: Array) -> Array:
     return found
 
 
-def _deviations(seen: Identification) -> Array | None:
-    """Standard deviations (f, p, m) of the responses, in their units; None where the test does not say."""
-    responses = seen.found.responses
-    if seen.spectra is not None and seen.multiple is not None:
-        known = seen.spectra
-        noise = np.real(np.diagonal(known.yy, axis1=1, axis2=2)) * (1.0 - np.minimum(seen.multiple, 1.0))
-        entry = np.real(np.diagonal(np.linalg.pinv(known.xx, hermitian=True), axis1=1, axis2=2))
-        free = max(known.independent - len(known.inputs), 1.0)
-        return np.sqrt(noise[:, :, None] * entry[:, None, :] / free)
-    if responses.coherence is None or not responses.averages:
-        return None
-    share = np.clip(responses.coherence, 1e-6, 1.0)
-    return np.abs(responses.values) * np.sqrt((1.0 - share) / (share * responses.averages))
+def _responses(seen: Identification) -> LocalResponses:
+    """Responses with standard deviations (f, p, m), in their units; NaN where the test does not say."""
+    found, stored = seen.found, seen.found.responses
+    if not isinstance(seen.test, Responses):
+        return local_responses(seen.test, found)
+    if stored.coherence is None or not stored.averages:
+        return LocalResponses(stored.frequencies, stored.values, np.full(stored.values.shape, np.nan))
+    share = np.clip(stored.coherence, 1e-6, 1.0)
+    return LocalResponses(stored.frequencies, stored.values, np.abs(stored.values) * np.sqrt((1.0 - share) / (share * stored.averages)))
+
+
+def _few_lines(lines: Array, found: Identified) -> Iterator[Finding]:
+    if len(lines) < _LEAST_LINES:
+        low, high = found.band
+        what = f"between {low:.4g} and {high:.4g} Hz it tells responses at {len(lines)} frequencies, {_LEAST_LINES} are needed"
+        yield Finding("--record", what, "Record longer, or drive with noise over all of the band")
 
 
 def _draws(whole: _Lines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[_Read]:

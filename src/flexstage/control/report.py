@@ -8,7 +8,7 @@ import flexstage
 from flexstage.base.digest import digest
 from flexstage.control.figures.front import FrontLine, front_figure
 from flexstage.control.playing import response_motions
-from flexstage.control.sections import error_section, frequency_section, headline, loop_section, time_section
+from flexstage.control.sections import error_section, frequency_section, headline, loop_section, measured_section, time_section
 from flexstage.control.study.compare import Comparison
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.study import LoopStudy
@@ -40,6 +40,7 @@ def loop_report(found: LoopStudy) -> str:
         loop_section(found),
         caveat_section(mechanism, found.cautions),
         frequency_section(found),
+        measured_section(found),
         time_section(found),
         error_section(found),
     )

@@ -10,7 +10,7 @@ from flexstage.control.electronics import Amplifier, Sensor
 from flexstage.control.error_tables import hysteresis_table, noise_table, rest_table
 from flexstage.control.figures.diagram import Block as Box
 from flexstage.control.figures.diagram import Diagram, loop_diagram
-from flexstage.control.figures.frequency import Curves, open_loop_figure, pole_figure, sensitivity_figure
+from flexstage.control.figures.frequency import Curves, Measured, measured_figure, open_loop_figure, pole_figure, sensitivity_figure
 from flexstage.control.figures.hysteresis import HysteresisLoop, hysteresis_figure
 from flexstage.control.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
 from flexstage.control.figures.time import error_figure, lesson_figure, path_figure, step_figure
@@ -28,6 +28,7 @@ from flexstage.control.tables import (
     leg_table,
     loop_table,
     margin_table,
+    measured_table,
     repetition_table,
     step_table,
     tracking_table,
@@ -191,6 +192,20 @@ def frequency_section(found: LoopStudy) -> Section | None:
             fold("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
         ],
     )
+
+
+def measured_section(found: LoopStudy) -> Section | None:
+    """The loop on the responses of a test themselves, beside fit and model; `None` without a test."""
+    if found.measured is None:
+        return None
+    seen = found.measured.sensitivities
+    drawn = measured_figure(
+        Measured(seen.frequencies, found.plant.coordinates.names, seen.measured, seen.low, seen.high, seen.fitted, seen.predicted)
+    )
+    picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
+    sure = "shaded: 95 % of every line" if seen.low is not None else "the test does not say how sure its responses are"
+    caption = f"What every loop leaves of a disturbance along its axis, hold and delay included; {sure}."
+    return section("On the measured responses", [measured_table(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:

@@ -289,6 +289,7 @@ def measured_table(found: LoopStudy) -> Table | None:
     low, high = seen.band
     notes = [
         f"Read off {seen.lines} lines from {number(low, 4)} to {number(high, 4)} Hz; between them a peak may be higher.",
+        "Where little moves, noise makes the gain that is left look smaller.",
         "Fitted: of the modes found, on which the loop was tuned. Model: of the design, without the delay that was found.",
     ]
     heads = ["what", "loop", "measured", "95 % interval", "fitted", "model"]

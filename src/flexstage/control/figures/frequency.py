@@ -88,6 +88,55 @@ def sensitivity_figure(sensitivity: Curves, complementary: Curves, highest: floa
     return figure
 
 
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Sizes (f, n) over `frequencies` (f,) [Hz], one column a name: measured with the ends of their intervals, of the fit, of the model."""
+
+    frequencies: Array
+    names: tuple[str, ...]
+    measured: Array
+    low: Array | None
+    high: Array | None
+    fitted: Array
+    predicted: Array
+
+
+def measured_figure(found: Measured) -> Any:
+    """|S| of every loop as the responses of a test tell it, shaded by its 95 % interval, over what fit and model say; one panel a loop.
+
+    >>> lines, ones = np.geomspace(1.0, 1000.0, 50), np.ones((50, 4))
+    >>> len(measured_figure(Measured(lines, ("x", "y", "z", "rz"), ones, 0.9 * ones, 1.1 * ones, ones, ones)).axes)
+    6
+    """
+    columns = min(3, len(found.names))
+    rows = -(-len(found.names) // columns)
+    with style_context():
+        figure = canvas(FULL, 0.55 + 1.55 * rows)
+        grid = panels(figure, rows, columns, Margins(left=0.55, top=0.34, across=0.42, down=0.36))
+        for index, axes in enumerate(grid.ravel()):
+            if index >= len(found.names):
+                axes.set_visible(False)
+                continue
+            _measured_panel(axes, found, index)
+            axes.set_xlabel("frequency [Hz]" if index + columns >= len(found.names) else "")
+            axes.set_ylabel("|S|" if index % columns == 0 else "")
+        grid[0, 0].legend(loc="lower left", bbox_to_anchor=(-0.02, 1.12), ncols=4, borderaxespad=0.0, handlelength=1.6)
+    return figure
+
+
+def _measured_panel(axes: Any, found: Measured, index: int) -> None:
+    x = found.frequencies
+    if found.low is not None and found.high is not None:
+        axes.fill_between(x, found.low[:, index], found.high[:, index], color=SERIES[0], alpha=0.3, linewidth=0.0)
+    axes.loglog(*thin_out(x, found.measured[:, index]), color=SERIES[0], linewidth=1.3, label="measured, 95 %")
+    axes.loglog(*thin_out(x, found.fitted[:, index]), color=INK, linewidth=0.7, label="fitted")
+    axes.loglog(*thin_out(x, found.predicted[:, index]), color=SERIES[1], linewidth=0.9, linestyle="--", label="model")
+    axes.axhline(1.0, color=MUTED, linewidth=0.5)
+    axes.set_xlim(float(x[0]), float(x[-1]))
+    axes.set_title(found.names[index], loc="right")
+    plain_ticks(axes.xaxis, axes.yaxis)
+
+
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
     """Poles (n,) of the closed loop: in the z plane, and as damping ratio over frequency, beside those of the stage `alone`; unstable red.
 
