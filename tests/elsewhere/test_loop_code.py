@@ -145,6 +145,7 @@ def test_force_feedback_is_part_of_the_exported_controller():
     tensions[7, 1] = np.nan
     program = with_legs(controller_code(given), given, inner)
     assert program.step == inner.step
+    assert [line.partition(":")[0] for line in program.about if "step every" in line] == [f"One call of the step every {inner.step:.12g} s"]
     rows = _run_program(program, np.hstack([np.repeat(known.reference, 3, axis=0), np.repeat(known.readings, 3, axis=0), tensions]))
     ends = np.cumsum([0, *(len(signal.channels) for signal in program.outputs)])
     found = {signal.field: rows[:, slice(*ends[place : place + 2])] for place, signal in enumerate(program.outputs)}

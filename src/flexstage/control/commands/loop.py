@@ -501,7 +501,7 @@ def _about(found: LoopStudy) -> str:
     form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
     numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
     where = "With" if found.damping.rate is not None else "Not in it, analogue and around it:"
-    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}"
+    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}."
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | str | None]:

@@ -28,7 +28,10 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     own = [strokes[name] for name in legs.actuators]
     return replace(
         outer,
-        about=(*outer.about, _about(legs)),
+        about=(
+            *(line.replace(f"One call of the step every {outer.step:.12g} s", "Loop of the pose") for line in outer.about),
+            _about(legs),
+        ),
         step=legs.step,
         inputs=(*outer.inputs, Signal("tension", tuple(Channel(f"tension.{each.name}", "N") for each in own), "tensions of the legs")),
         outputs=(
@@ -42,9 +45,14 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     )
 
 
+def _period(step: float) -> str:
+    return f"One call of the step every {step:.12g} s"
+
+
 def _about(legs: SampledLegs) -> str:
+    first = f"of {legs.turns} the first runs the loop of the pose, every {legs.turns * legs.step:.12g} s, from the readings of then"
     return (
-        f"Of every {legs.turns} calls the first runs the loop of the pose, from the readings of then; all run force feedback in the legs. "
+        f"{_period(legs.step)}: {first}; all run force feedback in the legs of {', '.join(legs.actuators)}. "
         "Tension counts positive; total is what the amplifiers shall give."
     )
 
