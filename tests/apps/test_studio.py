@@ -648,6 +648,8 @@ SET_UP = """
 import pathlib, sys
 words = sys.argv[1:]
 print(pathlib.Path(words[words.index("--setup") + 1]).read_text())
+if "--record" in words:
+    print("on", words[words.index("--record") + 1])
 pathlib.Path(words[words.index("--report") + 1]).write_text("")
 """
 
@@ -660,6 +662,11 @@ async def test_a_loop_has_the_set_up_that_was_written(page, studio):
         said = await page.ask(say.Run, command="loop", study='format = "flexstage loop 1"', record=None, options=())
         await page.until(lambda page: _job(page, said).report)
         assert _job(page, said).said == ('format = "flexstage loop 1"',)
+        record = jobs_folder(studio) / "test.csv"
+        record.write_text("")
+        measured = await page.ask(say.Run, command="loop", study='format = "flexstage loop 1"', record="test.csv", options=())
+        await page.until(lambda page: _job(page, measured).report)
+        assert _job(page, measured).said == ('format = "flexstage loop 1"', f"on {record}")
     finally:
         jobs.program = real
 
@@ -676,6 +683,7 @@ def jobs_folder(studio):
 async def test_jobs_that_cannot_be_are_refused(page, studio):
     for fields in (
         {"command": "identify", "study": None, "record": "nowhere.uff", "options": ()},
+        {"command": "loop", "study": None, "record": "nowhere.uff", "options": ()},
         {"command": "sweep", "study": None, "record": None, "options": ()},
         {"command": "loop", "study": None, "record": None, "options": ("--json=/tmp/x",)},
         {"command": "loop", "study": None, "record": None, "options": ("--hardware=x.c",)},

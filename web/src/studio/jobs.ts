@@ -10,7 +10,7 @@ interface Form {
   title: string;
   about: string;
   study: string | null;
-  record: boolean;
+  record: "needed" | "possible" | null;
 }
 
 /** A study to begin with: the numbers that buy most of the worst requirement, ten per cent to both sides. */
@@ -29,12 +29,12 @@ const SWEEP = '[sweep]\nsampling = "sobol"\ndesigns = 64';
 const OPTIMISE = '[optimise]\nmaximise = "worst"';
 
 const FORMS: Record<Command, Form> = {
-  sweep: { title: "Sweep", about: "Computes many designs and shows what varies with what.", study: SWEEP, record: false },
-  optimise: { title: "Optimise", about: "Finds the best design within ranges and limits.", study: OPTIMISE, record: false },
-  verify: { title: "Verify", about: "Compares theory with finite elements, hinges first.", study: null, record: false },
-  identify: { title: "Identify", about: "Finds the modes in a record of a test.", study: null, record: true },
-  loop: { title: "Loop", about: "Closes the control loop; without a set-up the usual one.", study: "", record: false },
-  analyse: { title: "Report", about: "Writes the report: everything at once, with the turning model, in one file.", study: null, record: false },
+  sweep: { title: "Sweep", about: "Computes many designs and shows what varies with what.", study: SWEEP, record: null },
+  optimise: { title: "Optimise", about: "Finds the best design within ranges and limits.", study: OPTIMISE, record: null },
+  verify: { title: "Verify", about: "Compares theory with finite elements, hinges first.", study: null, record: null },
+  identify: { title: "Identify", about: "Finds the modes in a record of a test.", study: null, record: "needed" },
+  loop: { title: "Loop", about: "Closes the control loop; without a set-up the usual one. With a record of a test, on what was measured.", study: "", record: "possible" },
+  analyse: { title: "Report", about: "Writes the report: everything at once, with the turning model, in one file.", study: null, record: null },
 };
 
 /** What the last design that an optimisation found is pinned as. */
@@ -63,7 +63,7 @@ export class JobsPane {
     this.studio.tab.set("jobs");
     if (name === "analyse") return void this.run({ kind: "run", command: name, study: null, record: null, options: [] });
     const study = form.study === null ? null : h("textarea", { rows: 9, spellcheck: false, ariaLabel: "study", value: this.studies.get(name) ?? (form.study && draft(this.studio, form.study)) });
-    const record = form.record ? h("input", { type: "text", required: true, placeholder: "record.mat", ariaLabel: "record" }) : null;
+    const record = form.record ? h("input", { type: "text", required: form.record === "needed", placeholder: "record.mat", ariaLabel: "record" }) : null;
     const options = h("input", { type: "text", placeholder: "as on the command line", ariaLabel: "options" });
     const start = (event: Event): void => {
       event.preventDefault();

@@ -70,7 +70,7 @@ class Jobs:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
             raise refuse(request.command, "it needs a study: what varies, and what is wanted", "Write one, see docs/studies.md")
-        if request.command == "identify" and not (request.record and (self._path.parent / request.record).is_file()):
+        if (request.record or request.command == "identify") and not (request.record and (self._path.parent / request.record).is_file()):
             raise refuse(request.command, "there is no such record", "Name a file, from the folder of the design")
         for option in request.options:
             if option.partition("=")[0] in _WRITING:
@@ -163,8 +163,10 @@ class Jobs:
             design = self._beside(job, "toml", self._path.name, job.text)
         if request.command == "identify":
             return [str(self._path.parent / (request.record or "")), "--stage", str(design)]
-        if request.command == "loop" and request.study is not None:
-            return [str(design), "--setup", str(self._beside(job, "loop.toml", "set-up", request.study))]
+        if request.command == "loop":
+            seen = ["--record", str(self._path.parent / request.record)] if request.record else []
+            setup = ["--setup", str(self._beside(job, "loop.toml", "set-up", request.study))] if request.study is not None else []
+            return [str(design), *setup, *seen]
         if request.command not in _STUDIES:
             return [str(design)]
         study = self._beside(job, "study.toml", "study", _study(request.study or "", design, self._path.stem))
