@@ -99,7 +99,7 @@ def stance(
     return Stance(
         sag=Matrix(sag, places, COMPONENTS, units),
         moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if asked.at else None,
-        held=_held(asked, rest, state),
+        held=_held(asked, state),
         locked=asked.hold,
         rest=rest,
         state=state,
@@ -217,11 +217,11 @@ def _stable_until(asked: _Asked) -> str:
     return f"; up to {_SHARES[count - 1]:.0%} of the way it stays" if count else ""
 
 
-def _held(asked: _Asked, rest: State, state: State) -> Matrix | None:
+def _held(asked: _Asked, state: State) -> Matrix | None:
     if not asked.coordinates:
         return None
     places = [COMPONENTS.index(name.rpartition(".")[2]) for name in asked.coordinates]
-    values = [float(coordinate(state, name) - coordinate(rest, name)) for name in asked.coordinates]
+    values = [asked.at.get(name, 0.0) for name in asked.coordinates]
     units = tuple((TWIST_UNITS[place], WRENCH_UNITS[place]) for place in places)
     return Matrix(np.stack([values, state.reactions], axis=-1), asked.coordinates, ("value", "force"), units)
 

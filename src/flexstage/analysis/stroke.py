@@ -15,7 +15,9 @@ from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER
+from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.model import LinearModel
@@ -187,12 +189,18 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
 
 def _cautions(found: Stroke) -> Iterator[Finding]:
     yield from strain_cautions(found.strained)
-    values = found.along.values[:, 0]
     lost = np.isnan(found.along.values[:, -2])
     if lost.any():
-        what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {values[lost][0]:.4g}"
+        what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {_first(found, lost)}"
         yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.trace)")
     loose = found.along.values[:, -1] > 0
     if loose.any():
-        what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {values[loose][0]:.4g}"
+        what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {_first(found, loose)}"
         yield Finding(found.drive, what, "Ask flexstage buckle what gives way")
+
+
+def _first(found: Stroke, points: Array) -> str:
+    """Where the drive is at the first of some points."""
+    along = found.along
+    unit = along.unit if isinstance(along.unit, str) else along.unit[0][0]
+    return show(float(along.values[points, 0][0]), LENGTH if unit == "m" else quantity_of_unit(unit), digits=4)

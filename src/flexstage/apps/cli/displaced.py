@@ -120,7 +120,7 @@ def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int,
     low = parse(ends[0], quantity, where="--from") if ends[0] else 0.0
     high = parse(ends[1], quantity, where="--to") if ends[1] else (1e-4 if quantity is LENGTH else 1e-3)
     if low == high:
-        raise refuse("--to", f"{drive} goes from {low:g} to {high:g}: a drive that does nothing", "Name two places")
+        raise refuse("--to", f"{drive} goes from {ends[0] or '0'} to {ends[1] or ends[0]}: a drive that does nothing", "Name two places")
     return Course(drive, np.linspace(low, high, more[0]), more[1], (), 1.0)
 
 
