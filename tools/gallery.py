@@ -14,16 +14,21 @@ from threadpoolctl import threadpool_limits
 
 import flexstage as fs
 from flexstage.analysis.judge import judge
+from flexstage.base.quantity import Quantity
 from flexstage.base.unit import show
 from flexstage.cases.case import Case, Shipped
 from flexstage.cases.file_case import file_text
 from flexstage.cases.registry import CASES, case
+from flexstage.models.theory import Model
+from flexstage.show.command.design import elastic_model
+from flexstage.show.display import display_unit, format_value
 from tools.validation.row import paragraph, table
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "gallery.md"
 ALIKE = ("double-triangle-a", "double-triangle-refitted", "xy-stage-floating", "tip-tilt-four")
 """Variants of others, which the gallery leaves out."""
 
+_UNREADABLE = 0.01
 SHOWN = tuple(name for name in CASES if name not in ALIKE)
 _PRINTED = ("telescope-mount", "mirror-mount", "leaf-guide", "resonator", "quad-suspension")
 _INTRODUCTION = """\
@@ -67,12 +72,18 @@ def _words(name: str, found: Shipped) -> str:
 def _numbers(name: str) -> Iterator[tuple[str, str]]:
     """Its key numbers: what `analyse` prints of them."""
     stage = case(name)
-    kinematics, modes = fs.ideal(stage), fs.modes(fs.lumped(stage), limit=stage.mode_limit)
+    kinematics, modes = fs.ideal(stage), fs.modes(elastic_model(stage, Model.LUMPED, loaded=True), limit=stage.mode_limit)
     yield "moves ideally", ", ".join(kinematics.coordinates) or "in no way"
     yield "platform's modes", ", ".join(f"{each:.4g}" for each in modes.platform_frequencies) + " Hz"
     for verdict in judge(stage):
         asked = verdict.requirement
-        yield f"`{asked.key}` {asked.text}", show(float(verdict.value), asked.quantity, digits=4)
+        yield f"`{asked.key}` {asked.text}", _shown(float(verdict.value), asked.quantity)
+
+
+def _shown(value: float, quantity: Quantity) -> str:
+    """In the quantity's own unit, unless the number would become unreadable."""
+    form = display_unit(quantity)
+    return show(value, quantity, digits=4) if abs(value * form.factor) >= _UNREADABLE or not value else format_value(value, quantity.si, 4)
 
 
 if __name__ == "__main__":
