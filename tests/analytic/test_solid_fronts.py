@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
 from flexstage.solid.fea.field import factorise, field, grid, inertia, stiffness
 from flexstage.solid.fea.fineness import Fineness
@@ -39,6 +40,15 @@ def test_motions_are_those_of_the_other_solver() -> None:
     law = dense()[np.ix_(FREE, FREE)]
     assert np.abs(law @ found[FREE] - forces[FREE]).max() < 1e-13 * np.abs(law).max() * np.abs(found).max() * 100.0
     assert not found[~SPACE.free].any()
+
+
+def test_traces_are_added_alike_in_blocks_and_scattered(monkeypatch: pytest.MonkeyPatch) -> None:
+    forces = np.random.default_rng(2).standard_normal((SPACE.size, 2))
+    found = []
+    for scattered in (0.0, np.inf):
+        monkeypatch.setattr(frontal, "_SCATTERED", scattered)
+        found.append(factorise(SPACE, ELASTIC)(forces))
+    np.testing.assert_array_equal(*found)
 
 
 def test_every_node_is_eliminated_once_and_its_traces_lie_beyond() -> None:

@@ -8,6 +8,7 @@ Numer. Anal. 10, 345, 1973). A node is what has three degrees of freedom: the th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
@@ -23,7 +24,8 @@ _LEAF = 16
 _LEAST, _UNEVEN = 0.2, 0.5
 """Least share of the elements on either side of a cut; how many faces more one is worth that leaves halves equal."""
 _COLUMNS = 256
-"""Columns of a trace that are added at once."""
+"""Columns of a trace that are added at once where its nodes lie scattered: more runs of them than this share of their number."""
+_SCATTERED = 0.12
 _ACROSS = np.array([turn for turn in np.ndindex(3, 3, 3) if turn > (1, 1, 1)]) - 1.0
 """What cuts are tried across: the edges and diagonals of a cube."""
 
@@ -92,10 +94,10 @@ def dissect(grid: Grid, free: Array) -> Fronts:
     spans: list[tuple[int, int, int, int]] = []
     _cut(grid, np.arange(len(grid.faces)), leaves, spans)
     leaf = np.repeat(np.arange(len(leaves)), [len(each) for each in leaves])[np.argsort(np.concatenate(leaves))]
-    owner = _owners(grid, leaf, spans)
+    owner, low = _owners(grid, leaf, spans)
     order = np.full(grid.count, len(spans), dtype=np.int64)
     order[free] = owner[free]
-    nodes = np.argsort(order, kind="stable")[: int(free.sum())]
+    nodes = np.lexsort((low, order))[: int(free.sum())]
     rank = np.full(grid.count, -1, dtype=np.int64)
     rank[nodes] = np.arange(len(nodes))
     bounds = np.searchsorted(order[nodes], np.arange(len(spans) + 1))
@@ -148,8 +150,11 @@ def _halves(grid: Grid, elements: Array) -> tuple[Array, Array]:
     return found
 
 
-def _owners(grid: Grid, leaf: Array, spans: list[tuple[int, int, int, int]]) -> Array:
-    """The span each node is eliminated at: the least that holds all its elements, of which `leaf` tells where they are."""
+def _owners(grid: Grid, leaf: Array, spans: list[tuple[int, int, int, int]]) -> tuple[Array, Array]:
+    """The span each node is eliminated at, the least that holds all its elements, and the first of their leaves, which `leaf` tells.
+
+    Nodes of one cut stand in the order of these leaves: those that a half of the half meets too lie together.
+    """
     low, high = np.full(grid.count, len(spans), dtype=np.int64), np.full(grid.count, -1, dtype=np.int64)
     np.minimum.at(low, grid.nodes, leaf[grid.elements])
     np.maximum.at(high, grid.nodes, leaf[grid.elements])
@@ -160,7 +165,7 @@ def _owners(grid: Grid, leaf: Array, spans: list[tuple[int, int, int, int]]) -> 
         inner = left[owner] >= 0
         down, up = inner & (high < middle[owner]), inner & (low >= middle[owner])
         if not (down.any() or up.any()):
-            return owner
+            return owner, low
         owner = np.where(down, left[owner], np.where(up, right[owner], owner))
 
 
@@ -199,32 +204,52 @@ def factorise_fronts(order: Fronts, matrix: Matrix) -> Factorised:
     for number, front in enumerate(order.fronts):
         own, size = front.last - front.first, front.last - front.first + len(front.beyond)
         local[front.first : front.last], local[front.beyond] = np.arange(own), np.arange(own, size)
-        law = np.zeros((3 * size, 3 * size), order="F")
-        entries.add(law, front, local)
+        panel, trace = np.zeros((3 * size, 3 * own), order="F"), np.zeros((3 * (size - own), 3 * (size - own)), order="F")
+        entries.add(panel, front, local)
         for child in front.children:
-            at = (3 * local[order.fronts[child].beyond][:, None] + np.arange(3)).ravel()
-            _add_trace(law, at, traces.pop(child))
-        factor, traces[number] = _eliminate(law, 3 * own)
+            met, left = local[order.fronts[child].beyond], traces.pop(child)
+            cut = int(np.searchsorted(met, own))
+            _add_trace(panel, met, left[:, : 3 * cut], met[:cut])
+            _add_trace(trace, met[cut:] - own, left[3 * cut :, 3 * cut :], met[cut:] - own)
+        factor, traces[number] = _eliminate(panel, trace)
         factors.append(factor)
     return Factorised(order, tuple(factors))
 
 
-def _add_trace(law: Array, at: Array, trace: Array) -> None:
-    """Add the lower triangle of a trace to rows and columns `at` of a front, some columns at a time."""
-    for start in range(0, len(at), _COLUMNS):
-        columns = slice(start, start + _COLUMNS)
-        law.T[at[columns, None], at[start:]] += trace.T[columns, start:]
+def _add_trace(law: Array, rows: Array, trace: Array, columns: Array) -> None:
+    """Add what counts of a trace, the lower triangle of it, to nodes `rows` and the first of them, `columns`, of a part of a front."""
+    runs = _runs(rows, len(columns))
+    if len(runs) > _SCATTERED * len(rows):
+        at = (3 * rows[:, None] + np.arange(3)).ravel()
+        for start in range(0, 3 * len(columns), _COLUMNS):
+            some = slice(start, min(start + _COLUMNS, 3 * len(columns)))
+            law.T[at[some, None], at[start:]] += trace.T[some, start:]
+        return
+    for number, (first, last, place) in enumerate(runs):
+        if first >= len(columns):
+            return
+        for low, high, there in runs[number:]:
+            law[3 * there : 3 * (there + high - low), 3 * place : 3 * (place + last - first)] += trace[
+                3 * low : 3 * high, 3 * first : 3 * last
+            ]
 
 
-def _eliminate(law: Array, own: int) -> tuple[_Factor, Array]:
-    """The factor of the first `own` rows of a front, of which the lower triangle counts, and the trace left on the others."""
-    factor, fault = _dpotrf(np.asfortranarray(law[:own, :own]), lower=1, overwrite_a=1) if own else (np.zeros((0, 0)), 0)
+def _runs(nodes: Array, cut: int) -> list[tuple[int, int, int]]:
+    """Stretches of consecutive nodes, ended at a `cut` too: from where to where in the list, and the first node."""
+    ends = np.flatnonzero(np.diff(nodes) != 1) + 1
+    bounds = sorted({0, cut, *ends.tolist(), len(nodes)})
+    return [(first, last, int(nodes[first])) for first, last in pairwise(bounds)]
+
+
+def _eliminate(panel: Array, trace: Array) -> tuple[_Factor, Array]:
+    """The factor of a front's own columns, its `panel`, and the trace left on the nodes beyond, whose front is added to."""
+    own = panel.shape[1]
+    factor, fault = _dpotrf(np.asfortranarray(panel[:own]), lower=1, overwrite_a=1) if own else (np.zeros((0, 0)), 0)
     if fault:
         raise np.linalg.LinAlgError("a front is not positive definite")
-    trace = np.asfortranarray(law[own:, own:])
     if not own or not len(trace):
         return _Factor(factor, np.zeros((own, len(trace)))), trace
-    across = _dtrsm(1.0, factor, np.asfortranarray(law[own:, :own].T), lower=1, overwrite_b=1)
+    across = _dtrsm(1.0, factor, np.asfortranarray(panel[own:].T), lower=1, overwrite_b=1)
     return _Factor(factor, across), _dsyrk(-1.0, across, beta=1.0, c=trace, trans=1, lower=1, overwrite_c=1)
 
 
