@@ -29,6 +29,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array
+from flexstage.mechanism.design import design
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
@@ -46,6 +47,10 @@ else:
     displaced = Late("flexstage.models.nonlinear.stage")
 
 
+KEPT = 48
+"""Benches of single designs that a batch keeps: their models at large displacements take a megabyte each."""
+
+
 class Bench:
     """Models and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
 
@@ -55,6 +60,7 @@ class Bench:
         self._corrections: dict[str, Matrix] = {}
         self._reaches: dict[str, ForceReach] = {}
         self._points: dict[tuple[str, float | None], strokes.Points] = {}
+        self._ones: dict[tuple[int, float], Bench] = {}
         self._along: dict[str, Bench] = {}
 
     @cached_property
@@ -72,10 +78,21 @@ class Bench:
     @staticmethod
     def all_along(benches: Sequence[Bench], name: str, at: float | None = None) -> None:
         """Work out `along` of the benches of several designs of one structure, in one run."""
-        found = course(benches[0].mechanism, name)
-        points = found.points_of_designs([each.nonlinear for each in benches], None if at is None else np.array([at]))
-        for bench, each in zip(benches, points, strict=True):
+        new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
+        if not new:
+            return
+        found = course(new[0].mechanism, name)
+        points = found.points_of_designs([each.nonlinear for each in new], None if at is None else np.array([at]))
+        for bench, each in zip(new, points, strict=True):
             bench._points[name, at] = each  # noqa: SLF001
+
+    def one(self, place: int, share: float) -> Bench:
+        """The bench of one design of a batch, a share of imaginary parts added; the last are kept for measures that ask the same."""
+        if (place, share) not in self._ones:
+            if len(self._ones) >= KEPT:
+                self._ones.clear()
+            self._ones[place, share] = Bench(design(self.mechanism, place, share), self.command)
+        return self._ones[place, share]
 
     def over(self, name: str) -> Bench:
         """The bench of small motions about all points of a path, as a batch."""

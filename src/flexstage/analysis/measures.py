@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import KEPT, Bench
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
@@ -40,7 +40,7 @@ from flexstage.base.quantity import (
 )
 from flexstage.base.register import Register
 from flexstage.beams.mass import mass as link_mass
-from flexstage.mechanism.design import design, designs, step_size
+from flexstage.mechanism.design import designs, step_size
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import VoiceCoil
@@ -445,19 +445,17 @@ def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None
         if count is None and not step:
             return np.asarray(work(bench, asked))
         found: list[complex] = []
-        for first in range(0, count or 1, _AT_ONCE):
-            places = range(first, min(first + _AT_ONCE, count or 1))
-            benches = [[Bench(design(stage, place, share), bench.command) for share in _shares(step)] for place in places]
+        shares = _shares(step)
+        several = KEPT // len(shares)
+        for first in range(0, count or 1, several):
+            places = range(first, min(first + several, count or 1))
+            benches = [[bench.one(place, share) for share in shares] for place in places]
             if together is not None:
                 together([each for group in benches for each in group], asked)
             found += [_value_and_slope([work(each, asked) for each in group], step) for group in benches]
         return np.array(found)
 
     return works
-
-
-_AT_ONCE = 16
-"""Designs whose models at large displacements are kept at once."""
 
 
 def _shares(step: float) -> tuple[float, ...]:
