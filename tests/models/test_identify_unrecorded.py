@@ -116,6 +116,14 @@ def test_what_moved_the_stage_is_never_guessed() -> None:
         identification((floor_record(PAIR, 10.0, 1),), FLOOR)
 
 
+def test_short_records_are_searched_where_their_lines_suffice() -> None:
+    made = floor_record(PAIR, 20.0, 1)
+    low, _ = identification((made,), Search(excitation=Excitation.FLOOR)).found.band
+    assert 120.0 < low < 240.0  # 56 lines of 2 Hz in 0.72 of it, to the next of bands of 1.4
+    with pytest.raises(DesignError, match="between 118 and 119 Hz hold too few lines in a fortieth of 20 s"):
+        identification((made,), Search(band=(118.0, 119.0), excitation=Excitation.FLOOR))
+
+
 @cache
 def floor_response() -> tuple[np.ndarray, np.ndarray]:
     """Gauges of the shipped stage by its floor in x, y and z [um/m], and VC-D's displacement, its velocity held beyond 80 Hz [m/Hz^0.5]."""

@@ -92,6 +92,19 @@ def band_covariances(record: Record, low: float, high: float, tell: Tell | None 
     return bands, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
 
 
+def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
+    """The frequency in Hz from which bands between `low` and `high` hold twice the lines that the fewest block rows take; none: infinite.
+
+    Covariances of N lines repeat after N lags. `resolution` [Hz] is that of a block.
+
+    >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=0.02)
+    (1.4, inf)
+    """
+    needed = 2 * (2 * _rows(outputs, np.inf) + _SKIPPED)
+    wide = [each.first for each in _divide(low, high) if each.high - each.low >= needed * resolution]
+    return min(wide, default=np.inf)
+
+
 def _divide(low: float, high: float) -> list[Sweep]:
     """Bands of 1.4 from end to end, read two fifths of their width further on both sides."""
     limits = np.geomspace(low, high, max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO)))) + 1)
@@ -154,7 +167,8 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
     sure = [-mode.pole.real / abs(mode.pole) for mode in found if -mode.pole.real > _SURE * mode.width_deviation]
-    longer = _rows(outputs, min(sure)) if sure else _rows(outputs, np.inf)
+    most = (band.covariances.shape[1] - _SKIPPED) // 2
+    longer = min(most, _rows(outputs, min(sure))) if sure else _rows(outputs, np.inf)
     return _with_rows(band, longer, highest_damping) if longer > 1.5 * _rows(outputs, np.inf) else (diagram, found)
 
 

@@ -13,7 +13,7 @@ from flexstage.experiment.cross_spectra import Tell
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
 from flexstage.experiment.identification.peaks import Doubt, Peak
-from flexstage.experiment.identification.subspace import BLOCKS, Shaken, band_covariances, shaken_modes
+from flexstage.experiment.identification.subspace import BLOCKS, Shaken, band_covariances, searched_from, shaken_modes
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
 _EVIDENT, _WEAK = 6.1, 3.0
@@ -41,6 +41,10 @@ def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None 
     if low >= high:
         what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
         require([Finding(where, what, "Ask for another band, or record longer")])
+    began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=BLOCKS / record.duration)
+    if low == np.inf:
+        what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
+        require([Finding(where, what, "Record longer: modes in the floor's noise take minutes; or ask for a wider band")])
     bands, density = band_covariances(record, low, high, tell)
     every = [shaken_modes(band, search.highest_damping) for band in bands]
     modes = sorted((mode for _, found in every for mode in found), key=lambda mode: abs(mode.pole))
