@@ -9,6 +9,7 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
 from flexstage.control.closed import loop
+from flexstage.control.export.files import path_file
 from flexstage.control.figures.time import lesson_figure
 from flexstage.control.learning.learn import fade_ends, filter_path, robust_band
 from flexstage.control.learning.responses import Band, readings, through
@@ -21,6 +22,7 @@ from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import (
     ControllerSetup,
     DampingSetup,
+    FileMotion,
     FollowSetup,
     GaugeSetup,
     LoopSetup,
@@ -114,6 +116,23 @@ def test_the_shipped_stage_learns_a_raster_along_z(damping):
     assert seen.rms[0, 2] > 50.0 * seen.noise[2]
     assert np.all(seen.above_noise < 2.0)
     assert np.all(seen.beyond > 0.0)
+
+
+def test_what_is_commanded_is_a_trajectory_for_others(tmp_path):
+    """The path of the inverse, written and read as a trajectory, moves the platform as it did where it was found."""
+    path = SineMotion(frequency=20.0, by=Motion(x=3e-6), periods=1)
+    given = {"gauges": GaugeSetup(noise=0.0, resolution=0.0), "controller": ControllerSetup(bandwidth=100.0)}
+    resolved, control, closed = closed_of("parallelogram", trajectory=path, follow=FollowSetup(Following.INVERSE), **given)
+    (found,) = runs(resolved, control, closed)
+    written = tmp_path / "path.csv"
+    written.write_text(path_file(found.commanded, resolved.step, found.simulated.coordinates))
+    again = replace(resolved, setup=replace(resolved.setup, follow=None, trajectory=FileMotion(str(written))))
+    (replayed,) = runs(again, control, closed)
+    count = len(found.simulated.times)
+    rest = (len(found.commanded) - count) // 2
+    assert np.max(np.abs(found.commanded[rest : rest + count] - found.simulated.reference)) > 1e-7
+    seen = replayed.simulated.pose[rest : rest + count]
+    np.testing.assert_allclose(seen, found.simulated.pose, rtol=0.0, atol=1e-8 * np.max(np.abs(seen)))
 
 
 @pytest.mark.parametrize(("least", "told"), [(1e-9, "0.1"), (2e-7, "0.5")])

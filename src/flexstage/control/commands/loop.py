@@ -38,6 +38,7 @@ from flexstage.control.export.files import (
     export_findings,
     hardware_files,
     hardware_findings,
+    path_file,
     plant_file,
     whole_controller,
 )
@@ -46,6 +47,7 @@ from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
 from flexstage.control.study.compare import compare_controllers
+from flexstage.control.study.course import stated_motions
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.runs import driven_machine
@@ -183,7 +185,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         text_option(
             "--export",
             "FILE",
-            "Write plant.mat, controller.c, controller.fmu or, the whole loop, stage.loop.fmu for other programs; several times.",
+            "Write plant.mat, controller.c, controller.fmu, the whole loop stage.loop.fmu, or with --follow path.csv; several times.",
         ),
     ] = None,
     hardware: Annotated[
@@ -245,7 +247,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
     }
     asked = _override(given, options)
-    require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware)])
+    require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware), *_path_findings(asked, exports)])
     written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
     where = place(at, load, hold, temperature)
     require(_fea_findings(where, model) if fea else ())
@@ -454,6 +456,16 @@ def _inverse_findings(asked: forms.LoopSetup, hardware: Path | None) -> Iterator
         yield Finding("--hardware", *NO_INVERSE)
 
 
+def _path_findings(asked: forms.LoopSetup, exports: Sequence[Path]) -> Iterator[Finding]:
+    """What keeps a path from being written as it is commanded."""
+    for target in (each for each in exports if each.suffix == ".csv"):
+        if asked.follow is None:
+            advice = f"Add --follow: {', '.join(each.value for each in Following)}"
+            yield Finding(f"--export {target}", "nothing but the trajectory itself is commanded", advice)
+        elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.by)) != 1:
+            yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them, as --command x=1um")
+
+
 def _hardware_files(target: Path | None) -> Iterator[tuple[str, Path]]:
     """The files of a controller for hardware."""
     if target is not None:
@@ -475,6 +487,8 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
     """What is written for one option, by file."""
     if target.suffix == ".mat":
         return {target: plant_file(found.plant)}
+    if target.suffix == ".csv" and (commanded := found.runs[0].commanded) is not None:
+        return {target: path_file(commanded, 1.0 / found.settled.rate, found.runs[0].simulated.coordinates)}
     machine = driven_machine(found.settled, found.controller, found.stacks)
     if target.suffix == ".c":
         return controller_files(target, machine, _about(found), _legs(found))

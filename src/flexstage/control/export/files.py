@@ -31,7 +31,12 @@ from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
 _TESTED = 300
-ENDINGS = {".mat": "the plant for MATLAB", ".c": "the controller in C", ".fmu": "the controller as functional mock-up unit"}
+ENDINGS = {
+    ".mat": "the plant for MATLAB",
+    ".c": "the controller in C",
+    ".fmu": "the controller as functional mock-up unit",
+    ".csv": "the path as it is commanded",
+}
 """What a loop is exported as, by the ending of the file's name."""
 WHOLE = ".loop.fmu"
 """Ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
@@ -186,6 +191,17 @@ def plant_file(given: Plant) -> bytes:
     made = bytearray(content.getvalue())
     made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
     return bytes(made)
+
+
+def path_file(commanded: Array, step: float, coordinates: tuple[Channel, ...]) -> str:
+    """A path (n, f) every `step` [s] as CSV that set-ups and controllers read as a trajectory: times, then coordinates with units.
+
+    >>> path_file(np.array([[0.0], [1e-6]]), 1e-4, (Channel("x", "m"),)).splitlines()
+    ['time [s],x [m]', '0,0', '0.0001,1e-06']
+    """
+    heads = ["time [s]", *(f"{each.name.rpartition('.')[2]} [{each.unit}]" for each in coordinates)]
+    rows = (",".join(f"{value:.12g}" for value in (place * step, *row)) for place, row in enumerate(commanded))
+    return "\n".join([",".join(heads), *rows]) + "\n"
 
 
 def _system(system: System, states: tuple[str, ...]) -> dict[str, Any]:

@@ -79,7 +79,7 @@ def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Cours
 
 def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[Course]:
     if isinstance(commanded, StepMotion):
-        for name, size in (_stated_motions(commanded.by) or _default_motions(coordinates.names)).items():
+        for name, size in (stated_motions(commanded.by) or _default_motions(coordinates.names)).items():
             step = Step({name: size}, limits=_limits(commanded))
             yield Course(name, step, (name,), step.duration)
     elif isinstance(commanded, RasterMotion):
@@ -94,7 +94,7 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
         spiral = Spiral(commanded.radius, commanded.pitch, EvenSpeed(commanded.speed), ramp, coordinates=pair)
         yield Course("spiral", spiral, pair, spiral.duration, pair)
     elif isinstance(commanded, SineMotion):
-        sizes = _stated_motions(commanded.by) or dict([next(iter(_default_motions(coordinates.names).items()))])
+        sizes = stated_motions(commanded.by) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
         period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
         yield Course("sine", sine, tuple(sizes), end, period=period, repeats=(_FADED * period, end))
@@ -112,7 +112,12 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
     return (lengths[0], lengths[1]) if len(lengths) > 1 else None
 
 
-def _stated_motions(by: Motion) -> dict[str, float]:
+def stated_motions(by: Motion) -> dict[str, float]:
+    """Amounts [m, rad] by the motions that are stated.
+
+    >>> stated_motions(Motion(x=1e-6))
+    {'x': 1e-06}
+    """
     return {name: getattr(by, name) for name in COMPONENTS if getattr(by, name) is not None}
 
 

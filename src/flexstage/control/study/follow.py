@@ -27,6 +27,7 @@ class Followed:
     """A simulation whose reference is the path that was wanted, and what was learned of it, or while it ran."""
 
     simulated: Simulated
+    commanded: Array
     learned: Learned | None = None
     repeated: Repeated | None = None
 
@@ -54,7 +55,7 @@ def follow(asked: FollowSetup, closed: Loop, control: System, path: Array, cours
     if asked.by is Following.REPETITIVE:
         repetition = _repetition(course, around, step)
         seen = repeat(runner.begin(len(wanted)), closed, control, wanted, repetition, gain=asked.gain, spread=asked.spread)
-        return Followed(_against(runner.whole(seen.commanded, 0), wanted, window), repeated=seen)
+        return Followed(_against(runner.whole(seen.commanded, 0), wanted, window), seen.commanded, repeated=seen)
     learned = None
     if asked.by is Following.LEARNING:
         lesson = Lesson(asked.passes, asked.gain, asked.spread, window)
@@ -65,7 +66,7 @@ def follow(asked: FollowSetup, closed: Loop, control: System, path: Array, cours
     else:
         shaper = (zv if asked.by is Following.ZV else zvd)(asked.frequency or 0.0, asked.damping)
         commanded = shaper.shape(wanted, step)
-    return Followed(_against(runner.whole(commanded, asked.passes), wanted, window), learned)
+    return Followed(_against(runner.whole(commanded, asked.passes), wanted, window), commanded, learned)
 
 
 def _repetition(course: Course, around: int, step: float) -> Repetition:

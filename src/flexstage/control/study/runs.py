@@ -100,7 +100,8 @@ class Run:
     """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
 
     `learned` is what passes over it have taught, `repeated` what its periods have, where the set-up asks for that; `heat` what force
-    actuators bear by name, `legs` what inner loops take of their amplifiers.
+    actuators bear by name, `legs` what inner loops take of their amplifiers. `commanded` (n, f) is what the loop is
+    asked to follow where that is not the course itself, from some rest before it on.
     """
 
     course: Course
@@ -112,6 +113,7 @@ class Run:
     repeated: Repeated | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
     legs: Mapping[str, LegUse] = field(default_factory=lambda: Table({}))
+    commanded: Annotated[Array | None, INNER] = None
 
     @property
     def seconds(self) -> Annotated[float, VIEW]:
@@ -187,7 +189,7 @@ def runs(
             runner = Runner(_in_noise(given, computed, rest), _running(given, computed, rest))
             learnt = follow(known, closed, control.system, poses, course, rest=rest, runner=runner)
             run = _run_of(course, learnt.simulated, computed, cautions)
-            found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated))
+            found.append(replace(run, learned=learnt.learned, repeated=learnt.repeated, commanded=learnt.commanded))
     return tuple(_with_legs(_with_heat(given, run), computed) for run in found)
 
 
