@@ -164,7 +164,7 @@ def test_margins_of_stages_by_search(name, kind):
     edges = [edge.frequency for each in found.channels for edge in (each.gain_high, each.gain_low, each.phase, each.delay)]
     lines = np.geomspace(0.1, 0.4999 / wired.step, 12_000)
     every = np.unique(np.concatenate([lines, *(edge * np.linspace(0.999, 1.001, 41) for edge in edges if np.isfinite(edge))]))
-    omega = 2.0 * np.pi * every[every < 0.5 / wired.step]
+    omega = np.append(2.0 * np.pi * every[every < 0.5 / wired.step], np.pi / wired.step)  # at half the rate L is real
     response = np.moveaxis(opened(np.exp(1j * omega * wired.step), squeeze=False), -1, 0)
     left = np.linalg.inv(np.eye(len(found.channels)) + response)
     for number, own in enumerate(found.channels):
@@ -184,9 +184,11 @@ def _read_off(omega, opened):
     at = omega[places] + share * np.diff(omega)[places]
     odd = np.floor((turned / np.pi + 1.0) / 2.0)  # steps where the phase passes an odd number of pi
     crossed = np.flatnonzero(np.diff(odd) != 0.0)
+    last = [1.0 / abs(opened[-1])] if np.real(opened[-1]) < 0.0 else []
     target = np.pi * (2.0 * np.maximum(odd[crossed], odd[crossed + 1]) - 1.0)
     part = (target - turned[crossed]) / np.diff(turned)[crossed]
     factors = np.exp(-(sizes[crossed] + part * np.diff(sizes)[crossed]))
+    factors = np.append(factors, last)
     return (
         np.min(factors[factors > 1.0], initial=np.inf),
         np.min(np.minimum(angles, 2.0 * np.pi - angles), initial=np.inf),

@@ -18,6 +18,8 @@ from flexstage.control.tuning.wish import Wish
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
 """Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
+_SLOWER, _SURER, _LOOSER = (0.01, 0.03, 0.1), (0.01, 1.0), (1e-4, 1e-3, 1e-2)
+"""The same of starts taken where none of the others is stable with modes off: a regulator that leaves modes alone need not know them."""
 _FIRST = (0.4, 1.2, 0.8)
 """Edges of the first simplex: factors of e of bandwidths, noise and weights of the pose. The grid's steps are twice as far."""
 _ROUNDS, _SMALLER, _EVALUATIONS = 2, 0.35, 190
@@ -85,7 +87,9 @@ def weigh(searched: Regulated, against: Outcome) -> LQG:
         return _cost(searched, against, point)
 
     first = float(searched.tried.seen.modes[0])
-    start = min(_grid(searched, first), key=cost)
+    start = min(_grid(searched, first, _BANDWIDTHS, _TRUSTS, _POSES), key=cost)
+    if cost(start) >= _UNSTABLE:
+        start = min(_grid(searched, first, _SLOWER, _SURER, _LOOSER), key=cost)
     count = len(searched.firsts)
     edges = np.repeat(_FIRST, (count, 1, count))
     for number in range(_ROUNDS):
@@ -95,11 +99,13 @@ def weigh(searched: Regulated, against: Outcome) -> LQG:
     return searched.controller(start)
 
 
-def _grid(searched: Regulated, first: float) -> Iterator[Array]:
+def _grid(
+    searched: Regulated, first: float, shares: tuple[float, ...], trusts: tuple[float, ...], poses: tuple[float, ...]
+) -> Iterator[Array]:
     count = len(searched.firsts)
-    for share in _BANDWIDTHS:
-        for trust in _TRUSTS:
-            for pose in _POSES:
+    for share in shares:
+        for trust in trusts:
+            for pose in poses:
                 yield np.log([share * first] * count + [trust * searched.expected.strokes] + [pose] * count)
 
 
