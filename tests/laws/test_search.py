@@ -260,6 +260,16 @@ def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
     assert loud_enough(quiet, [found], [1e4])[1] is None  # no noise makes that possible
 
 
+def test_a_search_looks_closer_where_a_peak_was_passed():
+    plant = integral_loop().plant
+    seen = view(plant, platform_loops(plant.coordinates), 0.02, (0.0, -0.02, 0.02, -0.05, 0.05))
+    for within, most in ((field(seen, Wish(), {}), 0.2), (field(seen, Wish(), {}, (300.0,)), 0.006)):
+        for variant, frequencies in zip(within.variants, within.frequencies, strict=True):
+            place = np.searchsorted(frequencies, 301.0 * (1.0 + variant.offset))
+            assert frequencies[place] / frequencies[place - 1] - 1.0 < most
+            assert most < 0.01 or frequencies[place] / frequencies[place - 1] - 1.0 > 0.02
+
+
 @pytest.mark.full
 def test_a_balance_settles_on_a_stage_that_no_floor_shakes():
     """Gains of 0.02 were quiet and rejected, by 2 %, up to 1.3 kHz: steps settled after 133 ms, 6 ms without a search."""

@@ -27,6 +27,7 @@ from flexstage.control.tuning.wish import STABLE, Wish, wish_findings
 
 _KINDS = (Kind.PI, Kind.PID, Kind.LQG)
 _TIGHTER = (1.0, 0.97, 0.93)
+_LOOKS = 2
 _UNMET = 0.02
 _CORNERS, _DAMPINGS, _LEADS = np.geomspace(0.3, 12.0, 14), (0.6, 0.8, 1.0, 1.4, 2.0, 3.5), (0.7, 1.2, 2.0, 4.0, np.inf)
 _CALM, _BAND = 1.03, 0.019
@@ -70,21 +71,30 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     require(_growth_findings(seen))
     if asked.kind is Kind.LQG:
         return _find_weights(seen, asked)
-    for within, found in _rounds(seen, asked):
-        controller = _controller(loops, within, found, asked)
-        judged = _judge(seen, wish, controller)
-        if judged.stable and judged.peak <= wish.sensitivity and np.isfinite(far := excess(within, found)):
-            require(_unmet(seen, within, found, far))
-            goal = Goal(None, wish.sensitivity, wish.spread)
-            return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
+    begun: Found | None = None
+    places: tuple[float, ...] = ()
+    for _ in range(_LOOKS):
+        for within, found in _rounds(seen, asked, places, begun):
+            controller = _controller(loops, within, found, asked)
+            judged = _judge(seen, wish, controller)
+            if judged.stable and judged.peak <= wish.sensitivity and np.isfinite(far := excess(within, found)):
+                require(_unmet(seen, within, found, far))
+                goal = Goal(None, wish.sensitivity, wish.spread)
+                return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
+            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset))
+        if begun is None:
+            break
     raise DesignError([_none_found(asked)])
 
 
-def _rounds(seen: View, asked: Asked) -> Iterator[tuple[Field, Found]]:
-    """What is found within the peak of S, then within lower ones: on from the last, and where that does not do, anew."""
-    found = None
+def _rounds(seen: View, asked: Asked, places: tuple[float, ...], begun: Found | None) -> Iterator[tuple[Field, Found]]:
+    """What is found within the peak of S, then within lower ones: on from the last, and where that does not do, anew.
+
+    Frequencies lie dense around `places` [Hz], where what was found before, `begun`, passed the peak between those looked at.
+    """
+    found = begun
     for tighter in _TIGHTER:
-        within = field(seen, replace(asked.wish, sensitivity=1.0 + tighter * (asked.wish.sensitivity - 1.0)), asked.floor)
+        within = field(seen, replace(asked.wish, sensitivity=1.0 + tighter * (asked.wish.sensitivity - 1.0)), asked.floor, places)
         if found is not None:
             yield within, tighten(within, found)
         found = search(seen, within, asked.kind)

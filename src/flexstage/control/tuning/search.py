@@ -89,6 +89,9 @@ _PERIODS, _LEAST_LINES, _MOST_LINES = 12.0, 9, 12
 _PLAIN, _AROUND = 90, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
 """Frequencies: so many evenly in the logarithm, and around each mode by so many half widths: between, |S| of a pole is straight to 3 %."""
 
+_CLOSE = np.linspace(-0.06, 0.06, 25)
+"""Around a peak that was passed between frequencies, so far either side: it moves as the search goes on; half a per cent apart."""
+
 
 @dataclass(frozen=True)
 class Effort:
@@ -163,11 +166,14 @@ class Field:
     allowed: tuple[float, ...] = ()
 
 
-def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum]) -> Field:
-    """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant."""
+def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[float, ...] = ()) -> Field:
+    """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant.
+
+    Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher.
+    """
     drive, cases, sense = seen.loops.drive, variants(wish), seen.loops.sense
     systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
-    own = _frequencies(seen, max(each.offset for each in cases))
+    own = _frequencies(seen, max(each.offset for each in cases), places)
     frequencies = np.stack([own * (1.0 + each.offset) for each in cases])
     plants = np.stack(
         [sense @ systems[each.offset].at(at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
@@ -196,14 +202,15 @@ def _lines(seen: View) -> Array:
     return np.linspace(0.0, 0.5 * rate, 2 ** (power - 1) + 1)
 
 
-def _frequencies(seen: View, highest: float) -> Array:
-    """Evenly in the logarithm, and densely around the modes; up to where all plants' own end below half the rate."""
+def _frequencies(seen: View, highest: float, places: tuple[float, ...]) -> Array:
+    """Evenly in the logarithm, and densely around the modes and `places`; up to where all plants' own end below half the rate."""
     top = 20.0 * float(seen.modes[-1]) if seen.step is None else 0.5 / seen.step
     top *= 0.999 / (1.0 + highest)
     plain = np.geomspace(0.01 * float(seen.modes[0]), top, _PLAIN)
     single = np.append(True, np.diff(seen.modes) > 0.1 * seen.ratios[1:] * seen.modes[1:])
     around = seen.modes[single, None] * (1.0 + seen.ratios[single, None] * _AROUND)
-    every = np.unique(np.append(plain, around))
+    near = np.array(places)[:, None] * (1.0 + _CLOSE)
+    every = np.unique(np.concatenate([plain, around.ravel(), near.ravel()]))
     return every[(every > 0.0) & (every <= top)]
 
 
