@@ -43,6 +43,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.address import quantity_of, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.contact import gaps
+from flexstage.mechanism.mechanism import StrokePath
 from flexstage.mechanism.store import dumps, loads, patch
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -501,7 +502,7 @@ def test_strokes_stress_and_buckling_at_rest_are_those_of_the_workspace(stage):
 def test_a_path_counts_from_where_the_stage_rests_and_tells_how_far_it_is():
     """Two upright leaves sag under 2.5 kg: motion counts from there, as that of the command does, and is the same point by point."""
     stage, told = upright(2.5), []
-    asked = say.Travel(7, "platform.x", "", "1 mm", 3, ())
+    asked = say.Travel(7, "platform.x", "", "1 mm", 3, (), "")
     found = travelled(dumps(stage), "", 1, asked, told.append)
     assert [each.fraction for each in told] == pytest.approx([0.1, 0.7, 1.0])
     assert ([each.request for each in told], told[-1].text) == ([7] * 3, "3 of 3 points")
@@ -516,6 +517,17 @@ def test_a_path_counts_from_where_the_stage_rests_and_tells_how_far_it_is():
     assert curves["platform.x"].tolist() == [0.0, 0.5, 1.0]
     assert abs(curves["platform.z"][0]) < 1e-6 * abs(curves["platform.z"][-1])
     assert rest.displacement()[2] < 0.0
+
+
+def test_a_path_of_the_design_is_brought_as_it_is_stated():
+    """Its own drive, ends, points and loads, whatever stands in the form; one that the design does not state is refused."""
+    text = dumps(replace(upright(2.5), paths={"out": StrokePath("platform.x", ("-1 mm", "1 mm"), 3, {"platform.y": "1 N"})}))
+    assert read(text, "", text).paths == ("out",)
+    found = travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "out"), lambda _: None)
+    curves = {each["name"]: np.frombuffer(base64.b64decode(each["values"]), "<f4") for each in found.motions[0]["course"]["curves"]}
+    assert curves["platform.x"].tolist() == [-1.0, 0.0, 1.0]
+    with pytest.raises(DesignError, match="no such path"):
+        travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "back"), lambda _: None)
 
 
 @on_page

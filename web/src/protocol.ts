@@ -299,7 +299,11 @@ export interface Derive {
   id: number;
 }
 
-/** Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE. */
+/**
+ * Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+ *
+ * `path` names one that the design states, whose drive, ends, points and loads then hold.
+ */
 export interface Travel {
   kind: "travel";
   id: number;
@@ -308,6 +312,7 @@ export interface Travel {
   end: string;
   points: number;
   loads: string[];
+  path: string;
 }
 
 /** Give up the path that is computed. */
@@ -460,6 +465,7 @@ export interface State {
   inputs: string[];
   outputs: string[];
   links: Record<string, number | null>;
+  paths: string[];
   pins: string[];
 }
 

@@ -7,13 +7,16 @@ import type { Studio } from "./studio";
 
 const COORDINATES = ["x", "y", "z", "rx", "ry", "rz"].map((each) => `platform.${each}`);
 
+const PATHS = "paths.";
+
 export class Travel {
   readonly root = h("div", { className: "strip", id: "travel" });
-  private readonly drive = h("select", { ariaLabel: "What is driven" });
+  private readonly drive = h("select", { ariaLabel: "What is driven", change: () => this.turn() });
   private readonly start = h("input", { type: "text", size: 7, placeholder: "at rest", ariaLabel: "from" });
   private readonly end = h("input", { type: "text", size: 7, value: "1 mm", required: true, ariaLabel: "to" });
   private readonly points = h("input", { type: "number", min: 2, max: 201, value: "21", ariaLabel: "points" });
   private readonly load = h("input", { type: "text", size: 16, placeholder: "platform.fy=-20 N", ariaLabel: "loads" });
+  private readonly own = [h("label", {}, "from ", this.start), h("label", {}, "to ", this.end), h("label", {}, this.points, " points"), h("label", {}, "under ", this.load)];
   private readonly go = h("button", { type: "submit" }, "compute");
   private readonly stop = h("button", { type: "button", hidden: true, click: () => void this.studio.ask({ kind: "halt" }) }, "cancel");
   private readonly busy = h("progress", { ariaLabel: "path", hidden: true });
@@ -32,7 +35,7 @@ export class Travel {
     const form = h(
       "form",
       { className: "bar", submit: (event: Event) => { event.preventDefault(); void this.ask(); } },
-      this.drive, h("label", {}, "from ", this.start), h("label", {}, "to ", this.end), h("label", {}, this.points, " points"), h("label", {}, "under ", this.load), this.go, this.stop, this.busy,
+      this.drive, ...this.own, this.go, this.stop, this.busy,
     );
     fill(this.root, form, this.player, this.about, this.curves);
     fill(this.about, h("span", { className: "quiet" }, "At large displacements and under its weight: bodies and leaves where they truly are. Strokes count from where the stage rests under its loads."));
@@ -43,16 +46,30 @@ export class Travel {
     studio.mode.watch((mode) => mode !== null && this.leave(""));
   }
 
+  /** What can be driven; the design's own paths first. */
   private offer(): void {
-    const names = [...COORDINATES, ...(this.studio.state.value?.actuators.map((each) => each.name) ?? [])];
-    if (names.length === this.drive.options.length) return;
+    const state = this.studio.state.value, held = this.drive.value;
+    const names = [...(state?.paths.map((each) => PATHS + each) ?? []), ...COORDINATES, ...(state?.actuators.map((each) => each.name) ?? [])];
+    if (names.join() === [...this.drive.options].map((each) => each.value).join()) return;
     this.drive.replaceChildren(...names.map((each) => new Option(each)));
+    if (names.includes(held)) this.drive.value = held;
+    this.turn();
+  }
+
+  /** The name of a path that the design states, which says ends and loads itself. */
+  private get path(): string {
+    return this.drive.value.startsWith(PATHS) ? this.drive.value.slice(PATHS.length) : "";
+  }
+
+  private turn(): void {
+    for (const each of this.own) each.hidden = this.path !== "";
+    this.end.required = this.path === "";
   }
 
   private async ask(): Promise<void> {
     this.wait(true);
     const loads = this.load.value.split(",").map((each) => each.trim()).filter(Boolean);
-    const said = await this.studio.ask({ kind: "travel", drive: this.drive.value, start: this.start.value.trim(), end: this.end.value.trim(), points: Number(this.points.value), loads });
+    const said = await this.studio.ask({ kind: "travel", drive: this.drive.value, start: this.start.value.trim(), end: this.end.value.trim(), points: Number(this.points.value), loads, path: this.path });
     this.wait(false);
     if (said.kind === "travelled") this.show(said);
     else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" ")) : "Cancelled.");

@@ -58,6 +58,7 @@ class Reading:
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     links: Mapping[str, int | None] | None = None
+    paths: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

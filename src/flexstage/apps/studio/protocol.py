@@ -356,7 +356,10 @@ class Derive:
 
 @dataclass(frozen=True)
 class Travel:
-    """Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE."""
+    """Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+
+    `path` names one that the design states, whose drive, ends, points and loads then hold.
+    """
 
     id: int
     drive: str
@@ -364,6 +367,7 @@ class Travel:
     end: str
     points: int
     loads: tuple[str, ...]
+    path: str
 
 
 @dataclass(frozen=True)
@@ -535,6 +539,7 @@ class State:
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     links: dict[str, int | None]
+    paths: tuple[str, ...]
     pins: tuple[str, ...]
 
 

@@ -80,6 +80,7 @@ def read(text: str, file: str, stored: str) -> Reading:
         (*assembly.strokes, *assembly.thrusts, *_sixfold((GROUND,), COMPONENTS), *_sixfold((PLATFORM, *assembly.points), FORCES)),
         (*_sixfold((PLATFORM, *assembly.points), COMPONENTS), *assembly.gauges),
         link_lines(found, lines),
+        tuple(found.paths),
     )
 
 

@@ -430,6 +430,7 @@ class Session:
                 inputs=reading.inputs,
                 outputs=reading.outputs,
                 links=dict(reading.links or {}),
+                paths=reading.paths,
                 pins=tuple(history.pins),
             )
         )

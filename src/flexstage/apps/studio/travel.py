@@ -6,13 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexstage.analysis.course import Course
+from flexstage.analysis.course import Course, course
 from flexstage.analysis.stroke import stroke
 from flexstage.apps.studio.protocol import Travel, Travelled, Underway
 from flexstage.apps.studio.reading import design, problems_of
-from flexstage.base.finding import refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.unit import parse
-from flexstage.models.nonlinear.stage import nonlinear
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.displaced import loads_of, quantity_of
 from flexstage.show.viewer.course import stroke_data
 
@@ -23,21 +24,32 @@ _FOUND = 0.1
 
 def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable[[Underway], None]) -> Travelled:
     """A path of the design that a text says, counted from where the stage rests, as the viewer plays it; `tell` hears how far it is."""
-    if not 2 <= asked.points <= _MOST:
-        raise refuse("points", f"{asked.points} points were asked for", f"Ask for 2 to {_MOST}")
     mechanism = design(text, file)
     model = nonlinear(mechanism)
-    quantity = quantity_of(model, asked.drive)
-    low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
-    wanted = Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)
+    wanted = _stated(mechanism, asked.path) if asked.path else _own(model, asked)
+    count = len(wanted.values)
     rest = wanted.rest(model)
     found = wanted.path(model, rest)
 
     def done(points: int) -> None:
-        share = _FOUND + (1.0 - _FOUND) * points / asked.points
-        tell(Underway(asked.id, share, f"{points} of {asked.points} points"))
+        tell(Underway(asked.id, _FOUND + (1.0 - _FOUND) * points / count, f"{points} of {count} points"))
 
     done(0)
     told = stroke(found, rest, told=done)
     shown = stroke_data(mechanism, found, told).document()
     return Travelled(asked.id, revision, shown["motions"], problems_of(told.cautions, text, file))
+
+
+def _stated(mechanism: Mechanism, name: str) -> Course:
+    if name not in mechanism.paths:
+        raise refuse(f"paths.{name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+    return course(mechanism, name)
+
+
+def _own(model: Nonlinear, asked: Travel) -> Course:
+    """A path that the page states."""
+    if not 2 <= asked.points <= _MOST:
+        raise refuse("points", f"{asked.points} points were asked for", f"Ask for 2 to {_MOST}")
+    quantity = quantity_of(model, asked.drive)
+    low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
+    return Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)
