@@ -15,9 +15,23 @@ from flexstage.control.closed import Cut, loop
 from flexstage.control.electronics import hardware
 from flexstage.control.noise import noise_budget
 from flexstage.control.plants import Plant
+from flexstage.control.simulation.machine import machine, without_limits
+from flexstage.control.simulation.run import simulate
 from flexstage.control.stability_margins import bandwidths, peaks
-from flexstage.control.study.choices import Criterion
-from flexstage.control.study.setup import Floor, LoopSetup, VibrationSetup
+from flexstage.control.study.choices import Criterion, Following
+from flexstage.control.study.control import make_controller
+from flexstage.control.study.resolve import on_test, resolve
+from flexstage.control.study.runs import runs
+from flexstage.control.study.setup import (
+    ControllerSetup,
+    Floor,
+    FollowSetup,
+    GaugeSetup,
+    LoopSetup,
+    Motion,
+    SineMotion,
+    VibrationSetup,
+)
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.local_responses import local_responses
@@ -92,6 +106,23 @@ def test_a_loop_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> Non
         assert each.high is not None
         assert each.low < each.value < each.high
         assert each.low < each.fitted < each.high
+
+
+def test_the_inverse_of_what_a_test_found_is_that_of_the_truth() -> None:
+    """A sine of 60 Hz below a bandwidth of 100 Hz: what is left of its error is the gauge's own lag, which is told with the motion."""
+    path, quiet = SineMotion(frequency=60.0, by=Motion(x=3e-6), periods=2), GaugeSetup(noise=0.0, resolution=0.0)
+    asked = LoopSetup(trajectory=path, gauges=quiet, controller=ControllerSetup(bandwidth=100.0), follow=FollowSetup(Following.INVERSE))
+    given = on_test(resolve(parallelogram(), asked), recorded().found)
+    control = make_controller(given, given.plant.coordinates.strokes)
+    (run,) = runs(given, control, loop(given.plant, control.system))
+    assert run.commanded is not None
+    count = len(run.simulated.times)
+    rest = (len(run.commanded) - count) // 2
+    stage = resolve(parallelogram(), replace(asked, delay=160e-6, follow=None))
+    known = without_limits(machine(stage.whole, control.system))
+    wanted = np.concatenate([np.zeros((rest, 1)), run.simulated.reference, np.zeros((rest, 1))])
+    lagged, plain = (np.std((wanted - simulate(known, each).pose)[rest : rest + count]) for each in (run.commanded, wanted))
+    assert lagged < 0.01 * plain
 
 
 @pytest.mark.full
