@@ -25,13 +25,20 @@ from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.view import View, resonances
 
 _HIGH = 0.3
+"""Gain of a loop at a mode from which on it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
 _AGREES = 0.005
+"""Relative difference of a crossing that counts as none: half of the 1 % within which a bandwidth is reached."""
 _TRUST = (1.0, 30.0, 1000.0)
+"""How many times the expected noise the strokes of an observer have, tried in turn: the more, the less it trusts its model."""
 _ROUNDS = 8
 _AROUND = 4.0
+"""Rounds in which the weights of LQG follow where loops pass 1; by how much at most, and how far above the bandwidth that is looked for."""
 _EQUAL = 1e-9
+"""Relative difference of responses below which loops are the same, as those of symmetric stages are but for rounding."""
 _WRONG = 1e6
+"""Score of what is no loop at all, far above any peak of S."""
 _WIDTHS = (0.4, 0.6, 0.9, 1.4)
+"""Dampings of notches' poles that are tried: the gain is below 0.7 over about twice that share of the frequency."""
 _Sets: TypeAlias = tuple[tuple[Notch, ...], ...]
 _Options: TypeAlias = tuple[_Sets, ...]
 

@@ -14,14 +14,20 @@ from flexstage.control.tuning.shape import Shape
 _BAND, _BAND_OFF = 0.0172, 0.0185
 """Within which steps are settled, of the model and of modes that are off: less than the 2 % that are shown, for rounding of gauges."""
 STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
+"""Weights: a bound passed by 3 % counts as much as all noise; a step outside its band by a tenth of the band as a bound passed by 1 %."""
 _KEPT = 0.01
+"""What is passed by less counts as kept: frequencies that are looked at let no more be told."""
 _BELOW = 0.985
 """What |S| is kept below where disturbances are to be rejected."""
 _LESS = 0.95
+"""Share of the rejection that modes which are off have to leave."""
 _SAMPLES = 512
+"""Samples of a step of which derivatives are worked out."""
 _LONGEST = 0.7
+"""No number changes by more than a factor of 2 in one step of the descent: the squares are no parabola farther off."""
 _DAMPINGS = (1e-6, 1e6)
 _STIFFER, _SOFTER = 4.0, 3.0
+"""Ends of Levenberg and Marquardt's damping, and how it grows and falls."""
 
 
 @dataclass(frozen=True)

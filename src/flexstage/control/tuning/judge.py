@@ -15,6 +15,7 @@ from flexstage.models.linear.model import Channel
 
 _ROUNDING = 1e-9
 _COARSE = 8
+"""Every so many-th frequency is looked at first: what passes the peak there need not be looked at further."""
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:

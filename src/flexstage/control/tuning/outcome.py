@@ -15,6 +15,7 @@ from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel
 
 _BAND = 0.02
+"""Within which steps are settled."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,10 @@ from flexstage.control.controllers.pid import PID
 
 _GAIN = 1e4
 _MOVED = 2.5
+"""By what factors gains and places of notches may move from a start."""
 _DEEPEST, _NARROWEST, _WIDEST = 1e-3, 0.03, 6.0
 _BELOW = 0.45
+"""Least depth and damping of notches, largest damping, and the highest place over the sampling rate: Tustin's rule is a notch there."""
 
 
 @dataclass(frozen=True)

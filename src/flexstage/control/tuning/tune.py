@@ -17,15 +17,22 @@ from flexstage.control.tuning.goal import Judgement, Kind, Tuning, goal_findings
 from flexstage.control.tuning.view import View, view
 
 _SLOWEST = 0.002
+"""Least bandwidth that is tried, over the first mode: slower ones serve nobody."""
 _FASTEST = 5.0
+"""Highest bandwidth that is tried, over the last mode that loops move: a stage of stacks has 1/24 of its gain there."""
 _FASTEST_BY_FORCE = 100.0
 """A force moves a mass above its resonance as if nothing held it: a low resonance bounds nothing."""
 _OF_RATE = 0.2
+"""The same over the sampling rate: hold and one sample of delay turn by 360 * 0.2 * 1.5 = 108 deg there, more than laws make up for."""
 _FINE = 0.05
 _STEPS, _STEPS_OF_LQG = (1.3, 2.0), (1.6, 4.0)
+"""Ratios of bandwidths tried in turn, above 0.05 of the first mode and below, where less depends on them; LQG takes longer."""
 _WITHIN = 1.01
+"""Within which the highest bandwidth is found."""
 _NOTICED = 20.0
+"""Lag of hold and delay [deg] from which on faster samples are advised."""
 _CALM = (0.9, 0.8, 0.7, 0.6)
+"""Shares of the peak allowed that single loops may have while integrators get stronger: loops do something to one another."""
 
 
 def tune(plant: Plant, loops: Loops, task: Task) -> Tuning:

@@ -17,10 +17,14 @@ from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
 
 _PLAIN = 400
+"""Frequencies evenly in the logarithm: 2 to 4 % apart."""
 _AROUND = 21
+"""Frequencies around each mode, at even steps of the turn of its resonance from -1.5 to 1.5 rad."""
 _SAME = 0.01
 _REPEATED = 0.1
+"""Modes closer than 1 % stand out as one; those closer than a tenth of their half width need frequencies once."""
 _STANDS_OUT = 2.0
+"""How many times the gain eight half widths away that of a mode is which stands out."""
 
 
 @dataclass(frozen=True, eq=False)
