@@ -66,16 +66,18 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table:
-    """What each freedom that a simpler theory leaves out costs.
+    """What each freedom that a simpler theory leaves out costs; those of which rounding alone is seen stand together as one.
 
-    >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1})).texts()[1]
-    ['simple theory', '2', '']
+    >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1, "lever.x": 1e-15})).texts()[2:4]
+    [['lever.rz', '-0.1', '-5.26 %'], ['further freedoms', '+0', '0 %']]
     """
+    least = NOISE * abs(found.full)
     ranked = sorted(found.changes.items(), key=lambda item: -abs(round(item[1] / found.full, 9)))
+    seen = [(name, change) for name, change in ranked[:top] if abs(change) >= least]
     rows: list[tuple[Cell | str, ...]] = [(Cell("simple theory", Mark.STRONG), number(found.simple), "")]
-    rows += [(Cell(name), f"{change:+.4g}", percent(change / found.full, 3)) for name, change in ranked[:top]]
-    rest = sum(change for _, change in ranked[top:])
-    rows += [(Cell("further freedoms"), f"{rest:+.4g}", percent(rest / found.full, 3))] if ranked[top:] else []
+    rows += [(Cell(name), f"{change:+.4g}", percent(change / found.full, 3)) for name, change in seen]
+    rest = sum(change for _, change in ranked[len(seen) :] if abs(change) >= least)
+    rows += [(Cell("further freedoms"), f"{rest:+.4g}", percent(rest / found.full, 3))] if ranked[len(seen) :] else []
     rows += [(Cell("their interaction"), f"{found.interaction:+.4g}", percent(found.interaction / found.full, 3))]
     rows += [(Cell("full theory", Mark.STRONG), Cell(number(found.full), Mark.STRONG), "")]
     title = f"What the simple theory omits: {found.output} over {found.input}"
