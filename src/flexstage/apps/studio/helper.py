@@ -124,22 +124,32 @@ class Helper:
                 task.answer.set_result(outcome)
 
     async def _do(self, task: _Task) -> Outcome | None:
-        """What comes of a task; where the process dies over it, that; nothing where it was given up."""
-        done: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
-        self._now, self._since = (task, done), time.monotonic()
+        """What comes of a task; where the process dies over it, that; nothing where it was given up.
+
+        A process that has done other tasks may have died of something else: then it is tried again in a new one.
+        """
+        is_new = self._worker is None
         try:
-            if self._worker is None:
-                self._worker = self._start()
-            await asyncio.to_thread(self._worker.ask, *task.call)
-            return await done
+            return await self._attempt(task)
         except EOFError as error:
             if self._given_up:
                 return None
+            if not is_new:
+                return await self._do(task)
             return Outcome(None, (Problem(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
         except OSError as error:
             return Outcome(None, (Problem(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
         finally:
             self._now, self._given_up = None, False
+
+    async def _attempt(self, task: _Task) -> Outcome:
+        """What comes of a task; raises `EOFError` where the process ends over it, `OSError` where none starts."""
+        done: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
+        self._now, self._since = (task, done), time.monotonic()
+        if self._worker is None:
+            self._worker = self._start()
+        await asyncio.to_thread(self._worker.ask, *task.call)
+        return await done
 
     def _start(self) -> Worker:
         heard: Heard = queue.SimpleQueue()
