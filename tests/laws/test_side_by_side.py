@@ -94,6 +94,13 @@ def test_what_is_read_off_responses_is_what_the_whole_loop_says():
     assert half.floor[0] == pytest.approx(floor, rel=0.05)
 
 
+def test_settling_is_told_of_no_step_that_lasts_longer_than_what_is_looked_at():
+    """A slow integrator's step is led to its end by the lines that are looked at; as it stands the simulation tells."""
+    found = rival_of(loop_study(parallelogram(), LoopSetup(controller=ControllerSetup(integral=40.0))))
+    assert found.turned.settling[0] == found.settling[0] == pytest.approx(np.log(50.0) / 40.0, rel=0.02)
+    assert np.all(np.isnan(found.turned.settling[1:]))
+
+
 def test_the_report_has_the_front_and_every_motion():
     line = np.geomspace(1.0, 0.1, 3)
     found = Comparison(

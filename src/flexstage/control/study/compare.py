@@ -33,8 +33,8 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
-_SEEN = 0.97
-"""Share of the length of a step after which it counts as not settled within it."""
+_SEEN = 0.75
+"""Share of the length of a step after which it counts as not settled within it: lines of a spectrum lead slow ones to their end."""
 _TURNED = np.geomspace(1.0, 0.1, 9)
 """Gains by which the output of a controller is multiplied for the front: a tenth is slower by ten, and quiet."""
 
