@@ -7,7 +7,7 @@ held, to a wrench on each body and to each stroke: statics under these loads is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import ngsolve
 import numpy as np
@@ -58,6 +58,23 @@ class _Problem:
     solve: Solver
 
 
+@dataclass(frozen=True, eq=False)
+class _Motions:
+    """The `basis` (n, k) that a component moves in: so many columns of `faces`, of their `warps`, then those within; what loads it.
+
+    Neither matrix nor factor is kept: they are as large as all else that is still to be made.
+    """
+
+    component: Component
+    field: Field
+    inertia: Inertia
+    basis: Array
+    faces: int
+    warps: int
+    strokes: Mapping[int, Array]
+    seats: Mapping[str, Array]
+
+
 def reduce_mesh(
     component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None = None, report: Report = silent
 ) -> Superelement:
@@ -75,9 +92,13 @@ def reduce_mesh(
     >>> round(float(element.stiffness["bar"][0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
+    return _project(_motions(component, mesh, reduction, springs, report), report)
+
+
+def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None, report: Report) -> _Motions:
     problem = _problem(component, mesh, reduction, report)
     report(Stage.REDUCING, 0.0)
-    strokes = {str(number): force for number, force in _strokes(problem).items()}
+    strokes = _strokes(problem)
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
     loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
@@ -88,7 +109,8 @@ def reduce_mesh(
         problem, [_modes(problem, reduction.modes, springs), *([problem.solve(np.hstack(loads))] if loads else [])]
     )
     basis = np.hstack([problem.faces, problem.warps, inner])
-    return replace(_project(problem, basis, strokes, report), seats={number: rows @ basis for number, rows in seats.items()})
+    faces, warps = problem.faces.shape[1], problem.warps.shape[1]
+    return _Motions(component, problem.field, problem.inertia, basis, faces, warps, strokes, seats)
 
 
 def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report: Report) -> _Problem:
@@ -109,7 +131,7 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
     }
 
 
-def _elements(problem: _Problem, name: str) -> Array:
+def _elements(problem: _Problem | _Motions, name: str) -> Array:
     return np.isin(problem.field.meshed.owner, groups(problem.component)[name])
 
 
@@ -170,15 +192,15 @@ def _independent_columns(problem: _Problem, motions: list[Array]) -> Array:
     return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
 
 
-def _project(problem: _Problem, basis: Array, strokes: Mapping[str, Array], report: Report) -> Superelement:
-    component, space = problem.component, problem.field
+def _project(found: _Motions, report: Report) -> Superelement:
+    component, space, basis = found.component, found.field, found.basis
     elastic: dict[str, Array] = {}
     mass: dict[str, Array] = {}
     bodies: dict[str, Array] = {}
     moving: dict[str, Array] = {}
     resultants: dict[str, Array] = {}
     names = groups(component)
-    wholes = {name: _elements(problem, name) for name in names}
+    wholes = {name: _elements(found, name) for name in names}
     for number, part in enumerate(contributions(space, wholes, basis)):
         report(Stage.PROJECTING, number / len(names))
         name = part.name
@@ -188,47 +210,48 @@ def _project(problem: _Problem, basis: Array, strokes: Mapping[str, Array], repo
             own = motion.T @ inertia(space, wholes[name]).times(motion)
             bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetrise(own)
         else:
-            resultants[name] = _sections(problem, names[name][0])[part.rows].T @ part.forces
+            resultants[name] = _sections(found, names[name][0])[part.rows].T @ part.forces
     everything = rigid(space, identity())
-    carried = basis.T @ problem.inertia.times(everything)
-    projected = {int(number): basis.T @ force for number, force in strokes.items()}
+    carried = basis.T @ found.inertia.times(everything)
+    projected = {number: basis.T @ force for number, force in found.strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces) + component.floats,
-        warps=problem.warps.shape[1],
+        warps=found.warps,
         stiffness={name: elastic[name] for name in names},
         inertia={name: mass[name] for name in names},
         bodies=bodies,
         body_inertia=moving,
         resultants=resultants,
         strokes={component.pieces[number].name: force for number, force in projected.items()},
-        free_strokes={component.pieces[number].name: _free_stroke(problem, number, force) for number, force in projected.items()},
+        free_strokes={component.pieces[number].name: _free_stroke(found, number, force) for number, force in projected.items()},
         rigid=_rigid_coordinates(component, basis.shape[1]),
         carried=carried,
         skin=skin(space, basis),
         freedoms=space.size,
         elements=space.meshed.mesh.ne,
+        seats={number: rows @ basis for number, rows in found.seats.items()},
     )
 
 
-def _sections(problem: _Problem, number: int) -> Array:
+def _sections(found: _Motions, number: int) -> Array:
     """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others rest.
 
     The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
     """
-    piece = problem.component.pieces[number]
-    along = (centroids(problem.field.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
-    beyond = degrees_of(problem.field, (problem.field.meshed.owner == number) & (along > 0.0))
-    return rigid(problem.field, piece.frame) * beyond[:, None]
+    piece, space = found.component.pieces[number], found.field
+    along = (centroids(space.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
+    beyond = degrees_of(space, (space.meshed.owner == number) & (along > 0.0))
+    return rigid(space, piece.frame) * beyond[:, None]
 
 
-def _free_stroke(problem: _Problem, number: int, force: Array) -> Array:
+def _free_stroke(found: _Motions, number: int, force: Array) -> Array:
     """Coordinates that strain a stack as its unconstrained stroke does: its end caps moved apart by the stroke, and what follows within.
 
     Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
     """
-    component = problem.component
+    component = found.component
     piece, result = component.pieces[number], np.array(force)
-    result[: problem.faces.shape[1] + problem.warps.shape[1]] = 0.0
+    result[: found.faces + found.warps] = 0.0
     ends = [(place, item.joint.frame) for place, item in enumerate(component.interfaces) if item.joint.link == piece.name]
     for place, frame in ends:
         outward = float(np.sign((frame.position - piece.frame.position) @ piece.frame.rotation[:, 0]))
