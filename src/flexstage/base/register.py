@@ -65,6 +65,11 @@ def origin(module: str) -> str:
     return "" if module.startswith(PREFIX) else _origin(module.partition(".")[0])
 
 
+def offered_packages() -> tuple[str, ...]:
+    """Names and versions of all installed packages that offer something, sorted."""
+    return tuple(sorted({_distribution(offer) for group in GROUPS for offer in _offered(group)}))
+
+
 @functools.cache
 def _origin(package: str) -> str:
     offers = [offer for group in GROUPS for offer in _offered(group) if offer.module.partition(".")[0] == package]

@@ -13,6 +13,7 @@ import typer
 
 from flexstage.analysis.pairing import Pair
 from flexstage.analysis.standing import require_standing
+from flexstage.analysis.units import driven_units
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.record import SideBySide
@@ -67,6 +68,7 @@ from flexstage.solid.tables import (
     verdict_table_of,
     verification_table,
 )
+from flexstage.solid.verified import Known, recall, retain
 from flexstage.solid.what import What
 
 Scope: TypeAlias = Annotated[
@@ -170,15 +172,16 @@ def verify(  # noqa: PLR0913 (its options)
     """
     asked = _request(accuracy, order, memory)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    require_standing(mechanism)
-    with progress_bar() as shown:
-        found = _verify(mechanism, asked, shown)
-    read = [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
-    cautions = (
-        *free_end_cautions(mechanism),
-        *_inexact_hinges(found.hinges),
-        *(caution for name, each in read for caution in _accuracy_cautions(name, each, asked.resolution)),
-    )
+    known = recall(mechanism, asked.resolution, Cache()) if report is None and asked.memory is None else None
+    if known is None:
+        require_standing(mechanism)
+        with progress_bar() as shown:
+            found = _verify(mechanism, asked, shown)
+        cautions = _verification_cautions(found, asked)
+        _retain(found, cautions, asked)
+    else:
+        print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
+        found, cautions = known.of(mechanism), known.cautions
     if report is not None:
         units = None if found.units is None else unit_section(found.units)
         stage = None if found.stage is None else stage_solid_section(found.stage)
@@ -198,6 +201,26 @@ def verify(  # noqa: PLR0913 (its options)
         cautions=cautions,
         beside=(report,),
     )
+
+
+def _verification_cautions(found: verification.Verification, asked: _Request) -> tuple[Finding, ...]:
+    return (
+        *free_end_cautions(found.mechanism),
+        *_inexact_hinges(found.hinges),
+        *(caution for name, each in _solids_of(found) for caution in _accuracy_cautions(name, each, asked.resolution)),
+    )
+
+
+def _solids_of(found: verification.Verification) -> list[tuple[str, Converged[Any]]]:
+    return [(name, each) for name, each in (("units", found.units), ("stage", found.stage)) if each is not None]
+
+
+def _retain(found: verification.Verification, cautions: tuple[Finding, ...], asked: _Request) -> None:
+    """Keep what a verification tells, where the description and what was asked alone decide on it, not the memory that there was."""
+    failed = found.units is None and bool(driven_units(found.mechanism))
+    notes = tuple(f"{name}: {_accuracy_text(each)}" for name, each in _solids_of(found) if each.error <= asked.resolution.accuracy)
+    if asked.memory is None and not failed and not any(each.stopped for _, each in _solids_of(found)):
+        retain(Known(found.rows, dict(found.reasons), cautions, notes), found.mechanism, asked.resolution, Cache())
 
 
 def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verification.Verification:

@@ -35,7 +35,7 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None) -> tuple[Finding, 
 
     Those with imported solids are not: their files may change.
     """
-    mark = None if cache is None or _imports(mechanism) else _mark(mechanism, cache)
+    mark = None if cache is None or has_imports(mechanism) else _mark(mechanism, cache)
     if mark is not None and mark.is_file():
         return ()
     found = contact_apart(mechanism)
@@ -50,6 +50,7 @@ def _mark(mechanism: Mechanism, cache: Cache) -> Path:
     return folder_of(cache) / f"{digest(mechanism, physics=True)[:32]}-{versions('contact').digest}.sound"
 
 
-def _imports(mechanism: Mechanism) -> bool:
+def has_imports(mechanism: Mechanism) -> bool:
+    """Whether some of a stage's solids stand in files of their own."""
     bodies = [*mechanism.bodies.values(), *(body for unit in mechanism.units.values() for body in unit.bodies.values())]
     return any(isinstance(solid, Imported) for body in bodies for solid in body.solids.values())
