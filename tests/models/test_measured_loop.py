@@ -173,6 +173,20 @@ def test_a_record_of_another_stage_is_refused() -> None:
         loop_study(parallelogram(), SETUP, test=Identification(found.responses, volts))
 
 
+def test_a_record_without_a_mode_is_refused() -> None:
+    found = recorded().found
+    none = replace(
+        found,
+        frequencies=found.frequencies[:0],
+        damping=found.damping[:0],
+        shapes=found.shapes[:, :0],
+        participation=found.participation[:0],
+        close=(),
+    )
+    with pytest.raises(DesignError, match="no mode is found in it"):
+        loop_study(parallelogram(), SETUP, test=replace(recorded(), found=none))
+
+
 def test_a_record_without_coherence_where_the_loop_is_tuned_is_refused() -> None:
     seen = recorded()
     assert seen.multiple is not None

@@ -103,7 +103,7 @@ def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
     seen = found.real_shapes[[[channel.name for channel in found.outputs].index(name) for name in names]]
     assurance = np.array(
         [[_assurance(seen[:, row], shapes, given.frequencies, column) for column in range(len(kept))] for row in range(seen.shape[1])]
-    )
+    ).reshape(seen.shape[1], len(kept))
     apart = np.abs(np.log(found.frequencies[:, None] / given.frequencies))
     solved: Any = assignment(1.0 - assurance + apart)
     good = (assurance[solved] > _ALIKE) & (apart[solved] < _APART)
