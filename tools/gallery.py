@@ -14,21 +14,18 @@ from threadpoolctl import threadpool_limits
 
 import flexstage as fs
 from flexstage.analysis.judge import judge
-from flexstage.base.quantity import Quantity
-from flexstage.base.unit import show
 from flexstage.cases.case import Case, Shipped
 from flexstage.cases.file_case import file_text
 from flexstage.cases.registry import CASES, case
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
-from flexstage.show.display import display_unit, format_value
+from flexstage.show.tables.requirements import quantity_text
 from tools.validation.row import paragraph, table
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "gallery.md"
 ALIKE = ("double-triangle-a", "double-triangle-refitted", "xy-stage-floating", "tip-tilt-four")
 """Variants of others, which the gallery leaves out."""
 
-_UNREADABLE = 0.01
 SHOWN = tuple(name for name in CASES if name not in ALIKE)
 _PRINTED = ("telescope-mount", "mirror-mount", "leaf-guide", "resonator", "quad-suspension")
 _INTRODUCTION = """\
@@ -77,13 +74,7 @@ def _numbers(name: str) -> Iterator[tuple[str, str]]:
     yield "platform's modes", ", ".join(f"{each:.4g}" for each in modes.platform_frequencies) + " Hz"
     for verdict in judge(stage):
         asked = verdict.requirement
-        yield f"`{asked.key}` {asked.text}", _shown(float(verdict.value), asked.quantity)
-
-
-def _shown(value: float, quantity: Quantity) -> str:
-    """In the quantity's own unit, unless the number would become unreadable."""
-    form = display_unit(quantity)
-    return show(value, quantity, digits=4) if abs(value * form.factor) >= _UNREADABLE or not value else format_value(value, quantity.si, 4)
+        yield f"`{asked.key}` {asked.text}", quantity_text(float(verdict.value), asked.quantity, 4)
 
 
 if __name__ == "__main__":

@@ -112,6 +112,14 @@ def test_measures_along_no_path_are_refused(key: str):
         measure(stage(), key, "here")
 
 
+def test_where_the_stage_is_not_stable_it_has_no_frequencies_and_that_is_said():
+    """Pressed by one and a half times what its guided leaves bear."""
+    pressed = stage(out=replace(OUT, points=2, hold={"platform.x": f"{-3.0 * np.pi**2 * UNIT:.6g} N"}))
+    found = {each.requirement.key: each for each in judge(pressed)}["frequency.1 over out"]
+    assert found.value is None
+    assert "at 2 of its 2 points the free stage is not stable" in found.reason
+
+
 def test_what_stays_on_a_path_stays():
     """A locked rotation does not turn, gravity off is no weight."""
     locked = course(

@@ -546,10 +546,20 @@ def over(kind: MeasureKind) -> MeasureKind:
 
     @_each_design
     def least(bench: Bench, asked: Measure) -> float:
-        return float(np.min(kind.value(bench.over(asked.path), asked)))
+        along = bench.over(asked.path)
+        if kind.quantity is FREQUENCY:
+            _require_frequencies(along.modes.frequencies[..., 0], asked.path)
+        return float(np.min(kind.value(along, asked)))
 
     least.__doc__ = (inspect.getdoc(kind.work) or "").partition(".\n")[0].rstrip(".") + ", the least over a path."
     return replace(kind, form=f"{kind.form}{_OVER}", work=least, softening=0.0, extreme=None)
+
+
+def _require_frequencies(lowest: Array, path: str) -> None:
+    loose = int(np.sum(np.isnan(lowest)))
+    if loose:
+        what = f"at {loose} of its {lowest.size} points the free stage is not stable, and has no frequencies"
+        raise refuse(f"paths.{path}", what, f"Ask flexstage stroke --path {path} where; lighten what it holds, or lock what leaves")
 
 
 _OVER = " over <path>"

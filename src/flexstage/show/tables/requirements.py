@@ -8,8 +8,10 @@ import numpy as np
 
 from flexstage.analysis.requirements import Verdict
 from flexstage.base.quantity import Quantity
-from flexstage.show.display import field_unit, format_value, number, percent
+from flexstage.show.display import DIGITS, field_unit, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
+
+_LEAST = 0.01
 
 
 def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
@@ -92,18 +94,20 @@ def value_text(verdict: Verdict) -> str:
     return quantity_text(float(first_design(np.atleast_1d(verdict.value), 1)[0]), verdict.requirement.quantity)
 
 
-def quantity_text(value: float, quantity: Quantity) -> str:
-    """An SI value of a quantity in the unit the quantity is shown in.
+def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
+    """An SI value of a quantity in the unit the quantity is shown in, in a smaller one where there is less than a hundredth of it.
 
     >>> from flexstage.base.quantity import STIFFNESS
-    >>> quantity_text(17e6, STIFFNESS)
-    '17 N/um'
+    >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)
+    ('17 N/um', '420 N/m')
     """
     try:
         form = field_unit(quantity)
     except KeyError:
-        return format_value(value, quantity.si)
-    text = number(value * form.factor)
+        return format_value(value, quantity.si, digits)
+    if 0.0 < abs(value * form.factor) < _LEAST:
+        return format_value(value, quantity.si, digits)
+    text = number(value * form.factor, digits)
     return text if form.unit == "1" else f"{text} {form.unit}"
 
 
