@@ -24,7 +24,7 @@ _LEAST_DAMPED = 0.01
 _MOVED = 1e-3
 _FORCE_NOTE = (
     "Without stacks: frequency z without their axial stiffness. Most: (w - z)/(2 z), of one leg or decoupled ones. Alone: by this gain, "
-    "no other mode near and none of its own damping."
+    "no other mode near, none of its own damping and no lag of the amplifier."
 )
 _BANDWIDTH_NOTE = "Follows to: the true motion is 3 dB below its reference. Rejects to: |S| passes 1, disturbances above it are made worse."
 _MARGIN_NOTE = (
