@@ -1,12 +1,17 @@
-"""How cost grows: with bodies, with designs and with samples; a process each size, seconds of processor and memory.
+"""How cost grows: with bodies, designs, samples, hinges as solids and workers of a cluster; a process each size, seconds and memory.
 
-    python benchmarks/growth.py [bodies | designs | samples] [SIZES ...] [--figure FILE]
+    python benchmarks/growth.py [bodies | designs | samples | hinges | workers] [SIZES ...] [--figure FILE]
 
 Bodies: models, statics, modes and drift of coiled chains. What bounds each: expanding the description and the links' operators grow with
 the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some 300 solves of it. Below 60 bodies matrices are
 dense. Designs: six platform frequencies of the shipped stage over four numbers, features fitted once; what is found is let go, as a study
 writes it.
 Samples: spectra of one drive and one reading, taken from a source that makes them as they are asked for, in segments of a second.
+Hinges: the 6x6 of so many notches by finite elements to 1 %, all of another thickness, none from a cache.
+Workers: a sweep of 200,000 designs of the shipped stage by a Dask cluster of so many processes on this machine.
+
+Seconds are those of the processor, all processes together, and in the last column but one those that went by; memory is that of the largest
+process.
 """
 
 from __future__ import annotations
@@ -20,6 +25,7 @@ import itertools
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -28,14 +34,18 @@ SIZES = {
     "bodies": (10, 30, 100, 300, 1000, 3000, 10000),
     "designs": (10**3, 10**4, 10**5, 10**6, 10**7),
     "samples": (10**4, 10**5, 10**6, 10**7, 10**8),
+    "hinges": (1, 3, 10, 30, 100),
+    "workers": (1, 2, 4, 8),
 }
 STEPS = {
     "bodies": ("describe", "lumped", "statics", "modes", "drift", "ideal"),
     "designs": ("fit", "solve"),
     "samples": ("open", "spectra"),
+    "hinges": ("describe", "solve"),
+    "workers": ("study", "sweep"),
 }
 NUMBERS = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "place.B1-B3.pattern.radius")
-PORTION, RATE = 100_000, 10_000.0
+PORTION, RATE, SWEPT = 100_000, 10_000.0, 200_000
 
 
 def chain(count: int) -> object:
@@ -123,16 +133,66 @@ def samples(count: int) -> Iterator[None]:
     yield
 
 
-OF: dict[str, Callable[[int], Iterator[None]]] = {"bodies": bodies, "designs": designs, "samples": samples}
+def hinges(count: int) -> Iterator[None]:
+    """The 6x6 of notches, each a little thicker than the one before."""
+    import flexstage as fs
+    from flexstage.solid.fea.hinge_form import HingeForm
+    from flexstage.solid.fea.parts import Ways
+    from flexstage.solid.fea.roots import Roots
+    from flexstage.solid.hinges import hinges as solid_hinges
+
+    steel = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=1.1e-5)
+    notches = [fs.Notch("steel", 1e-3 * (1.0 + 0.002 * number), 0.01, fs.Circular(0.003)) for number in range(count)]
+    forms = {f"notch {number}": HingeForm(notch, steel, Roots(first=True, second=True)) for number, notch in enumerate(notches)}
+    yield
+    solid_hinges(ways=Ways(cache=None))(forms)
+    yield
+
+
+def workers(count: int) -> Iterator[None]:
+    """A sweep over four numbers by a cluster; its processes are started and ended with it."""
+    from distributed import LocalCluster
+
+    from flexstage.studies.sweeps.file import loads_study
+    from flexstage.studies.sweeps.run import Run, sweep
+
+    variables = "".join(f'v{place} = {{ of = "{name}", from = "-5 %", to = "+5 %" }}\n' for place, name in enumerate(NUMBERS))
+    responses = "".join(f'f{number} = "frequency.platform.{number}"\n' for number in range(1, 7))
+    study = loads_study(
+        f'format = "flexstage study 1"\nname = "growth"\ncase = "double-triangle"\n'
+        f'sweep = {{ sampling = "latin hypercube", designs = {SWEPT}, seed = 1 }}\n[variables]\n{variables}[responses]\n{responses}'
+    )
+    yield
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
+    ):
+        sweep(study, f"{folder}/results.h5", Run(scheduler=cluster.scheduler_address))
+    yield
+
+
+OF: dict[str, Callable[[int], Iterator[None]]] = {
+    "bodies": bodies,
+    "designs": designs,
+    "samples": samples,
+    "hinges": hinges,
+    "workers": workers,
+}
+
+
+def spent() -> float:
+    """Seconds of the processor so far, of this process and of those that it has ended."""
+    return sum(os.times()[:4])
 
 
 def measure(what: str, count: int) -> None:
-    """The seconds of every step and the memory taken in the end, in one line."""
-    times = [time.process_time()]
-    times += [time.process_time() for _ in OF[what](count)]
-    spent = [after - before for before, after in itertools.pairwise(times)]
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    print(f"{count:12,}" + "".join(f"{each:10.2f}" for each in spent) + f"{sum(spent):10.2f}{memory:10.0f}", flush=True)
+    """The seconds of every step, those that went by in all, and the memory of the largest process, in one line."""
+    start, times = time.monotonic(), [spent()]
+    times += [spent() for _ in OF[what](count)]
+    steps = [after - before for before, after in itertools.pairwise(times)]
+    elapsed = time.monotonic() - start
+    memory = max(resource.getrusage(each).ru_maxrss for each in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / 1e3
+    print(f"{count:12,}" + "".join(f"{each:10.2f}" for each in steps) + f"{sum(steps):10.2f}{elapsed:12.2f}{memory:10.0f}", flush=True)
 
 
 def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None:
@@ -144,24 +204,27 @@ def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None
         for what, rows in curves.items():
             axis.loglog([row[0] for row in rows], [row[place] for row in rows], marker="o", label=what)
         axis.set(xlabel="how many", title=title)
+        axis.grid(visible=True, which="major", alpha=0.3)
         axis.legend()
     figure.savefig(file)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("words", nargs="*", help="bodies, designs or samples; sizes")
+    parser.add_argument("words", nargs="*", help="bodies, designs, samples, hinges or workers; sizes")
     parser.add_argument("--figure")
     asked = parser.parse_args()
     kinds = [word for word in asked.words if word in SIZES]
     sizes = [int(float(word)) for word in asked.words if word not in SIZES]
     curves: dict[str, list[tuple[float, float, float]]] = {}
     for what in kinds or (["bodies"] if sizes else SIZES):
-        print(f"{what:>12}" + "".join(f"{each:>10}" for each in STEPS[what]) + f"{'sum [s]':>10}{'[MB]':>10}", flush=True)
+        print(
+            f"{what:>12}" + "".join(f"{each:>10}" for each in STEPS[what]) + f"{'sum [s]':>10}{'elapsed [s]':>12}{'[MB]':>10}", flush=True
+        )
         for count in sizes or SIZES[what]:
             line = subprocess.run([sys.executable, __file__, "--one", what, str(count)], check=True, capture_output=True, text=True).stdout
             print(line, end="", flush=True)
-            *_, seconds, memory = line.split()
+            *_, seconds, _, memory = line.split()
             curves.setdefault(what, []).append((count, float(seconds), float(memory)))
     if asked.figure:
         draw(curves, asked.figure)
