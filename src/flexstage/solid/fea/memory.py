@@ -1,7 +1,7 @@
 """Memory of a reduction: estimated from the mesh before anything is assembled, against what the machine has left.
 
-Degrees of freedom and matrix entries are counted exactly from the mesh; what the factor takes is measured: between 15 and 70 bytes an entry
-of the matrix on hinges, levers, plates and stacks of 26,000 to 150,000 degrees of freedom at orders two to four.
+Degrees of freedom and matrix entries are counted exactly from the mesh; what the factor takes is measured: between 20 and 70 bytes an entry
+of the matrix on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _PROCESS = 180e6
 _PER_ELEMENT = 3500.0
 _MATRICES = 24.0
 """Bytes an entry: stiffness and inertia, 8 bytes of value and 4 of index each."""
-_FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 60.0, 1e5, 1.0 / 6.0
+_FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 50.0, 4e5, 1.0 / 6.0
 """Bytes an entry of the matrix for its factor; above so many freedoms they grow by this power of them."""
 _COPIES = 4.0
 """Copies of the basis that are alive at once."""
@@ -83,10 +83,10 @@ def entries(counts: Counts, order: int) -> float:
 def needed(counts: Counts, order: int, columns: int) -> float:
     """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factor, basis.
 
-    Within -10 and +60 % of what was measured at orders two to four.
+    Within -15 and +30 % of what was measured at orders two to four with modes; without them up to 65 % more.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
-    1130
+    1030
     """
     size, full = freedoms(counts, order), entries(counts, order)
     growth = max(1.0, size / _FACTOR_FREEDOMS) ** _FACTOR_GROWTH
@@ -110,9 +110,9 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what
-    'its reduction at order 3 needs about 1.13 GB (79,536 degrees of freedom), and 0.5 GB are there'
+    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are there'
     >>> found.advice
-    'Ask for order 2, about 0.382 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.429 GB'
+    'Ask for order 2, about 0.363 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
     """
     wanted = needed(counts, fineness.order, columns)
     if wanted <= limit:
