@@ -174,11 +174,14 @@ def test_the_same_search_finds_the_same():
     assert (again.controller.laws, again.notches) == (tuned.controller.laws, tuned.notches)
 
 
-def test_what_cannot_be_had_at_once_is_said():
+def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(DesignError, match=r"rejection with an overshoot of 20 % at most"):
         found(Wish(rejection=4000.0))
     with pytest.raises(DesignError, match="no loop that rejects so far bears it"):
         found(Wish(rejection=500.0, delay_margin=1e-3))
+    monkeypatch.setattr("flexstage.control.tuning.find.search", lambda *_: None)
+    with pytest.raises(DesignError, match=r"no PI within .* that settles within 0.2 ms was found"):
+        found(Wish(settling=2e-4))
 
 
 def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:

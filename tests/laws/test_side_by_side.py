@@ -59,12 +59,14 @@ def test_noise_that_nothing_makes_is_won_by_none():
 
 def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "own.toml").write_text('format = "flexstage loop 1"\n[controller]\nintegral = "300 1/s"\n')
+    gains = 'integral = "300 1/s"\nloops = [{ of = ["x"], proportional = 0.1 }]\n'
+    (tmp_path / "own.toml").write_text(f'format = "flexstage loop 1"\n[controller]\n{gains}')
     assert run(["new", "guide.toml", "--case", "parallelogram"]) == 0
     assert run(["loop", "guide.toml", "--setup", "own.toml", "--compare", "--hardware", "r.c"]) == 2
     told = capsys.readouterr().err
     assert "--hardware: it belongs to one controller" in told
-    assert "controller.integral: it belongs to one controller" in told
+    assert all(f"controller.{name}: it belongs to one controller" in told for name in ("integral", "loops"))
+    assert "controller.proportional" not in told
     assert not (tmp_path / "r.c").exists()
 
 

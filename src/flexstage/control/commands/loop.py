@@ -319,7 +319,8 @@ def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> 
     said = {
         **written,
         "controller.kind": asked.controller.kind is not None,
-        **{f"controller.{name}": True for name in asked.controller.stated},
+        **{f"controller.{name}": True for name in asked.controller.stated if getattr(asked.controller, name) is not None},
+        "controller.loops": bool(asked.controller.loops),
     }
     advice = "Leave it out of a comparison, which tunes each kind itself"
     require(

@@ -140,10 +140,17 @@ def _limited(within: Field, wish: Wish) -> Field:
 
 
 def _none_found(asked: Asked) -> Finding:
-    advice = "Allow a higher peak of S, a smaller spread of the modes, or take another kind"
     wish = asked.wish
+    wanted = [
+        *([] if wish.rejection is None else [f"rejects up to {wish.rejection:g} Hz"]),
+        *([] if wish.settling is None else [f"settles within {1e3 * wish.settling:g} ms"]),
+        *([f"bears a delay of {1e3 * wish.delay_margin:g} ms"] if wish.delay_margin else []),
+    ]
+    advice = "allow a higher peak of S or a smaller spread of the modes, or take another kind"
     beyond = f", stable with modes up to {100.0 * STABLE * wish.spread:g} % off," if wish.spread else ""
-    return Finding("controller.goal", f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g}{beyond} was found", advice)
+    that = f" that {' and '.join(wanted)}" if wanted else ""
+    what = f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g}{beyond}{that} was found"
+    return Finding("controller.goal", what, f"Ask for less of it, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
 
 
 def _unmet_of(wish: Wish, found: Outcome) -> Iterator[Finding]:
