@@ -308,15 +308,26 @@ def test_the_kernel_is_numpy(stage: Mechanism, given: Given, held: Given, plain:
 
 
 def test_a_batch_is_its_cases_to_the_bit():
+    """All of the stage in C, more cases than lanes; and one with a stack and hinges, and a held coordinate."""
     if kernel() is None:
         pytest.skip("no compiler")
-    model = nonlinear(guide(gravity=(4.0, -9.0, 3.0)))
-    together = equilibrium(model, loads(RANDOM))
-    for place, row in enumerate(RANDOM):
-        alone = equilibrium(model, loads(row))
-        assert np.array_equal(alone.pose.position[0], together.pose.position[place])
-        assert np.array_equal(alone.pose.wrench[0][:, 0], together.pose.wrench[0][:, place])
-        assert alone.residual == together.residual[place]
+    along = np.linspace(-2e-4, 3e-4, len(RANDOM))
+    for stage, given, held in (
+        (guide(gravity=(4.0, -9.0, 3.0)), loads(RANDOM), {}),
+        (parallelogram(), {"B": 0.05 * along}, {}),
+        (parallelogram(), {}, {"platform.x": along}),
+    ):
+        model = nonlinear(stage)
+        together = equilibrium(model, given, hold=held)
+        for place in range(len(RANDOM)):
+            one = equilibrium(model, _at_one(given, place), hold=_at_one(held, place))
+            assert np.array_equal(one.pose.position[0], together.pose.position[place])
+            assert np.array_equal(one.pose.wrench[0][:, 0], together.pose.wrench[0][:, place])
+            assert one.residual == together.residual[place]
+
+
+def _at_one(values: dict[str, np.ndarray], place: int) -> dict[str, Number]:
+    return {name: each[place] for name, each in values.items()}
 
 
 def test_a_batch_is_its_cases_in_numpy(plain: Callable[[Callable[[], State]], State]):
