@@ -76,7 +76,7 @@ def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reason
     if engine.loaded:
         failures |= {int(sound[row]): reason for row, reason in unstable_designs(study, values[sound]).items()}
         sound = _sound_rows(values, failures)
-    found, reasons = _bisect(values[sound], len(others), lambda part: _batch(study, part, others))
+    found, reasons = _bisect(values[sound], len(others), lambda part: _batch(study, part, others), apart=_along_paths(study, others))
     frequencies, sure = engine.answers(values[sound])
     for names, part in ((others, found), (engine.modes, frequencies)):
         result[np.ix_(sound, np.array([columns.index(name) for name in names], dtype=int))] = part
@@ -94,20 +94,27 @@ def _sound_rows(values: Array, failures: Reasons) -> Array:
     return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
 
 
-def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str]) -> tuple[Array, Reasons]:
-    """What a batch gives (n, width), and failures; what fails as a batch is halved until the culprits stand alone.
+def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *, apart: bool = False) -> tuple[Array, Reasons]:
+    """What a batch gives (n, width), and failures; what fails as a batch is halved until culprits stand alone, or taken `apart` at once.
 
     Designs that are read (`width` responses) are halved before they are too many: their matrices would fill the memory.
     """
-    found = batch(values) if width == 0 or len(values) <= _MOST else ""
+    whole = width == 0 or len(values) <= _MOST
+    found = batch(values) if whole else ""
     if not isinstance(found, str):
         return found, {}
     if len(values) == 1:
         return np.full((1, width), np.nan), {0: found[:_LONGEST_REASON]}
-    half = len(values) // 2
-    first, early = _bisect(values[:half], width, batch)
-    second, late = _bisect(values[half:], width, batch)
-    return np.concatenate([first, second]), {**early, **{row + half: reason for row, reason in late.items()}}
+    starts = np.arange(len(values)) if apart and whole else np.array([0, len(values) // 2])
+    parts = [_bisect(part, width, batch, apart=apart) for part in np.split(values, starts[1:])]
+    reasons = {int(start + row): reason for start, (_, each) in zip(starts, parts, strict=True) for row, reason in each.items()}
+    return np.concatenate([part for part, _ in parts]), reasons
+
+
+def _along_paths(study: Study, names: tuple[str, ...]) -> bool:
+    """Whether some are measures along paths: one after another in a batch too, and slowest where there is no equilibrium."""
+    asked = [study.columns[name] for name in names]
+    return any(each.kind.along or each.path for each in asked)
 
 
 def _check(study: Study, values: Array) -> Array | str:
