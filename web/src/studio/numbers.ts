@@ -226,13 +226,17 @@ function broken(address: string): (string | Node)[] {
   return address.split(/(?<=\.)/).flatMap((each) => [each, h("wbr")]);
 }
 
+const LONG = 18; // letters of a name that has a row of its own
+
 function folder(name: string, rows: Row[], isOpen: boolean, isWhole: boolean): HTMLElement {
   for (const row of rows) {
     const [label] = row.root.getElementsByClassName("name");
     const short = row.amount.address.slice(row.amount.group.length).replace(/^[./]/, "");
-    if (label) fill(label as HTMLElement, ...broken(isWhole ? row.amount.address : short || row.amount.address));
+    const name = isWhole ? row.amount.address : short || row.amount.address;
+    if (label) fill(label as HTMLElement, ...broken(name));
+    row.root.classList.toggle("long", isWhole || name.length > LONG);
   }
-  const made = h("details", { open: isOpen, className: isWhole ? "whole" : "" }, h("summary", {}, name || "stage", h("span", { className: "quiet" }, ` ${digits(rows.length)}`)), ...rows.map((row) => row.root));
+  const made = h("details", { open: isOpen }, h("summary", {}, name || "stage", h("span", { className: "quiet" }, ` ${digits(rows.length)}`)), ...rows.map((row) => row.root));
   made.dataset["table"] = name;
   return made;
 }
