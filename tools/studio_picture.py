@@ -46,7 +46,7 @@ def take(url: str) -> None:
         page.goto(url)
         wait(page)
         taken = Image.open(io.BytesIO(page.screenshot()))
-        taken.convert("P", palette=Image.Palette.ADAPTIVE, colors=64).save(TARGET, optimize=True)
+        taken.convert("P", palette=Image.Palette.ADAPTIVE, colors=256).save(TARGET, optimize=True)
         browser.close()
 
 
