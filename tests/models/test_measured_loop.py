@@ -101,7 +101,8 @@ def test_a_loop_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> Non
     assert designed.settled.predicted is not None
     behind = designed.plant.hardware.delay - designed.settled.predicted.hardware.delay
     assert behind == pytest.approx(60e-6, abs=5e-6)
-    for each in (designed.measured.loops["x"].rejection, designed.measured.loops["x"].phase):
+    own = designed.measured.loops["x"]
+    for each in (own.rejection, own.phase, own.gain_high, designed.measured.peak):
         assert each.low is not None
         assert each.high is not None
         assert each.low < each.value < each.high

@@ -97,7 +97,8 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
 
     P is what local polynomials tell of the records (`local_responses`), or the analyser's response. Its errors are taken as circular and
     normal, of stored responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9); ends are
-    quantiles of 100 draws about their median. Stored responses are taken as measured input by input, each driven alone.
+    quantiles of 100 draws, about their median and mirrored at the value, whichever is wider. Stored responses are taken as measured
+    input by input, each driven alone.
     H_0 is the hold's response; what folds back of frequencies above half the sampling rate is not counted.
 
     Only lines within the band that was searched, below half the sampling rate, count.
@@ -205,11 +206,16 @@ class _Lines:
 
 
 def _ends(value: float, drawn: Array) -> tuple[float, float]:
-    """Quantiles of the draws about their median, set about the value; infinite draws count as they are."""
+    """Quantiles of the draws about their median, set about the value, and as much further as draws show the value to be biased.
+
+    The least of many noisy numbers is too small, and that of noisier ones smaller still: mirrored at the value (the basic bootstrap,
+    Davison & Hinkley, Bootstrap Methods and their Application, 1997, ch. 5), the quantiles take that back.
+    """
     low, middle, high = np.quantile(drawn, (_ENDS[0], 0.5, _ENDS[1]), method="nearest")
     if not (np.isfinite(low) and np.isfinite(middle)):
         return float("nan"), float("nan")
-    return float(value + low - middle), float(value + high - middle)
+    further = 2.0 * value - high if np.isfinite(high) else np.inf
+    return float(min(value + low - middle, further)), float(max(value + high - middle, 2.0 * value - low))
 
 
 def _control(controller: System, loop: Coordinates, lines: Array) -> Array:
