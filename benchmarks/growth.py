@@ -186,13 +186,21 @@ def spent() -> float:
 
 
 def measure(what: str, count: int) -> None:
-    """The seconds of every step, those that went by in all, and the memory of the largest process, in one line."""
-    start, times = time.monotonic(), [spent()]
-    times += [spent() for _ in OF[what](count)]
-    steps = [after - before for before, after in itertools.pairwise(times)]
+    """Seconds of every step, those that went by in all, and memory of the largest process, in one line; what is refused, and why."""
+    from flexstage.base.finding import DesignError
+
+    start, times, refused = time.monotonic(), [spent()], ""
+    try:
+        for _ in OF[what](count):
+            times.append(spent())  # noqa: PERF401 (those before what is refused count)
+    except DesignError as error:
+        refused = f"  {STEPS[what][len(times) - 1]} is refused: {error}"
+    steps = [f"{after - before:10.2f}" for before, after in itertools.pairwise(times)] + ["         -"] * (
+        1 + len(STEPS[what]) - len(times)
+    )
     elapsed = time.monotonic() - start
     memory = max(resource.getrusage(each).ru_maxrss for each in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / 1e3
-    print(f"{count:12,}" + "".join(f"{each:10.2f}" for each in steps) + f"{sum(steps):10.2f}{elapsed:12.2f}{memory:10.0f}", flush=True)
+    print(f"{count:12,}{''.join(steps)}{times[-1] - times[0]:10.2f}{elapsed:12.2f}{memory:10.0f}{refused}", flush=True)
 
 
 def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None:
@@ -224,7 +232,7 @@ def main() -> None:
         for count in sizes or SIZES[what]:
             line = subprocess.run([sys.executable, __file__, "--one", what, str(count)], check=True, capture_output=True, text=True).stdout
             print(line, end="", flush=True)
-            *_, seconds, _, memory = line.split()
+            seconds, _, memory = line.split()[1 + len(STEPS[what]) :][:3]
             curves.setdefault(what, []).append((count, float(seconds), float(memory)))
     if asked.figure:
         draw(curves, asked.figure)
