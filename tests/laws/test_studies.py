@@ -17,7 +17,7 @@ from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.evaluate import _bisect, piece
 from flexstage.studies.sweeps.file import load_study, loads_study
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
@@ -159,3 +159,16 @@ def _rounding(stage: Mechanism) -> float:
     stiffness = lumped(stage).stiffness_matrix
     scale = np.sqrt(np.diag(stiffness))
     return float(np.sqrt(len(scale)) * np.linalg.cond(stiffness / np.outer(scale, scale)) * np.finfo(float).eps)
+
+
+def test_what_fails_along_a_path_is_taken_apart_at_once():
+    sizes: list[int] = []
+
+    def batch(part: np.ndarray) -> np.ndarray | str:
+        sizes.append(len(part))
+        return "it has no equilibrium" if np.any(part < 0.0) else 2.0 * part
+
+    found, failures = _bisect(np.array([[1.0], [-1.0], [2.0], [3.0]]), 1, batch, apart=True)
+    assert found == pytest.approx(np.array([[2.0], [np.nan], [4.0], [6.0]]), nan_ok=True)
+    assert failures == {1: "it has no equilibrium"}
+    assert sizes == [4, 1, 1, 1, 1]
