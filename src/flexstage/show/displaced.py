@@ -145,7 +145,8 @@ def shape_of(case: CaseFactor) -> Matrix:
 
 def _beyond_section(found: Stroke) -> Section | None:
     picture = to_svg(stroke_figure(curves_of(found.along), _flags(limits(found))), "beyond", "What the stage does beyond what gives way")
-    return section("Beyond", [Picture(picture, "Equilibria from where the least gives way, by the factor on its load.")])
+    shown = Picture(picture, "Equilibria from where the least gives way, by the factor on its load.")
+    return section("Beyond", [shown, along_table("Along the factor", found.along)])
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
