@@ -298,7 +298,7 @@ def measured_table(found: LoopStudy) -> Table | None:
 
 def _reading(each: Reading, factor: float) -> tuple[str, str, str, str]:
     known = each.low is not None and each.high is not None and np.isfinite(each.low)
-    interval = f"{number(factor * (each.low or 0.0), 3)} to {number(factor * (each.high or 0.0), 3)}" if known else NO_VALUE
+    interval = f"{number(factor * (each.low or 0.0), 4)} to {number(factor * (each.high or 0.0), 4)}" if known else NO_VALUE
     return number(factor * each.value, 4), interval, number(factor * each.fitted, 4), number(factor * each.predicted, 4)
 
 
