@@ -248,9 +248,9 @@ def _candidates(
 
 def _notch_response(seen: View, notch: Notch) -> Array:
     """Its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
-    if notch not in seen.notched:
-        seen.notched[notch] = resolvent(notch.system(seen.step)).at(seen.frequencies)[:, 0, 0]
-    return seen.notched[notch]
+    if notch not in seen.kept:
+        seen.kept[notch] = resolvent(notch.system(seen.step)).at(seen.frequencies)[:, 0, 0]
+    return seen.kept[notch]
 
 
 def _law_responses(seen: View, kind: Kind | Family, place: Place) -> list[tuple[Law, Array | None]]:
@@ -329,7 +329,10 @@ def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
     expected = task.expected or Disturbances(1e-9, {})
     looser = Disturbances(expected.strokes * trust, expected.gauges)
     model, coordinates = seen.systems[0], seen.loops.coordinates
-    observer = observer_gain(model, coordinates, looser)
+    key = (looser.strokes, *looser.gauges.items())
+    if key not in seen.kept:
+        seen.kept[key] = observer_gain(model, coordinates, looser)
+    observer = seen.kept[key]
     return lambda wanted: with_observer(model, coordinates, Weights(tuple(map(float, wanted))), observer, task.feedforward)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
-from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
@@ -65,8 +64,8 @@ class View:
         return {}
 
     @cached_property
-    def notched(self) -> dict[Notch, Array]:
-        """Responses (f,) of the notches that a search has tried."""
+    def kept(self) -> dict[Any, Array]:
+        """What is the same at all frequencies of a search, kept by it: responses of notches, observers' gains."""
         return {}
 
 
