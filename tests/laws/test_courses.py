@@ -21,6 +21,17 @@ MODEL = fs.nonlinear(STAGE)
 PATH = fs.path(MODEL, "platform.x", np.linspace(-1e-4, 5e-4, 4))
 
 
+def test_what_is_lost_over_a_short_stroke_is_lost_motion() -> None:
+    """And nothing is told where there is no stroke, or where no stack drives."""
+    found = fs.stroke(fs.path(MODEL, "B", np.array([0.0, 1e-9]), weight=0.0), kinematics=fs.ideal(STAGE))
+    lost = found.along.values[:, found.along.columns.index("lost")]
+    assert np.isnan(lost[0])
+    assert lost[1] == pytest.approx(
+        float(fs.lost_motion(fs.ideal(STAGE), fs.lumped(STAGE)).loss.at("B", "B")), rel=3e-3
+    )  # leaves bend as plates
+    assert "lost" not in fs.stroke(PATH, kinematics=fs.ideal(STAGE)).along.columns
+
+
 @pytest.mark.parametrize("name", ["left", "B/front"])
 def test_centre_lines_are_those_of_the_flexures(name: str) -> None:
     """They begin and end on their bodies without a gap, and their slope is that of the sections but for shear and stretch."""

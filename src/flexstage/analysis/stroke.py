@@ -20,6 +20,7 @@ from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.eigen import eigenvalues
+from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.critical import unstable_motions
 from flexstage.models.nonlinear.equilibrium import State
@@ -39,9 +40,9 @@ class Stroke(InNotebook):
     """A stage along `drive`: a row a point `along` it.
 
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
-    displacement and rotation vector; its first natural frequencies, free under that force; the largest stress and strain of a flexure; and
-    in how many ways the free stage would leave that place (0: stable). Drive and displacements count from `sag`, where weight and loads
-    bring the platform from its drawn place; None where they count from the drawn one.
+    displacement and rotation vector; the share `lost` of a stack's stroke; the platform's first natural frequencies, free under that force;
+    the largest stress and strain of a flexure; and in how many ways the free stage would leave that place (0: stable). Drive and
+    displacements count from `sag`, where weight and loads bring the platform from its drawn place; None where they count from the drawn one.
     """
 
     drive: str
@@ -57,11 +58,15 @@ class Stroke(InNotebook):
         return (*_cautions(self), *self.doubts)
 
 
-def stroke(path: Path, rest: State | None = None, *, told: Callable[[int], None] | None = None) -> Stroke:
+def stroke(
+    path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
+) -> Stroke:
     """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
 
     Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
-    `rest`, if it is given. `told` hears how many points are done; without it they are done together.
+    `rest`, if it is given. With the stage's ideal `kinematics` the lost motion of a driven stack is told: 1 - R_a V^+ (t - t_rest) / a, of
+    the platform's displacement and rotation vector t and the stroke a, R_a and V those of the drawn position (`lost_motion`). `told` hears
+    how many points are done; without it they are done together.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.path import path
@@ -74,7 +79,7 @@ def stroke(path: Path, rest: State | None = None, *, told: Callable[[int], None]
     portions = [np.arange(count)] if told is None else np.array_split(np.arange(count), max(1, -(-count // _AT_ONCE)))
     found: list[Stroke] = []
     for portion in portions:
-        found.append(_portion(path if told is None else path.some(portion), rest))
+        found.append(_portion(path if told is None else path.some(portion), rest, kinematics))
         if told is not None:
             told(int(portion[-1]) + 1)
     first, parts = found[0], [each.strained for each in found]
@@ -90,7 +95,7 @@ def stroke(path: Path, rest: State | None = None, *, told: Callable[[int], None]
 class Points:
     """States (k,) along a drive's `values`, from `rest` if it is given, and what a stroke tells of them, worked out when first asked for.
 
-    `locked` coordinates stay held where the stage is free.
+    `locked` coordinates stay held where the stage is free; by its ideal `kinematics` lost motion is told.
     """
 
     drive: str
@@ -98,6 +103,7 @@ class Points:
     state: State
     locked: tuple[str, ...]
     rest: State | None
+    kinematics: Kinematics | None = None
 
     @cached_property
     def about(self) -> LinearModel:
@@ -130,8 +136,8 @@ class Points:
         return self.columns[name][0]()
 
 
-def _portion(path: Path, rest: State | None) -> Stroke:
-    points = Points(path.drive, path.values, path.state, path.locked, rest)
+def _portion(path: Path, rest: State | None, kinematics: Kinematics | None) -> Stroke:
+    points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
     points.__dict__["motions"] = path.motions
     none = _FREQUENCIES[points.frequencies.shape[-1] :]
     columns = tuple(name for name in points.columns if name not in none)
@@ -163,6 +169,9 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
         for place, name in enumerate(COMPONENTS)
         if f"platform.{name}" != drive
     )
+    ideal = points.kinematics
+    if ideal is not None and drive in ideal.actuators and ideal.actuated:
+        yield "lost", (lambda: _lost(ideal, drive, points.values, twist), "1")
     yield from ((name, (partial(_frequency, points, place), "Hz")) for place, name in enumerate(_FREQUENCIES))
     yield "stress", (lambda: np.max(points.strained.stress, axis=-1, initial=0.0), "Pa")
     yield "strain", (lambda: np.max(points.strained.largest, axis=-1, initial=0.0), "1")
@@ -171,6 +180,13 @@ def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], s
 
 def _take(twist: Array, place: int) -> Array:
     return twist[..., place]
+
+
+def _lost(ideal: Kinematics, drive: str, strokes: Array, twist: Array) -> Array:
+    """The share of a stroke that the platform does not follow; NaN where there is none."""
+    sense = (ideal.mapping.values @ ideal.projection)[ideal.actuators.index(drive)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(strokes == 0.0, np.nan, 1.0 - twist @ sense / strokes)
 
 
 def _frequency(points: Points, place: int) -> Array:

@@ -23,6 +23,7 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import ANGLE, LENGTH, RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.path import Path
 from flexstage.models.nonlinear.path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
@@ -82,7 +83,7 @@ def stroke(  # noqa: PLR0913 (its options)
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
-    found = over_stroke(along, rest)
+    found = over_stroke(along, rest, kinematics=ideal(mechanism))
     if report is not None:
         save(report, stroke_report(mechanism, along, found), "--report")
     answer(

@@ -13,6 +13,7 @@ from flexstage.apps.studio.reading import design, problems_of
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.displaced import loads_of, quantity_of
 from flexstage.show.viewer.course import stroke_data
@@ -35,7 +36,7 @@ def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable
         tell(Underway(asked.id, _FOUND + (1.0 - _FOUND) * points / count, f"{points} of {count} points"))
 
     done(0)
-    told = stroke(found, rest, told=done)
+    told = stroke(found, rest, kinematics=ideal(mechanism), told=done)
     shown = stroke_data(mechanism, found, told).document()
     return Travelled(asked.id, revision, shown["motions"], problems_of(told.cautions, text, file))
 

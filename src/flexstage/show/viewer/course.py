@@ -31,7 +31,7 @@ _BYTES = 400_000
 """What the poses of a path may take in a page."""
 _MODES = 6
 _MILLIMETRES = DisplayUnit("mm", 1e3)
-_MICROSTRAIN = DisplayUnit("um/m", 1e6)
+_OWN = {"strain": DisplayUnit("um/m", 1e6), "lost": DisplayUnit("%", 100.0)}
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
     for name, values, unit in zip(along.columns, np.moveaxis(along.values, -1, 0), units, strict=True):
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
         far = unit == "m" and largest >= 1e-3
-        yield name, values, _MICROSTRAIN if name == "strain" else _MILLIMETRES if far else display_unit_of(unit, largest)
+        yield name, values, _MILLIMETRES if far else _OWN.get(name) or display_unit_of(unit, largest)
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
