@@ -42,7 +42,7 @@ class Stroke(InNotebook):
     Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
     displacement and rotation vector; the share `lost` of a stack's stroke; the platform's first natural frequencies, free under that force;
     the largest stress and strain of a flexure; and in how many ways the free stage would leave that place (0: stable). Drive and
-    displacements count from `sag`, where weight and loads bring the platform from its drawn place; None where they count from the drawn one.
+    displacements count from `sag`, where weight and loads bring the platform from its drawn place; None where they count from that one.
     """
 
     drive: str
