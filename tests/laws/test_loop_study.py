@@ -52,6 +52,7 @@ from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.parts.gauge import Gauge
 from flexstage.show.display import NO_VALUE, format_value
+from flexstage.show.page import Prose
 from flexstage.show.viewer.data import stage_data
 from flexstage.solid.modes import fea_modes
 
@@ -95,7 +96,7 @@ def test_how_far_small_displacements_hold_is_told_of_what_is_simulated() -> None
     assert found.second_order is not None
     time = time_section(found)
     assert time is not None
-    assert time.blocks[0] == found.second_order.text
+    assert time.blocks[0] == Prose(found.second_order.text)
 
 
 def test_what_plays_is_where_the_platform_truly_went() -> None:

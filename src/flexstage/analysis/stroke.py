@@ -19,6 +19,7 @@ from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
@@ -58,6 +59,7 @@ class Stroke(InNotebook):
         return (*_cautions(self), *self.doubts)
 
 
+@takes_models
 def stroke(
     path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
 ) -> Stroke:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -55,6 +55,7 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.aim import Aim
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
 from flexstage.experiment.record_options import Allow, Arrays, Inputs, Only, Outputs, RecordTexts, Units, open_records
+from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
@@ -67,6 +68,7 @@ from flexstage.show.command.values import Values, first_that_parses, motions
 from flexstage.show.table import Table
 
 if TYPE_CHECKING:
+    from flexstage.analysis.solid_modes import FeaModes
     from flexstage.control import report as pages
 else:
     pages = Late("flexstage.control.report")  # figures, scenes and sections: thirty modules
@@ -248,53 +250,101 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     }
     asked = _override(given, options)
     require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware), *_path_findings(asked, exports)])
-    written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
     where = place(at, load, hold, temperature)
     require(_fea_findings(where, model) if fea else ())
+    written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
     mechanism = open_design(design, changes, written)
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
     stands = Footing(mechanism, asked.model) if fea else footing(mechanism, where, asked.model)
+    asking = _Asking(mechanism, asked, stands, solid, tuple(record or ()), texts, None if fea else asked.model)
+    written_to = _Written(json, csv, xlsx, report, tuple(exports), hardware, Precision.SINGLE if single else Precision.DOUBLE)
     if compare:
-        _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
-        with progress_bar() as shown:
-            test = None if not record else _tested(record, texts, shown.share)
-            rivals = compare_controllers(mechanism, asked, there=stands.stance, solid=solid, test=test, tell=shown.share, workers=cores())
-        if report is not None:
-            save(report, pages.comparison_report(mechanism, asked, rivals), "--report")
-        answer(
-            "loops",
-            mechanism,
-            lambda: rivals,
-            lambda: [*stands.tables(), tables.comparison_table(rivals), tables.rivals_table(rivals)],
-            model=None if fea else asked.model,
-            json=json,
-            csv=csv,
-            xlsx=xlsx,
-            cautions=(*stands.cautions, *rivals.cautions),
-            beside=(report,),
-        )
-        return
+        _compare(asking, written_to)
+    else:
+        _close(asking, written_to)
+
+
+@dataclass(frozen=True)
+class _Asking:
+    """What a loop is closed on: the stage, what is asked, where it stands, its finite elements, records of a test, the model told of."""
+
+    mechanism: Mechanism
+    asked: forms.LoopSetup
+    stands: Footing
+    solid: FeaModes | None
+    record: tuple[Path, ...]
+    texts: RecordTexts
+    model: Model | None
+
+    def test(self, tell: Told) -> Identification | None:
+        """The modes of the records, all of one test."""
+        if not self.record:
+            return None
+        reader = self.texts.options()
+        return identification(usable_measurement(open_records(self.record, reader), reader.allow, told=tell), told=tell)
+
+
+@dataclass(frozen=True)
+class _Written:
+    """Where results go."""
+
+    json: str | None
+    csv: Path | None
+    xlsx: Path | None
+    report: Path | None
+    exports: tuple[Path, ...]
+    hardware: Path | None
+    precision: Precision
+
+
+def _compare(asking: _Asking, outputs: _Written) -> None:
+    """Controllers side by side."""
+    mechanism, asked, stands = asking.mechanism, asking.asked, asking.stands
+    _require_comparable(asked, {"--export": bool(outputs.exports), "--hardware": outputs.hardware is not None})
     with progress_bar() as shown:
-        test = None if not record else _tested(record, texts, shown.share)
-        found = loop_study(mechanism, asked, there=stands.stance, solid=solid, test=test, tell=shown.share)
-    if report is not None:
-        save(report, pages.loop_report(found), "--report")
-    for target in exports:
+        test = asking.test(shown.share)
+        there = stands.stance
+        rivals = compare_controllers(mechanism, asked, there=there, solid=asking.solid, test=test, tell=shown.share, workers=cores())
+    if outputs.report is not None:
+        save(outputs.report, pages.comparison_report(mechanism, asked, rivals), "--report")
+    answer(
+        "loops",
+        mechanism,
+        lambda: rivals,
+        lambda: [*stands.tables(), tables.comparison_table(rivals), tables.rivals_table(rivals)],
+        model=asking.model,
+        json=outputs.json,
+        csv=outputs.csv,
+        xlsx=outputs.xlsx,
+        cautions=(*stands.cautions, *rivals.cautions),
+        beside=(outputs.report,),
+    )
+
+
+def _close(asking: _Asking, outputs: _Written) -> None:
+    """One loop, and the files of it that are asked for."""
+    stands = asking.stands
+    with progress_bar() as shown:
+        test = asking.test(shown.share)
+        found = loop_study(asking.mechanism, asking.asked, there=stands.stance, solid=asking.solid, test=test, tell=shown.share)
+    if outputs.report is not None:
+        save(outputs.report, pages.loop_report(found), "--report")
+    for target in outputs.exports:
         _export(found, target)
-    if hardware is not None:
-        _export_hardware(found, hardware, Precision.SINGLE if single else Precision.DOUBLE)
+    if outputs.hardware is not None:
+        _export_hardware(found, outputs.hardware, outputs.precision)
     answer(
         "loop",
-        mechanism,
+        asking.mechanism,
         lambda: stands.body(found) if stands.stance is not None else found,
         lambda: [*stands.tables(), *_tables(found)],
-        model=None if fea else asked.model,
-        json=json,
-        csv=csv,
-        xlsx=xlsx,
+        model=asking.model,
+        json=outputs.json,
+        csv=outputs.csv,
+        xlsx=outputs.xlsx,
         cautions=(*stands.cautions, *found.cautions),
-        beside=(report,),
+        beside=(outputs.report,),
     )
 
 
@@ -306,12 +356,6 @@ def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
         )
     if model is not None:
         yield Finding("--fea", f"--model {model.value} asks for another model of the plant", "Leave one of them out")
-
-
-def _tested(paths: Sequence[Path], texts: RecordTexts, tell: Told) -> Identification:
-    """The modes of records or responses, all of one test."""
-    reader = texts.options()
-    return identification(usable_measurement(open_records(paths, reader), reader.allow, told=tell), told=tell)
 
 
 def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:

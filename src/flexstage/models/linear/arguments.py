@@ -29,7 +29,7 @@ def takes_models(function: Callable[P, T]) -> Callable[P, T]:
     parameters = signature(function).parameters.values()
     asked = {each.name: str(each.annotation).partition(" |")[0] for each in parameters}
     places = [(place, each.name) for place, each in enumerate(parameters) if asked[each.name] in _MODELS]
-    needed = [_WRITTEN.get(asked[each.name], each.name) for each in parameters if _is_needed(each) or asked[each.name] in _MODELS]
+    needed = [_written(each, asked[each.name]) for each in parameters if _is_needed(each) or asked[each.name] in _MODELS]
     meant = f"{function.__name__}({', '.join(needed)})"
 
     @wraps(function)
@@ -40,6 +40,12 @@ def takes_models(function: Callable[P, T]) -> Callable[P, T]:
         return function(*args, **kwargs)
 
     return check_arguments
+
+
+def _written(parameter: Parameter, asked: str) -> str:
+    """An argument as a call writes it."""
+    value = _WRITTEN.get(asked, parameter.name)
+    return f"{parameter.name}={value}" if parameter.kind is Parameter.KEYWORD_ONLY else value
 
 
 def _is_needed(parameter: Parameter) -> bool:

@@ -14,7 +14,7 @@ import typer
 from flexstage.analysis.pairing import Pair
 from flexstage.analysis.standing import require_standing
 from flexstage.analysis.units import driven_units
-from flexstage.base.finding import Finding, refuse
+from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse
@@ -217,10 +217,18 @@ def _solids_of(found: verification.Verification) -> list[tuple[str, Converged[An
 
 def _retain(found: verification.Verification, cautions: tuple[Finding, ...], asked: _Request) -> None:
     """Keep what a verification tells, where the description and what was asked alone decide on it, not the memory that there was."""
-    failed = found.units is None and bool(driven_units(found.mechanism))
+    failed = found.units is None and _drives_units(found.mechanism)
     notes = tuple(f"{name}: {_accuracy_text(each)}" for name, each in _solids_of(found) if each.error <= asked.resolution.accuracy)
     if asked.memory is None and not failed and not any(each.stopped for _, each in _solids_of(found)):
         retain(Known(found.rows, dict(found.reasons), cautions, notes), found.mechanism, asked.resolution, Cache())
+
+
+def _drives_units(mechanism: Mechanism) -> bool:
+    """Whether units could be verified alone; not where strokes leave motions of the platform open."""
+    try:
+        return bool(driven_units(mechanism))
+    except DesignError:
+        return False
 
 
 def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verification.Verification:
