@@ -91,6 +91,7 @@ def pictures(page: str) -> list[str]:
     return re.findall(r"<svg.*?</svg>", page, flags=re.DOTALL)
 
 
+@pytest.mark.full  # its parts stand alone in reports of comparisons, which are always tried
 def test_the_report_stands_alone(recorded: Command, tmp_path: Path) -> None:
     ended = recorded("identify", "record.uff", "--stage", "stage.toml", "--report", "modes.html")
     assert ended.code == 0, ended.err
@@ -138,6 +139,7 @@ def test_compare_takes_changes_and_models(recorded: Command) -> None:
     assert recorded("compare", "stage.toml", "--record", "record.uff", "--model", "ideal").code == 2
 
 
+@pytest.mark.full  # tests/models/test_identify.py puts them together always
 def test_records_of_single_actuators_are_put_together(flexstage: Command, tmp_path: Path) -> None:
     names = [f"B{number}.csv" for number in range(1, 7)]
     for number, name in enumerate(names):

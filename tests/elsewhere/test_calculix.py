@@ -57,7 +57,13 @@ def _run(name: str, folder: Path) -> Case:
     return Case(name, problem, mesh, printed)
 
 
-@pytest.fixture(scope="module", params=[f"{name}-{source}" for name in PROBLEMS for source in ("stored", "run")])
+@pytest.fixture(
+    scope="module",
+    params=[
+        *(f"{name}-stored" for name in PROBLEMS),
+        *(pytest.param(f"{name}-run", marks=() if name == "hinge" else pytest.mark.full) for name in PROBLEMS),
+    ],
+)
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Case:
     name, _, source = request.param.partition("-")
     if source == "stored":

@@ -63,6 +63,7 @@ def test_errors_are_near_the_least_that_statistics_allow():
     assert worst[1] < 2.0e-3
 
 
+@pytest.mark.full
 def test_pairs_a_tenth_of_a_hertz_apart_under_three_per_cent_of_noise():
     assert np.median([np.max(np.abs(each.frequency)) for each in _trials(1)]) < 0.0005
     assert np.median([each.angle for each in _trials(1)]) < 5.0
@@ -89,6 +90,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say(case: int):
     assert 0.93 <= np.mean(inside) <= 0.97
 
 
+@pytest.mark.full
 def test_errors_are_as_large_as_stated_where_unmeasured_forces_shake_the_stage():
     """Their noise is large at resonances, and one and the same at all outputs."""
     known = truth()

@@ -123,6 +123,7 @@ def test_resonances_that_inputs_do_not_drive_are_listed() -> None:
     assert [round(frequency) for frequency in peaks(found, Doubt.UNDRIVEN)] == [117]
 
 
+@pytest.mark.full
 def test_forces_that_are_not_recorded_are_told_where_they_exceed_the_recorded_ones() -> None:
     known = truth(seed=1002)
     strong, weak = (identify(undriven(known, 2, level)) for level in (4.0, 0.5))
