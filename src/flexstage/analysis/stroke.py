@@ -59,6 +59,14 @@ class Stroke(InNotebook):
         return (*_cautions(self), *self.doubts)
 
 
+@dataclass(frozen=True, eq=False)
+class Beyond:
+    """The path from where a stage gives way, and what is told of it."""
+
+    path: Path
+    stroke: Stroke
+
+
 @takes_models
 def stroke(
     path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None

@@ -10,7 +10,7 @@ import numpy as np
 import flexstage
 from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors
 from flexstage.analysis.misalign import Misaligned, Misalignments
-from flexstage.analysis.stroke import Stroke
+from flexstage.analysis.stroke import Beyond, Stroke
 from flexstage.base.digest import digest
 from flexstage.base.labelled import NOISE_RULE, Matrix, quiet
 from flexstage.base.number import Array
@@ -76,7 +76,7 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
     return make_table(title, heads, rows, notes=[*notes, *said])
 
 
-def buckling_report(mechanism: Mechanism, found: CaseFactors, after: tuple[Path, Stroke] | None = None) -> str:
+def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | None = None) -> str:
     """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first.
 
     `after` is the path from where the least gives way.
@@ -88,8 +88,8 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: tuple[Path,
     sections = (
         stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
-        None if after is None else _beyond_section(after[1]),
-        caveat_section(mechanism, found.cautions if after is None else (*found.cautions, *after[1].cautions)),
+        None if after is None else _beyond_section(after.stroke),
+        caveat_section(mechanism, found.cautions if after is None else (*found.cautions, *after.stroke.cautions)),
         drawing_section(mechanism, seen),
     )
     good = least is None or least.factor >= max(1.0, found.demand)
@@ -116,7 +116,7 @@ def _buckling_text(found: CaseFactors) -> str:
     return text if len(found.cases) == 1 else f"{text}, the least of {len(found.cases)} load cases and stroke ends"
 
 
-def buckling_tables(found: CaseFactors, after: tuple[Path, Stroke] | None = None) -> list[Table]:
+def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table]:
     """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
     heads = ["load", "place", Column("factor"), "kind", "gives way"]
     rows = [[case.load, case.place, _factor_text(case), case.kind, case.gives_way or case.why] for case in found.cases]
@@ -125,7 +125,7 @@ def buckling_tables(found: CaseFactors, after: tuple[Path, Stroke] | None = None
     least = found.least
     if least is None:
         return [table]
-    beyond = [] if after is None else [along_table("Beyond", after[1].along)]
+    beyond = [] if after is None else [along_table("Beyond", after.stroke.along)]
     shape, size = shape_of(least), "It has no size of its own: here its largest number is 1 mm, or 1 mrad."
     scaled = replace(shape, values=1e-3 * shape.values)
     return [table, matrix_table(f"Shape: {least.load}, {least.place}", scaled, notes=[size]), *beyond]

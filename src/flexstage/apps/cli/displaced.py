@@ -15,7 +15,7 @@ from flexstage.analysis.misalign import misalign as misaligned
 from flexstage.analysis.misalign import misalignments
 from flexstage.analysis.requirements import asked_factor
 from flexstage.analysis.stance import require_consistent
-from flexstage.analysis.stroke import Stroke
+from flexstage.analysis.stroke import Beyond
 from flexstage.analysis.stroke import stroke as over_stroke
 from flexstage.apps.cli.words import Side
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
@@ -24,7 +24,6 @@ from flexstage.base.quantity import ANGLE, LENGTH, RATIO
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
-from flexstage.models.nonlinear.path import Path
 from flexstage.models.nonlinear.path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
@@ -79,11 +78,13 @@ def stroke(  # noqa: PLR0913 (its options)
         raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
     stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
-        _stated(mechanism, stated, points, loads) if stated else _asked(model, drive or "platform.x", (start, end), (points or 11, loads))
+        _stated(mechanism, stated, points, loads)
+        if stated
+        else _asked(model, drive or "platform.x", start=start, end=end, points=points or 11, loads=loads)
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
-    found = over_stroke(along, rest, kinematics=ideal(mechanism))
+    found = over_stroke(along, rest, kinematics=ideal(mechanism) if asked.drive in model.assembly.strokes else None)
     if report is not None:
         save(report, stroke_report(mechanism, along, found), "--report")
     answer(
@@ -116,13 +117,13 @@ def _stated(mechanism: Mechanism, name: str, points: int | None, loads: dict[str
     return replace(found, values=values, loads=found.loads | loads)
 
 
-def _asked(model: Nonlinear, drive: str, ends: tuple[str, str], more: tuple[int, dict[str, float]]) -> Course:
+def _asked(model: Nonlinear, drive: str, *, start: str, end: str, points: int, loads: dict[str, float]) -> Course:
     quantity = drive_quantity(model.assembly, drive, "--drive")
-    low = parse(ends[0], quantity, where="--from") if ends[0] else 0.0
-    high = parse(ends[1], quantity, where="--to") if ends[1] else (1e-4 if quantity is LENGTH else 1e-3)
+    low = parse(start, quantity, where="--from") if start else 0.0
+    high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
     if low == high:
-        raise refuse("--to", f"{drive} goes from {ends[0] or '0'} to {ends[1] or ends[0]}: a drive that does nothing", "Name two places")
-    return Course(drive, np.linspace(low, high, more[0]), more[1], (), 1.0)
+        raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
+    return Course(drive, np.linspace(low, high, points), loads, (), 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,12 +188,12 @@ def buckle(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions if after is None else (*found.cautions, *after[1].cautions),
+        cautions=found.cautions if after is None else (*found.cautions, *after.stroke.cautions),
         beside=(report,),
     )
 
 
-def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: int) -> tuple[Path, Stroke]:
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: int) -> Beyond:
     """From where the least case gives way on; refused where that needs something held."""
     least = found.least
     if least is None or least.found is None:
@@ -203,7 +204,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: i
         )
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if side is Side.ALONG else -1.0, points=points)
-    return path, over_stroke(path)
+    return Beyond(path, over_stroke(path))
 
 
 def _case(mechanism: Mechanism, asked: Place) -> LoadCase:
@@ -295,7 +296,7 @@ def _axis(about: str, shift: str) -> str:
     return axis if shift else f"r{axis}"
 
 
-def _buckling(found: CaseFactors, after: tuple[Path, Stroke] | None) -> Buckling:
-    first, along = found.cases[0], None if after is None else after[1].along
+def _buckling(found: CaseFactors, after: Beyond | None) -> Buckling:
+    first, along = found.cases[0], None if after is None else after.stroke.along
     link = "" if first.found is None else first.found.link
     return Buckling(first.load, first.factor, first.kind, link, shape_of(first), found.cases, along)

@@ -76,7 +76,7 @@ def band_covariances(record: Record, low: float, high: float, tell: Tell | None 
         lines = np.fft.rfft(values - np.mean(values, axis=0), axis=0) / np.sqrt(size)
         power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
         for place, sweep in enumerate(every):
-            found, whole = _covariances(lines, _lines(sweep, record.rate / size, len(lines)), lags)
+            found, whole = _covariances(lines[slice(*_lines(sweep, record.rate / size, len(lines)))], lags)
             parts[place].append(found)
             weighed[place] = weighed[place] + whole / BLOCKS
         if tell is not None:
@@ -121,9 +121,8 @@ def _lines(sweep: Sweep, resolution: float, count: int) -> tuple[int, int]:
     return max(1, int(sweep.low / resolution)), min(count, int(np.ceil(sweep.high / resolution)))
 
 
-def _covariances(lines: Array, extent: tuple[int, int], lags: int) -> tuple[Array, Array]:
+def _covariances(inside: Array, lags: int) -> tuple[Array, Array]:
     """Of a band by lags: tapered at its ends, and as it is."""
-    inside = lines[extent[0] : extent[1]]
     count = len(inside)
     taper = np.minimum(np.minimum(np.arange(count), count - 1 - np.arange(count)) / (_TAPER * count), 1.0)
     power = inside[:, :, None] * np.conj(inside[:, None, :])

@@ -112,7 +112,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     _require_memory(state, inner=inner)
     whole = assemble(model, state.pose, state.loads, state.hold)
     links = {
-        name: item if inner else _follow_statically(item, bent, (group.law, place))
+        name: item if inner else _follow_statically(item, bent, group.law, place)
         for group, bent in zip(model.flexures, whole.bent, strict=True)
         for place, (name, item) in enumerate(_flexures(group, bent).items())
     }
@@ -236,9 +236,8 @@ def _flexures(group: Flexures, bent: Bent) -> dict[str, _Linear]:
     }
 
 
-def _follow_statically(item: _Linear, bent: Bent, which: tuple[FlexureLaw, int]) -> _Linear:
+def _follow_statically(item: _Linear, bent: Bent, law: FlexureLaw, place: int) -> _Linear:
     """A flexure of a group without coordinates of its own: its 6x6 about its middle, all else `geometric`."""
-    law, place = which
     whole = item.elastic + item.geometric
     follow = -np.linalg.solve(whole[..., 12:, 12:], whole[..., 12:, :12])
     basis = np.concatenate([np.broadcast_to(np.eye(12), (*follow.shape[:-2], 12, 12)), follow], axis=-2)

@@ -159,7 +159,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])
     laws = _laws(assembly, resolution)
     number = {GROUND: len(bodies), **{name: index for index, name in enumerate(bodies)}}
-    growth = _growth(mechanism, assembly, bodies, (temperature, ground))
+    growth = _growth(mechanism, assembly, bodies, temperature, ground)
     drawn = _Drawn(number, reference, growth)
     flexures = _flexures(assembly, {name: item for name, item in laws.items() if item is not None}, drawn)
     centred = {name: assembly.links[name] for name, item in laws.items() if item is None}
@@ -196,9 +196,8 @@ def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | 
     return result
 
 
-def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], asked: tuple[float, str | None]) -> _Growth:
+def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], change: float, ground: str | None) -> _Growth:
     """How bodies and parts have grown at the temperatures of the description and a uniform change, on a ground of some material."""
-    change, ground = asked
     stated = {name: float(np.real(value)) for name, value in mechanism.temperatures.items()}
     warmth = {name: change + stated.get(name, stated.get(EVERYWHERE, 0.0)) for name in (*bodies, GROUND)}
     if not any(warmth.values()):

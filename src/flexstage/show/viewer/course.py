@@ -12,7 +12,7 @@ from flexstage.analysis.load_cases import REST, CaseFactor
 from flexstage.analysis.misalign import Misaligned
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.stance import Stance
-from flexstage.analysis.stroke import Stroke
+from flexstage.analysis.stroke import Beyond, Stroke
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND, Mechanism
@@ -62,11 +62,11 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
 
 
-def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: tuple[Path, Stroke] | None = None) -> StageData:
+def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:
     """A stage as it gives way in load cases, drawn about its last stable state in each: one motion a case, and the path `after` one."""
     still = still_data(mechanism)
     told = [motion for number, case in enumerate(cases) if case.found is not None for motion in _gives_way(still, case, case.found, number)]
-    paths = [] if after is None else [_along(still, after[0].state, after[0].drive, after[1])]
+    paths = [] if after is None else [_along(still, after.path.state, after.path.drive, after.stroke)]
     return replace(still, motions=(*told, *paths))
 
 
@@ -183,7 +183,7 @@ def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Lab
         bodies = np.zeros((len(still.bodies), 6))
         bodies[order] = moved.bodies[number]
         inside = {each: rows[number] for each, rows in moved.lines.items()}
-        shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, (lines, inside)) for carrier in _bending(still))])
+        shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, lines, inside) for carrier in _bending(still))])
         course = Course(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
         yield Motion(Group.STATE, label.name, label.text, np.zeros((0, 6)), label.remark, label.frequency, course=course)
 
@@ -270,12 +270,12 @@ def _vectors(turn: Array) -> Array:
     return logarithm(turn)
 
 
-def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: tuple[Mapping[str, Line], Mapping[str, Array]]) -> Array:
-    """Small motions (NODES, 6) along a piece, by those of bodies and of centre lines."""
+def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[str, Line], moved: Mapping[str, Array]) -> Array:
+    """Small motions (NODES, 6) along a piece, by those of bodies and, `moved`, of centre `lines`."""
     shares = np.linspace(0.0, 1.0, NODES)
-    known = lines[1].get(carrier.name)
+    known = moved.get(carrier.name)
     if known is not None:
-        where = lines[0][carrier.name].shares
+        where = lines[carrier.name].shares
         return np.stack([np.interp(shares, where, row) for row in known.T], axis=-1)
     references = _references(still)
     ends = [
