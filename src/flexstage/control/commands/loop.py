@@ -2,55 +2,42 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import Finding, require
 from flexstage.base.jobs import cores
 from flexstage.base.lazy import Late
 from flexstage.base.quantity import (
-    ACCELERATION_NOISE,
-    CURRENT,
     DISPLACEMENT,
     FREQUENCY,
     NOISE_DENSITY,
     RATIO,
-    RESISTANCE,
     TIME,
-    VELOCITY_NOISE,
 )
 from flexstage.control import error_tables as errors
 from flexstage.control import tables
-from flexstage.control.controllers.decentralised import Decentralised
-from flexstage.control.damping.sampled import SampledLegs, sample_legs
-from flexstage.control.export.code.hardware import NO_INVERSE
 from flexstage.control.export.code.precision import Precision
-from flexstage.control.export.code.text import identifier
-from flexstage.control.export.code.whole import loop_code
-from flexstage.control.export.files import (
-    WHOLE,
-    controller_files,
-    export_findings,
-    hardware_files,
-    hardware_findings,
-    path_file,
-    plant_file,
-    whole_controller,
+from flexstage.control.loop_files import file_findings, require_names, write_export, write_hardware, written_files
+from flexstage.control.loop_options import (
+    amplifier_values,
+    compensation,
+    floor_setup,
+    follow_setup,
+    hysteretic_stacks,
+    override,
+    trajectory_setup,
 )
-from flexstage.control.export.fmu.unit import fmu
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
-from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
+from flexstage.control.study.choices import Axes, Compensation, Following
 from flexstage.control.study.compare import compare_controllers
-from flexstage.control.study.course import stated_motions
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.file import load_setup
-from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.aim import Aim
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
@@ -64,7 +51,7 @@ from flexstage.show.command.models import Models
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
-from flexstage.show.command.values import Values, first_that_parses, motions
+from flexstage.show.command.values import Values
 from flexstage.show.table import Table
 
 if TYPE_CHECKING:
@@ -72,9 +59,6 @@ if TYPE_CHECKING:
     from flexstage.control import report as pages
 else:
     pages = Late("flexstage.control.report")  # figures, scenes and sections: thirty modules
-
-_Record = TypeVar("_Record")
-_NOTHING = "none"
 
 
 def loop(  # noqa: PLR0913  a loop has that many knobs
@@ -209,7 +193,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     if example is not None:
         _write_example(design, example)
         return
-    _require_names(exports, hardware)
+    require_names(exports, hardware)
     texts = RecordTexts(inputs, outputs, only, units, arrays=arrays, allow=allow)
     if not record:
         texts.require_unsaid()
@@ -221,38 +205,38 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "delay": values.value("--delay", delay, TIME),
         "seconds": seconds,
         "seed": seed,
-        "compensate": values.attempt(lambda: _compensation(compensate)),
-        "amplifier": _override(given.amplifier, _amplifier_values(values, amplifier or ())),
-        "gauges": _override(
+        "compensate": values.attempt(lambda: compensation(compensate)),
+        "amplifier": override(given.amplifier, amplifier_values(values, amplifier or ())),
+        "gauges": override(
             given.gauges,
             {
                 "noise": values.value("--gauge-noise", gauge_noise, NOISE_DENSITY),
                 "resolution": values.value("--resolution", resolution, DISPLACEMENT),
             },
         ),
-        "floor": values.attempt(lambda: _floor(given.floor, floor or ())),
-        "controller": _override(
+        "floor": values.attempt(lambda: floor_setup(given.floor, floor or ())),
+        "controller": override(
             given.controller,
             {
                 "kind": None if controller is None else values.attempt(lambda: forms.KINDS.parse(controller, "--controller")),
                 "coordinates": coordinates,
-                "goal": None if goal is None else _override(given.controller.goal or forms.GoalSetup(), {"aim": goal}),
+                "goal": None if goal is None else override(given.controller.goal or forms.GoalSetup(), {"aim": goal}),
                 "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),
                 "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
             },
         ),
         "damping": None
         if damping is None
-        else _override(given.damping or forms.DampingSetup(), {"ratio": values.value("--damping", damping, RATIO)}),
-        "follow": None if follow is None else _followed(given.follow, follow),
-        "hysteresis": _hysteresis(hysteresis),
-        "trajectory": values.attempt(lambda: _trajectory(given.trajectory, trajectory, command)),
+        else override(given.damping or forms.DampingSetup(), {"ratio": values.value("--damping", damping, RATIO)}),
+        "follow": None if follow is None else follow_setup(given.follow, follow),
+        "hysteresis": hysteretic_stacks(hysteresis),
+        "trajectory": values.attempt(lambda: trajectory_setup(given.trajectory, trajectory, command)),
     }
-    asked = _override(given, options)
-    require([*values.findings, *setup_findings(asked), *_inverse_findings(asked, hardware), *_path_findings(asked, exports)])
+    asked = override(given, options)
+    require([*values.findings, *setup_findings(asked), *file_findings(asked, exports, hardware)])
     where = place(at, load, hold, temperature)
     require(_fea_findings(where, model) if fea else ())
-    written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *_files(exports), *_hardware_files(hardware)]
+    written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *written_files(exports, hardware)]
     mechanism = open_design(design, changes, written)
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
@@ -331,9 +315,9 @@ def _close(asking: _Asking, outputs: _Written) -> None:
     if outputs.report is not None:
         save(outputs.report, pages.loop_report(found), "--report")
     for target in outputs.exports:
-        _export(found, target)
+        write_export(found, target)
     if outputs.hardware is not None:
-        _export_hardware(found, outputs.hardware, outputs.precision)
+        write_hardware(found, outputs.hardware, outputs.precision)
     answer(
         "loop",
         asking.mechanism,
@@ -378,189 +362,6 @@ def _write_example(design: Path, example: Path) -> None:
     require_writable([("--example", example)], design)
     write(example, commented_example(), "--example")
     announce(f"Wrote {example}. Next: flexstage loop {design} --setup {example}")
-
-
-def _override(record: _Record, given: Mapping[str, Any]) -> _Record:
-    """The record with the values that are given, others than `None`."""
-    return replace(record, **{name: value for name, value in given.items() if value is not None})  # type: ignore[type-var]
-
-
-def _amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
-    """What `--amplifier` says, each by its unit."""
-    known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
-    found: dict[str, float] = {}
-    for text in texts:
-        if (fit := first_that_parses(text, known)) is None:
-            what = f'found "{text}", which is no frequency, resistance or current'
-            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
-        else:
-            found[fit[0]] = fit[1]
-    return found
-
-
-def _followed(given: forms.FollowSetup | None, by: Following) -> forms.FollowSetup:
-    return forms.FollowSetup(by) if given is None else replace(given, by=by)
-
-
-def _hysteresis(said: str | None) -> forms.HystereticStacks | None:
-    """A width where the text is a ratio, else a file."""
-    if said is None:
-        return None
-    width = first_that_parses(said, {"width": RATIO})
-    return forms.HystereticStacks(file=said) if width is None else forms.HystereticStacks(width=width[1])
-
-
-def _compensation(words: Sequence[str] | None) -> tuple[Compensation, ...] | None:
-    if words is None:
-        return None
-    known = {each.value: each for each in Compensation}
-    require(
-        Finding(f"--compensate {word}", "this is nothing that is fed forward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
-        for word in words
-        if word not in known and (word != _NOTHING or len(words) > 1)
-    )
-    return tuple(known[word] for word in words if word in known)
-
-
-def _floor(given: forms.Floor, texts: Sequence[str]) -> forms.Floor | None:
-    if not texts:
-        return None
-    findings: list[Finding] = []
-    found: dict[str, forms.VibrationSetup] = {}
-    for text in texts:
-        axis, sign, value = (part.strip() for part in text.rpartition("="))
-        try:
-            shaking = _shaking(text, value)
-            found |= {each: shaking for each in ("x", "y", "z") if not sign or each == axis}
-        except DesignError as error:
-            findings += error.findings
-        if sign and axis not in ("x", "y", "z"):
-            findings.append(Finding(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three"))
-    require(findings)
-    return _override(given, found)
-
-
-def _shaking(text: str, value: str) -> forms.VibrationSetup:
-    for criterion in Criterion:
-        if value == criterion.value:
-            return forms.VibrationSetup(criterion=criterion)
-    fit = first_that_parses(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
-    if fit is None:
-        names = ", ".join(each.value for each in Criterion)
-        advice = f'Write one of {names}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
-        raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
-    return _override(forms.VibrationSetup(), {fit[0]: (fit[1],)})
-
-
-def _trajectory(given: forms.TrajectorySetup, word: str | None, moves: Sequence[str] | None) -> forms.TrajectorySetup | None:
-    """The trajectory of that name, or of that file, with the sizes of its motions."""
-    found = given if word is None else _trajectory_of_name(word, given)
-    if moves is None:
-        return found if word is not None else None
-    if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
-        name = found.TOLD_BY[1]
-        raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, by=_override(forms.Motion(), motions(moves)))
-
-
-def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:
-    """What the set-up says where it is of that kind already, else as the kind is usual; a file where the word is one."""
-    usual = (forms.StepMotion(), forms.RasterMotion(), forms.SpiralMotion(), forms.SineMotion())
-    kinds = {each.TOLD_BY[1]: each for each in usual}
-    if word in kinds:
-        return given if type(given) is type(kinds[word]) else kinds[word]
-    if word.lower().endswith(".csv"):
-        return forms.FileMotion(word)
-    raise refuse("--trajectory", f'"{word}" is none of {", ".join(kinds)}, and no CSV file', suggest_nearest(word, kinds))
-
-
-def _files(exports: Sequence[Path]) -> Iterator[tuple[str, Path]]:
-    """Files that exports come as: source and header of what is C."""
-    for target in exports:
-        yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
-
-
-def _require_names(exports: Sequence[Path], hardware: Path | None) -> None:
-    """Refuse what no export is, before anything is computed."""
-    found = [("--export", each) for target in exports for each in export_findings(target)]
-    if hardware is not None:
-        found += [("--hardware", each) for each in hardware_findings(hardware)]
-    require(Finding(f"{option} {each.where}", each.what, each.advice) for option, each in found)
-
-
-def _export(found: LoopStudy, target: Path) -> None:
-    for path, content in _contents(found, target).items():
-        write(path, content, "--export")
-        announce(f"Wrote {path}")
-    if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
-        announce(f"Within {target} the model is called {name}: its own name would not do in C.")
-
-
-def _inverse_findings(asked: forms.LoopSetup, hardware: Path | None) -> Iterator[Finding]:
-    if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
-        yield Finding("--hardware", *NO_INVERSE)
-
-
-def _path_findings(asked: forms.LoopSetup, exports: Sequence[Path]) -> Iterator[Finding]:
-    """What keeps a path from being written as it is commanded."""
-    for target in (each for each in exports if each.suffix == ".csv"):
-        if asked.follow is None:
-            advice = f"Add --follow: {', '.join(each.value for each in Following)}"
-            yield Finding(f"--export {target}", "nothing but the trajectory itself is commanded", advice)
-        elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.by)) != 1:
-            yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them, as --command x=1um")
-
-
-def _hardware_files(target: Path | None) -> Iterator[tuple[str, Path]]:
-    """The files of a controller for hardware."""
-    if target is not None:
-        yield from (("--hardware", each) for each in (target, target.with_suffix(".h"), target.with_name(f"{target.stem}_test.c")))
-
-
-def _export_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
-    machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
-    law = made_of if isinstance(made_of, Decentralised) else None
-    files = hardware_files(
-        target, machine, law, found.runs[0].simulated.reference, precision=precision, about=_about(found), legs=_legs(found)
-    )
-    for path, content in files.items():
-        write(path, content, "--hardware")
-        announce(f"Wrote {path}")
-
-
-def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
-    """What is written for one option, by file."""
-    if target.suffix == ".mat":
-        return {target: plant_file(found.plant)}
-    if target.suffix == ".csv" and (commanded := found.runs[0].commanded) is not None:
-        return {target: path_file(commanded, 1.0 / found.settled.rate, found.runs[0].simulated.coordinates)}
-    machine = driven_machine(found.settled, found.controller, found.stacks)
-    if target.suffix == ".c":
-        return controller_files(target, machine, _about(found), _legs(found))
-    if target.name.endswith(WHOLE):
-        return {target: fmu(loop_code(machine, target.stem))}
-    return {target: fmu(whole_controller(machine, target.stem, _about(found), _legs(found)))}
-
-
-def _legs(found: LoopStudy) -> SampledLegs | None:
-    """Force feedback that is part of what is exported: that of a computer."""
-    inner = found.damping
-    if inner is None or inner.rate is None:
-        return None
-    return sample_legs(inner.law, inner.sensed, inner.rate, round(inner.rate / found.settled.rate))
-
-
-def _about(found: LoopStudy) -> str:
-    """What the head of exported code says of the loop, and of inner loops that are not part of it."""
-    said = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
-    if found.damping is None:
-        return said
-    law, sensed = found.damping.law, found.damping.sensed
-    gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
-    form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
-    numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
-    where = "With" if found.damping.rate is not None else "Not in it, analogue and around it:"
-    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}."
 
 
 def _tables(found: LoopStudy) -> Iterator[Table | str | None]:
