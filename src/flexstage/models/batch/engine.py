@@ -256,7 +256,8 @@ def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
 
 def _stage(plan_: Plan, values: Array, *, slopes: bool) -> Stage:
     if plan_.surface is None:
-        numbers, derivatives = numbers_of(plan_.family, values), slopes_of(plan_.family, values) if slopes else None
+        numbers = numbers_of(plan_.family, values)
+        derivatives = slopes_of(plan_.family, values, numbers) if slopes else None
     else:
         numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
         outside = np.flatnonzero(~plan_.surface.holds(values))

@@ -117,6 +117,16 @@ def _key(link: PlacedLink) -> tuple[int, int]:
     return id(link.part), id(link.material)
 
 
+def distinct_links(assembly: Assembly) -> tuple[PlacedLink, ...]:
+    """A link of each distinct part and material, by the part's number.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(distinct_links(expand(double_triangle())))
+    6
+    """
+    return tuple(_distinct(assembly).values())
+
+
 def _number(parts: Mapping[tuple[int, int], PlacedLink], link: PlacedLink) -> int:
     return list(parts).index(_key(link))
 
@@ -143,7 +153,7 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     """
     assembly = expand(mechanism)
     result: dict[tuple[str, int], Array] = {}
-    for number, link in enumerate(_distinct(assembly).values()):
+    for number, link in enumerate(distinct_links(assembly)):
         if wanted("stiffness", number) or wanted("mass", number):
             law, mass = law_and_mass(link.part, link.material)
             result["stiffness", number], result["mass", number] = law.stiffness, mass

@@ -1,7 +1,7 @@
 """From the numbers that vary between designs to features, and their exact derivatives.
 
 A derivative is a complex step through the models' own formulas. Two variables that no feature shares are stepped together: a feature that
-comes out complex knows whose step that is, as the type of an array says what it was made of.
+comes out complex knows whose step that is, as the type of an array says what it was made of. What units tell (`units`) is not stepped.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
-from flexstage.models.batch.features import Feature, Topology, empty_rows, features, pack, topology
+from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, topology
+from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
 
@@ -66,13 +67,34 @@ class Family:
         )
 
     @cached_property
+    def told(self) -> Mapping[Key, tuple[Told, ...]]:
+        """Which derivatives of stiffnesses and masses follow from others by units; of drawn families none."""
+        moved: dict[int, dict[Path, list[int]]] = {}
+        for variable, keys in enumerate(self.touched if self.draw is None else ()):
+            owners = {owner for kind, owner in keys if kind in {"stiffness", "mass"}}
+            if owners:
+                value = _stepped(float(self.nominal[variable]))
+                links = distinct_links(expand(set_value(self.mechanism, self.addresses[variable], value)))
+                for owner in owners:
+                    paths = stepped_paths(links[owner], value)
+                    for path in paths:
+                        moved.setdefault(owner, {}).setdefault(path, []).extend([variable] * (1 if len(paths) == 1 else 2))
+        order = sorted(range(len(self.touched)), key=lambda variable: -len(self.touched[variable]))
+        links = distinct_links(expand(self.mechanism))
+        return {
+            (kind, owner): told
+            for owner, paths in moved.items()
+            for kind, told in told_by_units(links[owner], {path: each[0] for path, each in paths.items() if len(each) == 1}, order).items()
+        }
+
+    @cached_property
     def changes(self) -> tuple[Change, ...]:
         """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas."""
         shift = np.where(self.nominal != 0.0, 0.01 * self.nominal, 1e-4) * np.cos(np.arange(len(self.nominal)) + 1.0)
         values = self.nominal + np.array([[0.0], [1.0], [-0.7]]) * shift
         found: list[Change] = []
         start = 0
-        slopes = _slopes(self, values, self.widest)
+        slopes = _slopes(self, values, self.widest, {})
         for change in self.widest:
             own = slopes[start : start + len(change.rows)]
             start += len(change.rows)
@@ -136,7 +158,11 @@ def _without_requirements(mechanism: Mechanism) -> Mechanism:
 
 
 def _touched(mechanism: Mechanism, address: str, value: float) -> frozenset[Key]:
-    return _complex(set_value(mechanism, address, complex(value, abs(value) * _STEP or _STEP)))
+    return _complex(set_value(mechanism, address, _stepped(value)))
+
+
+def _stepped(value: float) -> complex:
+    return complex(value, abs(value) * _STEP or _STEP)
 
 
 def _together(touched: tuple[frozenset[Key], ...]) -> Iterator[tuple[int, ...]]:
@@ -196,8 +222,8 @@ class Slopes:
         return Slopes(self.changes, self.values[:, designs])
 
 
-def slopes_of(family_: Family, values: Array) -> Slopes:
-    """Derivatives of the features by every number that varies.
+def slopes_of(family_: Family, values: Array, numbers: Array | None = None) -> Slopes:
+    """Derivatives of the features by every number that varies; `numbers` are those of the features, if they are known already.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = family(double_triangle(), ("materials.steel.young",))
@@ -206,17 +232,46 @@ def slopes_of(family_: Family, values: Array) -> Slopes:
     >>> bool(np.allclose(slopes.values[:6] * 200e9, numbers_of(found, value)[:36:7]))
     True
     """
-    return Slopes(family_.changes, _slopes(family_, values, family_.changes))
+    found = _slopes(family_, values, family_.changes, family_.told)
+    if family_.told:
+        _follow(family_, values, numbers_of(family_, values) if numbers is None else numbers, found)
+    lost = np.flatnonzero((values[:, [item.variable for told in family_.told.values() for item in told]] == 0.0).any(axis=1))
+    if len(lost):
+        found[:, lost] = _slopes(family_, values[lost], family_.changes, {})
+    return Slopes(family_.changes, found)
 
 
-def _slopes(family_: Family, values: Array, changes: tuple[Change, ...]) -> Array:
+def _follow(family_: Family, values: Array, numbers: Array, slopes: Array) -> None:
+    """Write the derivatives that follow from others by units."""
+    places = {(change.variable, change.place.kind, change.place.owner): (at, change) for at, change in _starts(family_.changes)}
+    for key, told in family_.told.items():
+        for item in told:
+            at, change = places.get((item.variable, *key), (0, None))
+            if change is None:
+                continue
+            found = item.powers(key[0], change.rows)[:, None] * numbers[change.place.start + change.rows]
+            for other, factor in item.rest:
+                start, known = places.get((other, *key), (0, None))
+                if known is not None:
+                    _, to, of = np.intersect1d(change.rows, known.rows, assume_unique=True, return_indices=True)
+                    found[to] -= factor * values[:, other] * slopes[start + of]
+            slopes[at : at + len(change.rows)] = found / np.where(values[:, item.variable] != 0.0, values[:, item.variable], np.nan)
+
+
+def _starts(changes: tuple[Change, ...]) -> Iterator[tuple[int, Change]]:
+    start = 0
+    for change in changes:
+        yield start, change
+        start += len(change.rows)
+
+
+def _slopes(family_: Family, values: Array, changes: tuple[Change, ...], told: Mapping[Key, tuple[Told, ...]]) -> Array:
     mechanism = describe(family_, values)
     result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
-    start = 0
-    for change in changes:
-        places.setdefault(change.variable, []).append((start, change))
-        start += len(change.rows)
+    for start, change in _starts(changes):
+        if all(change.variable != item.variable for item in told.get((change.place.kind, change.place.owner), ())):
+            places.setdefault(change.variable, []).append((start, change))
     for group in family_.together:
         wanted = {(change.place.kind, change.place.owner) for number in group for _, change in places.get(number, [])}
         if not wanted:
