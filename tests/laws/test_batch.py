@@ -21,7 +21,7 @@ from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
 from flexstage.models.batch.kernel import kernel
-from flexstage.models.batch.numbers import numbers_of, slopes_of
+from flexstage.models.batch.numbers import drawn_family, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
 from flexstage.parts.body import Body, Inertia
@@ -95,6 +95,57 @@ def test_frequencies_are_those_of_each_design_alone(mechanism: Mechanism) -> Non
             assert np.max(nearest) < 1e-6
             if alone.margin < 0.999 * np.min(alone.share[list(alone.platform)]):
                 np.testing.assert_allclose(row, expected[:6] if len(expected) == 6 else row, rtol=1e-6)
+
+
+ALL_OF_A_PART = (
+    *("materials.steel.young", "materials.steel.density", "parts.neck.thickness", "parts.neck.profile.length"),
+    *(
+        "parts.neck.width",
+        "parts.foot_notch.thickness",
+        "parts.pole_neck.thickness",
+        "parts.pole_neck.profile.radius",
+        "B2/front.thickness",
+    ),
+)
+
+
+def told_and_stepped(stage: Mechanism, names: tuple[str, ...]) -> None:
+    """The same derivatives where each number is stepped: a drawn family does not know which number is what."""
+    family_plan = plan(stage, names)
+    own, values = family_plan.family, designs(family_plan, 3, 0.2)
+    if own.topology.locked:
+        return
+
+    def draw(numbers: tuple[np.ndarray, ...]) -> Mechanism:
+        result = own.mechanism
+        for name, number in zip(names, numbers, strict=True):
+            result = set_value(result, name, number)
+        return result
+
+    stepped = slopes_of(drawn_family(draw, names, own.nominal), values)
+    found, numbers, start = slopes_of(own, values), np.abs(numbers_of(own, values)), 0
+    for change, other in zip(found.changes, stepped.changes, strict=True):
+        rows = slice(start, start := start + len(change.rows))
+        assert (change.place, change.rows.tolist()) == (other.place, other.rows.tolist())
+        if change.place.kind in {"stiffness", "mass"}:
+            diagonal = numbers[change.place.slots].reshape(*change.place.shape, -1)[
+                range(change.place.shape[0]), range(change.place.shape[0])
+            ]
+            scale = np.sqrt(diagonal[:, None] * diagonal).reshape(-1, len(values))[change.rows]
+            assert np.all(np.abs(found.values[rows] - stepped.values[rows]) * values[:, change.variable] <= 1e-13 * scale)
+
+
+@given(mechanisms.fresh())
+@examples(5, 200)
+def test_what_units_tell_is_what_steps_tell(mechanism: Mechanism) -> None:
+    told_and_stepped(mechanism, varied(mechanism))
+
+
+def test_units_tell_modulus_density_and_one_length_of_every_part() -> None:
+    told = plan(double_triangle(), ALL_OF_A_PART).family.told
+    assert {ALL_OF_A_PART[item.variable] for item in told["mass", 0]} == {*ALL_OF_A_PART[:2], "parts.neck.profile.length"}
+    assert len(told["mass", 3]) == 2  # the notch's other lengths do not vary
+    told_and_stepped(double_triangle(), ALL_OF_A_PART)
 
 
 @given(rosettes.fresh())

@@ -6,17 +6,24 @@ share six parts. Numbers without batch axes hold for every design.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
+from flexstage.base.digest import Description
 from flexstage.base.number import Array
 from flexstage.beams.mass import law_and_mass
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part
+
+_BLOCK = 128
+"""Designs whose parts are integrated at once."""
 
 GROUNDED = -1
 """The ground among the numbers of bodies."""
@@ -155,8 +162,7 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     result: dict[tuple[str, int], Array] = {}
     for number, link in enumerate(distinct_links(assembly)):
         if wanted("stiffness", number) or wanted("mass", number):
-            law, mass = law_and_mass(link.part, link.material)
-            result["stiffness", number], result["mass", number] = law.stiffness, mass
+            result["stiffness", number], result["mass", number] = _in_blocks(link.part, link.material)
     for number, link in enumerate(assembly.links.values()):
         result["turn", number] = link.frame.rotation
         for kind, body in zip(("first", "second"), link.joins, strict=True):
@@ -166,6 +172,39 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
             inertia = moving_inertia(mechanism, assembly.bodies[body])
             result["inertia", number] = np.zeros((6, 6)) if inertia is None else inertia
     return result
+
+
+def _in_blocks(part: Part, material: Material | None) -> tuple[Array, Array]:
+    """Stiffness and mass of a part, some designs after the others: the stations of many do not fit into the processor's cache."""
+    count = max((len(array) for each in (part, material) for array in _arrays(each)), default=1)
+    blocks = [slice(start, start + _BLOCK) for start in range(0, count, _BLOCK)] if count > _BLOCK else [slice(None)]
+    found = [law_and_mass(_taken(part, block), _taken(material, block)) for block in blocks]
+    return _joined([law.stiffness for law, _ in found]), _joined([mass for _, mass in found])
+
+
+def _joined(arrays: list[Array]) -> Array:
+    return np.concatenate(arrays) if len(arrays) > 1 and arrays[0].ndim > 2 else arrays[0]
+
+
+def _arrays(value: Any) -> Iterator[Array]:
+    """Numbers of a description that differ between designs."""
+    if isinstance(value, np.ndarray):
+        yield value
+    elif isinstance(value, (Description, tuple)):
+        own = value if isinstance(value, tuple) else [getattr(value, field.name) for field in fields(value)]  # type: ignore[arg-type]
+        for each in own:
+            yield from _arrays(each)
+
+
+def _taken(value: Any, designs: slice) -> Any:
+    """Some designs of a description."""
+    if isinstance(value, np.ndarray):
+        return value[designs]
+    if isinstance(value, tuple):
+        return tuple(_taken(each, designs) for each in value)
+    if isinstance(value, Description) and any(True for _ in _arrays(value)):
+        return replace(value, **{field.name: _taken(getattr(value, field.name), designs) for field in fields(value)})  # type: ignore[type-var]
+    return value
 
 
 def empty_rows(rows: int, count: int) -> Array:

@@ -36,7 +36,7 @@ Path = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Told:
-    """p dF/dp of one variable: `growth`, powers of kilogram, metre and second, times those of F, times F, less `rest`, factors of p dF/dp."""
+    """p dF/dp of a variable: `growth`, factors of the powers of F's units, times F, less `rest`, factors of p dF/dp of other variables."""
 
     variable: int
     growth: tuple[float, ...]
@@ -55,11 +55,11 @@ def stepped_paths(link: PlacedLink, value: complex) -> list[Path]:
 
     >>> from flexstage.parts.rod import Rod
     >>> rod = Rod("steel", length=1.0 + 1e-20j, diameter=0.1)
-    >>> [path for path, _, number in _numbers(rod) if np.iscomplexobj(number)]
+    >>> [path for path, _, found in _numbers(rod) if np.iscomplexobj(found)]
     [('length',)]
     """
-    found = [(path, number) for path, _, number in _of_link(link) if np.iscomplexobj(number)]
-    return [path for path, number in found] if all(number == value for _, number in found) else []
+    found = {path: number for path, _, number in _of_link(link) if np.iscomplexobj(number)}
+    return list(found) if all(number == value for number in found.values()) else []
 
 
 def told_by_units(link: PlacedLink, moved: Mapping[Path, int], order: Sequence[int]) -> dict[str, tuple[Told, ...]]:
