@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from typing import TypeVar
 
 from flexstage.base.finding import DesignError
@@ -12,7 +12,7 @@ _Result = TypeVar("_Result")
 
 
 class Attempts:
-    """Gathers the reasons of results that are refused, by name, while the others go on.
+    """Gathers the reasons of results that are refused, by name, while the others go on; those `left_out` are `None` without one.
 
     >>> from flexstage.base.finding import refuse
     >>> attempts = Attempts()
@@ -22,11 +22,14 @@ class Attempts:
     (2, None, {'range': 'gauges: there are none. Add some.'})
     """
 
-    def __init__(self) -> None:
+    def __init__(self, left_out: Container[str] = ()) -> None:
         self.missing: dict[str, str] = {}
+        self._left_out = left_out
 
     def of(self, name: str, result: Callable[[], _Result]) -> _Result | None:
         """The result, or `None` with its reason noted."""
+        if name in self._left_out:
+            return None
         try:
             return result()
         except DesignError as error:
@@ -35,7 +38,6 @@ class Attempts:
 
     def of_ground(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
         """The result of its `ground` where that is there; else `None`, noted with the reason."""
-        if ground is None:
+        if ground is None and name not in self._left_out:
             self.missing[name] = reason
-            return None
-        return self.of(name, lambda: result(ground))
+        return None if ground is None else self.of(name, lambda: result(ground))

@@ -127,7 +127,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Every analysis of one model; unless `whole` without responses and units alone, half of the time, which the short form does not show.
+    """Every analysis of one model; unless `whole` without what the short form does not show (responses, units alone, most of the workspace), half of the time.
 
     What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
     the model itself is refused.
@@ -144,7 +144,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     lost = attempt.of_ground("lost_motion", linked, _RIGID, lambda known: lost_motion(kinematics, known))
     seen = (PLATFORM, *kinematics.gauges)
     command = required_command(mechanism)
-    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command))
+    reach = attempt.of("workspace", lambda: workspace(mechanism, kinematics, linear, lost=lost, command=command, whole=whole))
     hinged = linear if model is Model.LUMPED else None
 
     def responded(known: LinearModel) -> Response | None:

@@ -35,6 +35,7 @@ from flexstage.spatial.frame import MOTION
 
 _RIGID = "the ideal model has no elasticity"
 _HINGELESS = "this model knows no single hinges: use the lumped one"
+_FURTHER = frozenset({"corner", "polytope", "drive", "map_error", "gauges", "clearance", "platform_lines", "stack_lines", "loads"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +80,11 @@ def workspace(
     *,
     lost: LostMotion | None = None,
     command: Mapping[str, Number] | None = None,
+    whole: bool = True,
 ) -> Workspace:
     """Everything about the workspace that a model gives. One design; `command` absent: all single-axis strokes at once.
 
-    Raises `DesignError` where the strokes do not determine the platform.
+    Unless `whole` only strokes, resolution, stress and buckling, a third of the time; all else is `None` without a reason. Raises `DesignError` where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -90,7 +92,7 @@ def workspace(
     >>> (1e6 * workspace(stage, ideal(stage), None).single.symmetric[:3]).round(1).tolist()
     [75.0, 86.6, 300.0]
     """
-    attempt, limits, mapping = Attempts(), stroke_limits(mechanism), kinematics.mapping
+    attempt, limits, mapping = Attempts(() if whole else _FURTHER), stroke_limits(mechanism), kinematics.mapping
     single = single_strokes(mechanism, kinematics)
     asked = (
         command if command is not None else {name: float(value) for name, value in zip(single.coordinates, single.symmetric, strict=True)}
