@@ -127,10 +127,10 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Every analysis of one model; unless `whole` without what the short form does not show (responses, units alone, most of the workspace), half of the time.
+    """Every analysis of one model; unless `whole` without what the short form does not show, half of the time.
 
-    What a stage cannot give (an under-actuated one has no lost motion) is `None`, its reason in `missing`. Raises `DesignError` where
-    the model itself is refused.
+    That is responses, units alone and most of the workspace. What a stage cannot give (an under-actuated one has no lost motion) is `None`,
+    its reason in `missing`. Raises `DesignError` where the model itself is refused.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)

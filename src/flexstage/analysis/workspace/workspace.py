@@ -84,7 +84,8 @@ def workspace(
 ) -> Workspace:
     """Everything about the workspace that a model gives. One design; `command` absent: all single-axis strokes at once.
 
-    Unless `whole` only strokes, resolution, stress and buckling, a third of the time; all else is `None` without a reason. Raises `DesignError` where the strokes do not determine the platform.
+    Unless `whole` only strokes, resolution, stress and buckling, two thirds of the time; all else is `None` without a reason. Raises
+    `DesignError` where the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -150,6 +150,26 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     return np.linalg.solve(output + C @ solution @ C.T, C @ solution).T @ weight
 
 
+def estimator(model: System, observer: Array) -> System:
+    """What the observer of a model takes its states to be, x^, of what it reads, y, and of the commands, u.
+
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> model = pose_plant(integral_loop().plant)
+    >>> estimator(model, np.zeros((8, 1))).input_names
+    ('pose.x', 'command.B')
+    """
+    states = len(model.A)
+    inputs = (*model.outputs, *model.inputs)
+    outputs = tuple(Channel(f"state.{number}", "1") for number in range(states))
+    if model.step is None:
+        entry = np.hstack([observer, model.B - observer @ model.D])
+        return System(model.A - observer @ model.C, entry, np.eye(states), np.zeros(entry.shape), inputs, outputs)
+    correct = np.eye(states) - observer @ model.C
+    direct = np.hstack([observer, np.zeros((states, len(model.inputs)))])
+    return System(model.A @ correct, np.hstack([model.A @ observer, model.B]), correct, direct, inputs, outputs, model.step)
+
+
 def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array, *, sampled: bool) -> Array:
     if sampled and (doubled := _doubled(A, B, cost, effort, cross)) is not None:
         return doubled

@@ -15,12 +15,12 @@ from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.family import Family, Place
 from flexstage.control.controllers.law import Law
-from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
+from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
-from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, open_gains, own_bandwidths
+from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.view import View, resonances
 
@@ -319,35 +319,71 @@ def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
     wanted = np.full(len(seen.loops.names), frequency)
     for trust in _TRUST:
-        found, wanted = _balance_bandwidths(seen, _designer(seen, task, trust), frequency, wanted)
+        design = _designer(seen, task, trust)
+        found, wanted = _balance_bandwidths(seen, design, frequency, wanted)
         if found is not None:
-            alone = replace(found, feedforward=None)
-            yield Attempt(seen, found, open_gains(seen, alone.system(seen.step)), ((),) * len(wanted))
+            gains = seen.responses @ _strokes(seen, found, design.estimates, seen.frequencies)
+            yield Attempt(seen, found, gains, ((),) * len(wanted))
 
 
-def _designer(seen: View, task: Task, trust: float) -> Callable[[Array], LQG]:
+@dataclass(frozen=True, eq=False)
+class _Designer:
+    """Regulators for an `observer`, which is the same at every bandwidth, and so are its `estimates` (s, f, k + n).
+
+    They are the responses of its states to the loops' errors, taken from the pose, and to the strokes.
+    """
+
+    seen: View
+    task: Task
+    observer: Array
+    estimates: Array
+
+    def __call__(self, wanted: Array) -> LQG:
+        """The controller with weights for these bandwidths (k,) [Hz]."""
+        model, coordinates = self.seen.systems[0], self.seen.loops.coordinates
+        return with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.task.feedforward)
+
+
+def _designer(seen: View, task: Task, trust: float) -> _Designer:
     expected = task.expected or Disturbances(1e-9, {})
     looser = Disturbances(expected.strokes * trust, expected.gauges)
     model, coordinates = seen.systems[0], seen.loops.coordinates
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
-        seen.kept[key] = observer_gain(model, coordinates, looser)
-    observer = seen.kept[key]
-    return lambda wanted: with_observer(model, coordinates, Weights(tuple(map(float, wanted))), observer, task.feedforward)
+        observer = observer_gain(model, coordinates, looser)
+        found = resolvent(estimator(model, observer)).at(seen.frequencies)
+        count = len(seen.loops.names)
+        found[..., :count] = found[..., :count] @ np.linalg.inv(seen.loops.sense)
+        seen.kept[key] = _Designer(seen, task, observer, np.ascontiguousarray(np.moveaxis(found, 0, 1)))
+    return seen.kept[key]
 
 
-def _balance_bandwidths(seen: View, design: Callable[[Array], LQG], frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
+def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> Array:
+    """Responses (f, n, k) of the strokes to the loops' errors: u = -K x^ + K_z z, x^ the `estimates` (s, f, k + n) of e and u.
+
+    With the observer's responses known this costs no eigenvalues: (1 + K X_u) u = (K X_e + K_z Z) e.
+    """
+    count = len(seen.loops.names)
+    states, points, width = estimates.shape
+    felt = (control.regulator @ estimates.reshape(states, -1).view(float)).view(complex).reshape(-1, points, width)
+    fed = np.moveaxis(felt, 1, 0)
+    turning = 2j * np.pi * frequencies
+    sums = 1.0 / turning if seen.step is None else seen.step / np.expm1(turning * seen.step)
+    entered = fed[..., :count] + (control.integral @ np.linalg.inv(seen.loops.sense)) * sums[:, None, None]
+    return np.linalg.solve(np.eye(len(felt)) + fed[..., count:], entered)
+
+
+def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
     """The design whose loops all pass 1 at the frequency, or the nearest to it that a few rounds give; and its weights' bandwidths."""
     found = None
     low = np.flatnonzero(seen.frequencies < _AROUND * frequency)[::2]
-    near = replace(seen, frequencies=seen.frequencies[low], responses=seen.responses[:1, low])
+    frequencies, responses, estimates = seen.frequencies[low], seen.responses[0, low], np.ascontiguousarray(design.estimates[:, low])
     for _ in range(_ROUNDS):
         if not np.all(np.isfinite(wanted)) or (seen.step is not None and np.max(wanted) >= 0.5 / seen.step):
             return None, np.full(len(wanted), frequency)
         found = design(wanted)
-        alone = replace(found, feedforward=None)  # which passes no loop
-        gains = np.abs(open_gains(near, alone.system(seen.step))[0])
-        passed = np.array([crossing_frequency(near.frequencies, gains[:, loop, loop]) for loop in range(len(wanted))])
+        gains = np.abs(np.einsum("fkn,fnk->kf", responses, _strokes(seen, found, estimates, frequencies)))
+        passed = np.array([crossing_frequency(frequencies, own) for own in gains])
         ratio = np.clip(passed / frequency, 1.0 / _AROUND, _AROUND)
         if np.all(np.abs(ratio - 1.0) < _AGREES):
             break

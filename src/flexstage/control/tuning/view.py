@@ -64,8 +64,8 @@ class View:
         return {}
 
     @cached_property
-    def kept(self) -> dict[Any, Array]:
-        """What is the same at all frequencies of a search, kept by it: responses of notches, observers' gains."""
+    def kept(self) -> dict[Any, Any]:
+        """What is the same at all frequencies of a search, kept by it: responses of notches, observers."""
         return {}
 
 
