@@ -1,4 +1,4 @@
-"""LAPACK, assignments and zeros without the rest of scipy: its results to the last bit; minima are where scipy finds them."""
+"""LAPACK and assignments without the rest of scipy: its results to the last bit."""
 
 import subprocess
 import sys
@@ -9,8 +9,6 @@ import scipy
 
 from flexstage.base import lapack
 from flexstage.base.assignment import assignment
-from flexstage.base.minimum import descend, lowest, root
-from flexstage.control.study.runs import _REPEATED, _STUDENT
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
@@ -47,48 +45,11 @@ def test_assignments_are_those_of_scipy():
         np.testing.assert_array_equal(assignment(cost), scipy.optimize.linear_sum_assignment(cost))
 
 
-def test_zeros_are_those_of_scipy():
-    for place in np.linspace(0.1, 2.9, 9).tolist():
-        found = root(lambda x, place=place: np.tanh(3.0 * (x - place)), 0.0, 3.0, within=1e-12)
-        assert found == scipy.optimize.brentq(lambda x, place=place: np.tanh(3.0 * (x - place)), 0.0, 3.0, xtol=1e-12)
-    with pytest.raises(ValueError, match="sign"):
-        root(lambda x: x * x + 1.0, -1.0, 1.0, within=1e-9)
-
-
-@pytest.mark.parametrize("sharp", [1.0, 30.0])
-def test_minima_are_where_scipy_finds_them(sharp):
-    """Logarithms of sums of exponentials: convex, and at a sharpness of 30 nearly with kinks."""
-    random = np.random.default_rng(int(sharp))
-    for size in (1, 2, 6):
-        rows, start = random.standard_normal((4 * size, size)), random.standard_normal(size)
-        rows -= np.mean(rows, axis=0)  # so that there is a minimum
-
-        def soft(place, rows=rows):
-            weights = scipy.special.softmax(sharp * rows @ place)
-            return float(scipy.special.logsumexp(sharp * rows @ place)) / sharp + 0.01 * place @ place, rows.T @ weights + 0.02 * place
-
-        place, value = descend(soft, start, within=1e-9)
-        known = scipy.optimize.minimize(soft, start, jac=True, method="BFGS", options={"gtol": 1e-9})
-        np.testing.assert_allclose(place, known.x, atol=1e-7)
-        np.testing.assert_allclose([value, soft(place)[0]], known.fun, rtol=1e-13)
-
-
-def test_a_descent_ends_on_a_kink_and_a_search_within_its_tolerance():
-    place, _ = descend(lambda x: (float(np.sum(np.abs(x - 1.0))), np.sign(x - 1.0)), np.array([3.3, -2.2]), within=1e-9)
-    np.testing.assert_allclose(place, 1.0, atol=1e-6)
-    assert abs(lowest(lambda x: abs(x - 0.3), -1.0, 2.0, within=1e-9) - 0.3) < 1e-9
-
-
-def test_students_t_is_that_of_scipy():
-    assert scipy.special.stdtrit(_REPEATED - 1, 0.975) == _STUDENT
-
-
 @pytest.mark.parametrize(
     ("asked", "package"),
     [
         ("from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2))", "scipy.linalg"),
         ("from flexstage.base.assignment import assignment as f; f(numpy.eye(2))", "scipy.optimize"),
-        ("from flexstage.base.minimum import root as f; f(lambda x: x - 1.0, 0.0, 3.0, within=1e-9)", "scipy.optimize"),
     ],
 )
 def test_the_rest_of_scipy_is_not_loaded(asked, package):

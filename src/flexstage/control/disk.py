@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+import scipy
 
-from flexstage.base.minimum import lowest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
@@ -138,7 +138,9 @@ def _local_maximum(response: Resolvent, ends: tuple[float, float]) -> tuple[floa
     def below(frequency: float) -> float:
         return -_bound(response, frequency)[0]
 
-    places = [lowest(below, *ends, within=1e-7 * ends[1]), *ends]
+    options = {"xatol": 1e-7 * ends[1], "maxiter": 40}
+    found: Any = scipy.optimize.minimize_scalar(below, bounds=ends, method="bounded", options=options)
+    places = [float(found.x), *ends]
     heights = [-below(place) for place in places]
     best = int(np.argmax(heights))
     return places[best], heights[best]

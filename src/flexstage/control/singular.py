@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
+import scipy
 
-from flexstage.base.minimum import descend
 from flexstage.base.number import Array
 
 _POWERS = (4.0, 32.0, 256.0, 2048.0)
@@ -53,10 +51,10 @@ def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
     """
     best, logs = scaled_size(matrix, start), start
     for power in _POWERS:
-        found, _ = descend(partial(_smooth, matrix=matrix, power=power), logs, within=1e-9)
-        size = scaled_size(matrix, found)
+        found = scipy.optimize.minimize(_smooth, logs, args=(matrix, power), jac=True, method="BFGS", options={"gtol": 1e-9})
+        size = scaled_size(matrix, found.x)
         if size < best:
-            best, logs = size, found
+            best, logs = size, found.x
     return best, logs - np.mean(logs)
 
 
@@ -78,8 +76,11 @@ def lower_bound(matrix: Array) -> tuple[float, Array]:
     """
     left, _, right = np.linalg.svd(matrix)
     starts = [np.zeros(len(matrix)), *(-np.angle(left[:, index]) - np.angle(right[index]) for index in range(min(2, len(matrix))))]
-    phases, least = min((descend(partial(_radius, matrix=matrix), start, within=1e-10) for start in starts), key=lambda found: found[1])
-    return float(np.exp(-least)), phases
+    results = [
+        scipy.optimize.minimize(_radius, start, args=(matrix,), jac=True, method="BFGS", options={"gtol": 1e-10}) for start in starts
+    ]
+    best = min(results, key=lambda result: result.fun)
+    return float(np.exp(-best.fun)), np.asarray(best.x)
 
 
 def _radius(phases: Array, matrix: Array) -> tuple[float, Array]:

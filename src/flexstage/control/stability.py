@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.minimum import root
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY, RATE
@@ -119,8 +119,8 @@ def _edge(open_loop: System, start: float, ratio: float, steps: int) -> float | 
     for _ in range(steps):
         outside = inside * ratio
         if _growth(open_loop, outside) >= 0.0:
-            edge = root(lambda log: _growth(open_loop, float(np.exp(log))), float(np.log(inside)), float(np.log(outside)), within=1e-13)
-            return float(np.exp(edge))
+            found: Any = scipy.optimize.brentq(lambda log: _growth(open_loop, np.exp(log)), np.log(inside), np.log(outside), xtol=1e-13)
+            return float(np.exp(found))
         inside = outside
     return None
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+import scipy
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.minimum import root
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, FREQUENCY, TIME
@@ -270,8 +270,10 @@ def _scan_delay(closed: Loop, expected: float) -> float:
     for number in range(1, 31):
         outside = 0.1 * number * expected
         if _delay_loop(closed, outside).system.growth >= 0.0:
-            inside = outside - 0.1 * expected
-            return root(lambda delay: _delay_loop(closed, delay).system.growth, inside, outside, within=1e-13 * expected)
+            found: Any = scipy.optimize.brentq(
+                lambda delay: _delay_loop(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
+            )
+            return float(found)
     return np.inf
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Annotated
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
@@ -41,8 +42,6 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 _BAND = 0.02
 _STILL, _FEWEST, _MOST = 5.0, 5_000, 50_000
 _REPEATED = 6
-_STUDENT = 2.5705818356363146
-"""Student's t that 97.5 % lie below, of five degrees of freedom, one less than runs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -297,7 +296,7 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
         found = _simulate_noise(replace(given, setup=replace(given.setup, seed=seed)), computed, np.tile(held, (count, 1)), rest, held)
         squares.append(np.mean(found.true_error**2, axis=0))
     mean = np.mean(squares, axis=0)
-    reach = _STUDENT * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
+    reach = scipy.special.stdtrit(_REPEATED - 1, 0.975) * np.std(squares, axis=0, ddof=1) / np.sqrt(_REPEATED)
     low, high = np.sqrt(np.maximum(mean - reach, 0.0)), np.sqrt(mean + reach)
     return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
 
