@@ -21,6 +21,9 @@ from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
 MODES = 12
 """Platform modes that the kernel finds at most."""
 
+_MORE, _ROUNDS = 1, 2
+"""Vectors of a block beyond the wanted modes; how often these are found one by one at most."""
+
 _KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
 _DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
 _SIZES = (
@@ -32,16 +35,17 @@ _SIZES = (
     "numbers",
     "m",
     "count",
-    "degree",
     "rounds",
+    "steps",
     "variables",
     "slots",
     "entries",
     "single",
+    "parts",
 )
-_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "zero")
-_ARRAYS = ("block", "numbers_", "changes")
-_SETTINGS = ("edge", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
+_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry")
+_ARRAYS = ("force", "numbers_", "changes")
+_SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
 _RESULTS = ("values", "share", "good", "slopes")
 
 
@@ -65,7 +69,7 @@ class Tables:
 
     @cached_property
     def arrays(self) -> Mapping[str, Array]:
-        """Every table but that of zeros, which depends on the numbers."""
+        """Every table."""
         return _tables(self.scheme) | _slots(self.scheme, self.changes)
 
 
@@ -114,7 +118,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _rows(stage.numbers)
     change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
-    held = {**tables.arrays, "zero": _zero(stage), "block": np.ascontiguousarray(start.block), "numbers_": number, "changes": change}
+    held = {**tables.arrays, "force": np.ascontiguousarray(start.force[..., : _columns(start)]), "numbers_": number, "changes": change}
     stride = count + -count % width
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
@@ -142,20 +146,25 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "edges": len(graph.edges),
         "updates": sum(map(len, graph.updates)),
         "numbers": stage.numbers.shape[0],
-        "m": start.block.shape[-1],
+        "m": _columns(start),
         "count": start.choice.count,
-        "degree": start.degree,
-        "rounds": start.rounds,
+        "rounds": _ROUNDS,
+        "steps": 1 if np.isinf(start.angle) else 2,
         "variables": stage.variables,
         "slots": len(tables.arrays["slot"]),
         "entries": len(tables.arrays["entry"]),
-        "single": 0 if np.isinf(start.angle) else min(start.needed, start.block.shape[-1]),
+        "single": start.needed,
+        "parts": stage.scheme.topology.parts,
     }
-    settings = (start.edge, start.value, start.angle, start.choice.limit, start.choice.cluster, TOGETHER, SHARES, MARGIN, LEAST_PIVOT)
+    settings = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster, TOGETHER, SHARES, MARGIN, LEAST_PIVOT)
     task: Any = _Task()
     for name, value in (*sizes.items(), *zip(_SETTINGS, settings, strict=True)):
         setattr(task, name, value)
     return task
+
+
+def _columns(start: Start) -> int:
+    return min(start.needed + _MORE, start.force.shape[-1])
 
 
 def _tables(scheme: Scheme) -> dict[str, Array]:
@@ -181,16 +190,6 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
         "inertia": np.array([inertia + 36 * body for body in graph.order], dtype=np.int64),
         "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),
     }
-
-
-def _zero(stage: Stage) -> Array:
-    """Which 3x3 blocks of laws and masses are zero in every design."""
-    parts = stage.scheme.topology.parts
-    filled = (stage.numbers[: 180 * parts] != 0.0).any(axis=1)
-    stiffness = filled[: 36 * parts].reshape(parts, 2, 3, 2, 3).any(axis=(2, 4))
-    mass = filled[36 * parts :].reshape(parts, 4, 3, 4, 3).any(axis=(2, 4))
-    both = np.concatenate([stiffness.reshape(parts, -1), mass.reshape(parts, -1)], axis=1)
-    return (~both).astype(np.int64)
 
 
 def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:

@@ -17,7 +17,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.batch.blocks import Scheme, scheme
+from flexstage.models.batch.blocks import Scheme, blocks, dense, scheme
 from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
@@ -40,6 +40,10 @@ _DEGREE, _GROWTH = 7, 1e10
 
 _VALUE, _ANGLE = 1e-6, 1e-6
 """Relative bound of eigenvalues; bound of the angles of vectors, where derivatives are asked for."""
+
+
+_WIDE = 0.02
+"""Relative gap of eigenvalues in which a shift may lie."""
 
 
 class Status(IntEnum):
@@ -133,15 +137,16 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Arr
     if family_.topology.locked:
         lumped(family_.mechanism)  # says which bodies can move freely
         return Plan(family_, scheme_, choice, None)
-    modes = every_mode(scheme_, numbers_of(family_, family_.nominal[None]))
+    numbers = numbers_of(family_, family_.nominal[None])
+    modes = every_mode(scheme_, numbers)
     if not len(modes.values):
         lumped(family_.mechanism)  # says which bodies can move freely
         return Plan(family_, scheme_, choice, None)
     fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
-    return Plan(family_, scheme_, choice, *_starts(scheme_, modes, choice), fitted)
+    return Plan(family_, scheme_, choice, *_starts(scheme_, dense(scheme_, blocks(scheme_, numbers)[1])[0], modes, choice), fitted)
 
 
-def _starts(scheme_: Scheme, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:
+def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:
     """The modes to begin with, as many as make the fewest operations, and the most there is room for; none if that is not less than all."""
     picked = choose(modes.values[None], modes.share[None], choice)
     values = modes.values
@@ -154,18 +159,27 @@ def _starts(scheme_: Scheme, modes: Whole, choice: Choice) -> tuple[Start | None
     few = counts[:7]
     cost = few * (1.0 + few / 30.0) / np.arccosh(2.0 * values[few] / values[needed - 1] - 1.0)
     most = counts[-3:][np.argmax(values[counts[-3:]] / values[counts[-3:] - 1])]
-    first, wider = (_start(scheme_, modes, choice, int(count), needed) for count in (few[np.argmin(cost)], most))
+    both = np.stack([modes.shapes, inertia @ modes.shapes])[:, np.argsort(scheme_.coordinates)]
+    first, wider = (_start(values, both[..., : int(count)], choice, needed) for count in (few[np.argmin(cost)], most))
+    wider = replace(wider, needed=int(most) - 1)
     return first, wider if most > first.block.shape[-1] else None
 
 
-def _start(scheme_: Scheme, modes: Whole, choice: Choice, count: int, needed: int) -> Start:
-    values = modes.values
-    order = np.argsort(scheme_.coordinates)
-    block = np.ascontiguousarray(modes.shapes[order, :count]).reshape(-1, 6, count)
+def _start(values: Array, both: Array, choice: Choice, needed: int) -> Start:
+    """The modes of the lowest values, and M times them (2, n, count), as what to begin with."""
+    count = both.shape[-1]
+    block, force = (np.ascontiguousarray(each).reshape(-1, 6, count) for each in both)
     edge = float(values[count] / values[count - 1])
     spread = 4.0 * values[count] / values[0] - 2.0  # twice the argument of the polynomial at the lowest mode: its powers are the growth
     degree = max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread))))
-    return Start(block, choice, edge, degree, value=_VALUE, needed=needed)
+    return Start(block, choice, edge, degree, value=_VALUE, needed=needed, force=force, shift=_shift(values[:needed]))
+
+
+def _shift(values: Array) -> float:
+    """Amid the wanted eigenvalues, far from each."""
+    edges = np.concatenate([[0.0], values])
+    between, wide = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges) > _WIDE * edges[1:]
+    return float(between[wide][np.argmin(np.abs(between[wide] - 0.5 * (values[0] + values[-1])))])
 
 
 @one_thread

@@ -15,7 +15,7 @@ typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, degree, rounds, variables, slots, entries, single;
+    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, slots, entries, single, parts;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
@@ -29,12 +29,11 @@ typedef struct {
     const int64_t *reach;   /* links + 1: where the slots of each link begin in the following */
     const int64_t *about;   /* slots that are about a link or its part */
     const int64_t *entry;   /* entries x (variable, slot), by variable */
-    const int64_t *zero;    /* parts x 20: 3x3 blocks that are zero, 4 of the stiffness and 16 of the mass */
-    const double *block;    /* bodies x 6 x m: what to begin with */
+    const double *force;    /* bodies x 6 x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
     const double *changes;  /* entries x slopes_stride */
     /* settings */
-    double edge, value, angle, limit, cluster, together, shares, margin, pivot;
+    double shift, value, angle, limit, cluster, together, shares, margin, pivot;
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
     int64_t *good;          /* designs */
@@ -42,6 +41,11 @@ typedef struct {
 } Task;
 
 #define INLINE inline __attribute__((always_inline))
+#if defined(__clang__)
+#define UNROLL /* does so by itself, and worse where told to */
+#else
+#define UNROLL _Pragma("GCC unroll 36") /* small fixed loops: what they work on stays in registers */
+#endif
 
 /* ---- lanes ---- */
 
@@ -59,59 +63,52 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
 
 /* ---- 6x6 blocks ---- */
 
-/* y (6, m) += sign a x, or sign a^T x, or, fresh, y = a x; columns in threes, so that each entry of a is used three times. All of x is read
- * of a column before any of y is written. */
-#define COLUMNS(N)                                                                   \
-    {                                                                                \
-        lanes v[6 * N];                                                              \
-        for (int c = 0; c < 6; c++)                                                  \
-            for (int k = 0; k < N; k++) v[c * N + k] = x[c * m + j + k];             \
-        _Pragma("GCC unroll 1") for (int r = 0; r < 6; r++) {                        \
-            lanes s[N];                                                              \
-            for (int k = 0; k < N; k++) s[k] = fresh ? all(0.0) : y[r * m + j + k];  \
-            for (int c = 0; c < 6; c++) {                                            \
-                const lanes e = turned ? a[c * 6 + r] : a[r * 6 + c];                \
-                for (int k = 0; k < N; k++) s[k] = negative ? s[k] - e * v[c * N + k] : s[k] + e * v[c * N + k]; \
-            }                                                                        \
-            for (int k = 0; k < N; k++) y[r * m + j + k] = s[k];                     \
-        }                                                                            \
-    }
+/* Own blocks of bodies are symmetric: their lower triangles by rows. Edges are whole. */
+#define OWN 21
+#define LOWER(i, k) ((i) * ((i) + 1) / 2 + (k)) /* k <= i */
 
-static INLINE void multiply(
-    lanes *y, const lanes *restrict a, const lanes *x, int m, const int turned, const int negative, const int fresh)
+enum { PLAIN, TURNED, SYMMETRIC };
+
+static INLINE lanes entry(const lanes *a, int r, int c, const int kind)
 {
-    int j = 0;
-    for (; j + 3 <= m; j += 3) COLUMNS(3)
-    if (m - j == 2) COLUMNS(2)
-    else if (m - j == 1) COLUMNS(1)
+    return a[kind == SYMMETRIC ? r >= c ? LOWER(r, c) : LOWER(c, r) : kind == TURNED ? 6 * c + r : 6 * r + c];
 }
 
-static void add(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 0, 0); }
-static void add_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 0, 0); }
-static void take(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 0, 1, 0); }
-static void take_turned(lanes *restrict y, const lanes *restrict a, const lanes *restrict x, int m) { multiply(y, a, x, m, 1, 1, 0); }
-static void set(lanes *y, const lanes *restrict a, const lanes *x, int m) { multiply(y, a, x, m, 0, 0, 1); }
-
-/* Inverse without exchange of rows, and the pivots. */
-static void invert(lanes *a, lanes *pivots)
+/* n columns x (6, n), side by side, from v (6, m). */
+static INLINE void pick_columns(lanes *x, const lanes *v, int m, const int n)
 {
-    for (int s = 0; s < 6; s++) {
-        pivots[s] = a[s * 7];
-        const lanes inverse = 1.0 / a[s * 7];
-        lanes column[6], row[6];
-        for (int i = 0; i < 6; i++) column[i] = a[i * 6 + s];
-        for (int i = 0; i < 6; i++) row[i] = a[s * 6 + i] * inverse;
-        for (int i = 0; i < 6; i++)
-            for (int k = 0; k < 6; k++) a[i * 6 + k] -= column[i] * row[k];
-        for (int i = 0; i < 6; i++) a[s * 6 + i] = row[i], a[i * 6 + s] = -column[i] * inverse;
-        a[s * 7] = inverse;
+    UNROLL for (int c = 0; c < 6; c++)
+        UNROLL for (int k = 0; k < n; k++) x[c * n + k] = v[c * m + k];
+}
+
+/* n columns of y (6, m) += a x or -= a x: each entry of a is used n times. */
+static INLINE void multiply(lanes *restrict y, const lanes *restrict a, const lanes *x, int m, const int kind, const int negative, const int n)
+{
+    UNROLL for (int r = 0; r < 6; r++) {
+        lanes s[4];
+        UNROLL for (int k = 0; k < n; k++) s[k] = y[r * m + k];
+        UNROLL for (int c = 0; c < 6; c++) {
+            const lanes e = entry(a, r, c, kind);
+            UNROLL for (int k = 0; k < n; k++) s[k] = negative ? s[k] - e * x[c * n + k] : s[k] + e * x[c * n + k];
+        }
+        UNROLL for (int k = 0; k < n; k++) y[r * m + k] = s[k];
     }
 }
+
+/* `what` with four columns from j on at once, then with what is left of m. */
+#define IN_COLUMNS(m, what)                                            \
+    {                                                                  \
+        int j = 0;                                                     \
+        for (; j + 4 <= (m); j += 4) { enum { n = 4 }; what; }         \
+        if ((m) - j == 3) { enum { n = 3 }; what; }                    \
+        else if ((m) - j == 2) { enum { n = 2 }; what; }               \
+        else if ((m) - j == 1) { enum { n = 1 }; what; }               \
+    }
 
 /* ---- assembly ---- */
 
 /* out (6x6, 3x3 blocks at row0, col0 of `from`, `stride` wide) turned into the stage's axes: R block R^T. */
-static void turn(lanes *out, const lanes *from, int stride, const lanes *r, const int64_t *zero)
+static void turn(lanes *out, const lanes *from, int stride, const lanes *r, const int *zero)
 {
     for (int p = 0; p < 2; p++)
         for (int q = 0; q < 2; q++) {
@@ -130,10 +127,9 @@ static void turn(lanes *out, const lanes *from, int stride, const lanes *r, cons
         }
 }
 
-/* out += sign T(a)^T n T(b), T = [1, [arm]x; 0, 1]; out turned if asked. */
-static void carried(lanes *out, const lanes *n, const lanes *a, const lanes *b, double sign, int turned)
+/* p = n T(b), T = [1, [arm]x; 0, 1]. */
+static INLINE void carried(lanes *p, const lanes *n, const lanes *b)
 {
-    lanes p[36];
     for (int i = 0; i < 6; i++) {
         const lanes *v = n + 6 * i;
         p[6 * i] = v[0], p[6 * i + 1] = v[1], p[6 * i + 2] = v[2];
@@ -141,167 +137,252 @@ static void carried(lanes *out, const lanes *n, const lanes *a, const lanes *b, 
         p[6 * i + 4] = v[4] + (v[2] * b[0] - v[0] * b[2]);
         p[6 * i + 5] = v[5] + (v[0] * b[1] - v[1] * b[0]);
     }
-    for (int k = 0; k < 6; k++) {
-        const lanes x = p[k], y = p[6 + k], z = p[12 + k];
-        p[18 + k] += y * a[2] - z * a[1];
-        p[24 + k] += z * a[0] - x * a[2];
-        p[30 + k] += x * a[1] - y * a[0];
-    }
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) out[turned ? 6 * k + i : 6 * i + k] += sign * p[6 * i + k];
 }
 
+/* out += sign T(a)^T p, out of a kind. */
+static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign, const int kind)
+{
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < (kind == SYMMETRIC ? i + 1 : 6); k++) {
+            lanes x = p[6 * i + k];
+            if (i > 2) x += p[6 * ((i + 1) % 3) + k] * a[(i + 2) % 3] - p[6 * ((i + 2) % 3) + k] * a[(i + 1) % 3];
+            out[kind == SYMMETRIC ? LOWER(i, k) : kind == TURNED ? 6 * k + i : 6 * i + k] += sign * x;
+        }
+}
+
+/* A link's edge -= or += T(a)^T p. */
+static void join_edge(lanes *out, const lanes *p, const lanes *a, double sign, int turned)
+{
+    if (turned) join(out, p, a, sign, TURNED);
+    else join(out, p, a, sign, PLAIN);
+}
+
+/* What of a part's law and mass is not zero in every design: 3x3 blocks (4 and 16) that are; columns by row (6 and 12). */
+typedef struct { int zero[20], start[19], column[180]; } Law;
+
 typedef struct {
+    Law *law;
+    int fills;                       /* whether elimination makes edges */
     lanes *number, *change;          /* the numbers of these designs, and their derivatives */
     lanes *numbers, *changes;        /* those of AHEAD vectors of designs */
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
-    lanes *inverse, *edge;           /* K factored */
-    lanes *other, *other_edge;       /* K - sigma M factored */
-    lanes *before, *now, *next, *force, *ahead, *heavy; /* blocks of vectors */
+    lanes *other, *other_edge;       /* K - shift M factored */
+    lanes *now, *next, *force, *ahead; /* blocks of vectors */
     lanes *shapes;                   /* modes found (6 bodies, count) */
     lanes *sum;                      /* slots x pairs */
 } Room;
 
 static void assemble(const Task *t, Room *w)
 {
-    memset(w->stiff, 0, sizeof(lanes) * 36 * t->bodies);
+    memset(w->stiff, 0, sizeof(lanes) * OWN * t->bodies);
     memset(w->stiff_edge, 0, sizeof(lanes) * 36 * t->edges);
     memset(w->mass_edge, 0, sizeof(lanes) * 36 * t->edges);
-    for (int64_t b = 0; b < t->bodies; b++) memcpy(w->mass + 36 * b, w->number + t->inertia[b], sizeof(lanes) * 36);
+    for (int64_t b = 0; b < t->bodies; b++)
+        for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
     for (int64_t l = 0; l < t->links; l++) {
         const int64_t part = t->link[4 * l], a = t->link[4 * l + 1], b = t->link[4 * l + 2], e = t->link[4 * l + 3];
         const lanes *r = w->number + t->start[2] + 9 * l, *first = w->number + t->start[3] + 3 * l, *second = w->number + t->start[4] + 3 * l;
         const lanes *m = w->number + t->start[1] + 144 * part;
-        const int64_t *zero = t->zero + 20 * part;
-        lanes n[36];
+        const int *zero = w->law[part].zero;
+        lanes n[36], p[36];
         turn(n, w->number + t->start[0] + 36 * part, 6, r, zero);
-        if (a >= 0) carried(w->stiff + 36 * a, n, first, first, 1.0, 0);
-        if (b >= 0) carried(w->stiff + 36 * b, n, second, second, 1.0, 0);
-        if (e >= 0) carried(w->stiff_edge + 36 * e, n, first, second, -1.0, a > b);
-        if (a >= 0) turn(n, m, 12, r, zero + 4), carried(w->mass + 36 * a, n, first, first, 1.0, 0);
-        if (b >= 0) turn(n, m + 78, 12, r, zero + 14), carried(w->mass + 36 * b, n, second, second, 1.0, 0);
-        if (e >= 0) turn(n, m + 6, 12, r, zero + 6), carried(w->mass_edge + 36 * e, n, first, second, 1.0, a > b);
+        if (a >= 0) carried(p, n, first), join(w->stiff + OWN * a, p, first, 1.0, SYMMETRIC);
+        if (b >= 0) carried(p, n, second), join(w->stiff + OWN * b, p, second, 1.0, SYMMETRIC);
+        if (e >= 0) join_edge(w->stiff_edge + 36 * e, p, first, -1.0, a > b);
+        if (a >= 0) turn(n, m, 12, r, zero + 4), carried(p, n, first), join(w->mass + OWN * a, p, first, 1.0, SYMMETRIC);
+        if (b >= 0) turn(n, m + 78, 12, r, zero + 14), carried(p, n, second), join(w->mass + OWN * b, p, second, 1.0, SYMMETRIC);
+        if (e >= 0) turn(n, m + 6, 12, r, zero + 6), carried(p, n, second), join_edge(w->mass_edge + 36 * e, p, first, 1.0, a > b);
     }
 }
 
-/* Factor in place: own blocks become inverses, edges those of L^T. Gives per lane how many pivots are negative and the least pivot over its
- * own diagonal entry. */
-static void eliminate(const Task *t, lanes *own, lanes *edge, lanes *negative, lanes *least)
+/* ---- elimination ---- */
+
+/* a = L D L^T: L below the diagonal, D^-1 on it. */
+static INLINE void invert(lanes *a, lanes *pivot)
 {
-    *negative = all(0.0), *least = all(INFINITY);
-    lanes diagonal[6 * t->bodies];
-    for (int64_t i = 0; i < 6 * t->bodies; i++) diagonal[i] = own[36 * (i / 6) + 7 * (i % 6)];
+    UNROLL for (int s = 0; s < 6; s++) {
+        const lanes inverse = 1.0 / (pivot[s] = a[LOWER(s, s)]);
+        UNROLL for (int i = s + 1; i < 6; i++) {
+            const lanes l = a[LOWER(i, s)] * inverse;
+            for (int k = s + 1; k <= i; k++) a[LOWER(i, k)] -= l * a[LOWER(k, s)];
+        }
+        UNROLL for (int i = s + 1; i < 6; i++) a[LOWER(i, s)] *= inverse;
+        a[LOWER(s, s)] = inverse;
+    }
+}
+
+/* An own block -= x^T D x, of rows from `first` to `last`. */
+static INLINE void update(lanes *restrict to, const lanes *restrict x, const lanes *restrict a, const int first, const int last)
+{
+    lanes sum[OWN];
+    UNROLL for (int i = LOWER(first, 0); i < LOWER(last, 0); i++) sum[i] = to[i];
+    UNROLL for (int r = 0; r < 6; r++)
+        UNROLL for (int i = first; i < last; i++) {
+            const lanes scaled = x[6 * r + i] * a[LOWER(r, r)];
+            for (int k = 0; k <= i; k++) sum[LOWER(i, k)] -= scaled * x[6 * r + k];
+        }
+    UNROLL for (int i = LOWER(first, 0); i < LOWER(last, 0); i++) to[i] = sum[i];
+}
+
+/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves. Gives per lane how many
+ * pivots are negative and the least pivot over its own entry of K, where these are asked for. */
+static INLINE void eliminate(const Task *t, Room *w, lanes shift, const int told, lanes *negative, lanes *least)
+{
+    for (int64_t i = 0; i < OWN * t->bodies; i++) w->other[i] = w->stiff[i] - shift * w->mass[i];
+    if (w->fills)
+        for (int64_t i = 0; i < 36 * t->edges; i++) w->other_edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
     for (int64_t v = 0; v < t->bodies; v++) {
-        lanes pivots[6], plain[36];
-        invert(own + 36 * v, pivots);
-        for (int i = 0; i < 6; i++) {
-            const lanes ratio = pivots[i] / diagonal[6 * v + i];
-            *negative += pick(pivots[i] < 0.0, all(1.0), all(0.0));
+        lanes a[OWN], pivot[6];
+        UNROLL for (int i = 0; i < OWN; i++) a[i] = w->other[OWN * v + i];
+        invert(a, pivot);
+        UNROLL for (int i = 0; i < OWN; i++) w->other[OWN * v + i] = a[i];
+        UNROLL for (int s = 0; told && s < 6; s++) {
+            const lanes ratio = size_of(pivot[s]) / w->stiff[OWN * v + LOWER(s, s)];
+            *negative += pick(pivot[s] < 0.0, all(1.0), all(0.0));
             *least = pick(ratio >= *least, *least, ratio);
         }
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
-            memcpy(plain, edge + 36 * e, sizeof plain);
-            /* Products with edges that are still plain: those at and after this one. */
-            lanes solved[36];
-            set(solved, own + 36 * v, plain, 6);
-            for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
-                const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
-                if (left != e) continue;
-                if (target < 0) take_turned(own + 36 * t->later[e], plain, solved, 6);
-                else {
-                    lanes other[36];
-                    set(other, own + 36 * v, edge + 36 * right, 6);
-                    take_turned(edge + 36 * target, plain, other, 6);
-                }
+        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
+            UNROLL for (int half = 0; half < 6; half += 3) {
+                lanes *to = w->other_edge + 36 * e + half, x[18];
+                const lanes *k = w->stiff_edge + 36 * e + half, *m = w->mass_edge + 36 * e + half;
+                UNROLL for (int i = 0; i < 18; i++) x[i] = w->fills ? to[6 * (i / 3) + i % 3] : k[6 * (i / 3) + i % 3] - shift * m[6 * (i / 3) + i % 3];
+                UNROLL for (int s = 0; s < 6; s++)
+                    UNROLL for (int i = s + 1; i < 6; i++)
+                        UNROLL for (int c = 0; c < 3; c++) x[3 * i + c] -= w->other[OWN * v + LOWER(i, s)] * x[3 * s + c];
+                UNROLL for (int i = 0; i < 18; i++) to[6 * (i / 3) + i % 3] = x[i];
             }
-            memcpy(edge + 36 * e, solved, sizeof solved);
+        for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
+            const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
+            const lanes *x = w->other_edge + 36 * left;
+            if (target < 0) {
+                update(w->other + OWN * t->later[left], x, w->other + OWN * v, 3, 6);
+                update(w->other + OWN * t->later[left], x, w->other + OWN * v, 0, 3);
+            } else
+                UNROLL for (int c = 0; c < 6; c++) {
+                    lanes scaled[6];
+                    UNROLL for (int i = 0; i < 6; i++) scaled[i] = a[LOWER(i, i)] * w->other_edge[36 * right + 6 * i + c];
+                    multiply(w->other_edge + 36 * target + c, x, scaled, 6, TURNED, 1, 1);
+                }
         }
     }
 }
 
-/* What body v and its edges to later bodies add to y = M x, m vectors. */
-static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v, const int m)
+static INLINE void forward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
 {
-    add(y + 6 * m * v, w->mass + 36 * v, x + 6 * m * v, m);
+    const lanes *a = w->other + OWN * v;
+    lanes u[24];
+    pick_columns(u, x + 6 * m * v, m, n);
+    UNROLL for (int s = 0; s < 6; s++)
+        UNROLL for (int i = s + 1; i < 6; i++)
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] -= a[LOWER(i, s)] * u[s * n + k];
+    UNROLL for (int i = 0; i < 6; i++)
+        UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k] *= a[LOWER(i, i)];
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(x + 6 * m * t->later[e], w->other_edge + 36 * e, u, m, TURNED, 1, n);
+}
+
+static INLINE void backward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
+{
+    const lanes *a = w->other + OWN * v;
+    lanes u[24];
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
+        /* D^-1 has been applied: here to what the edge adds, too. */
+        lanes sum[24];
+        pick_columns(u, x + 6 * m * t->later[e], m, n);
+        UNROLL for (int i = 0; i < 6 * n; i++) sum[i] = all(0.0);
+        multiply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n);
+        UNROLL for (int i = 0; i < 6; i++)
+            UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] -= a[LOWER(i, i)] * sum[i * n + k];
+    }
+    pick_columns(u, x + 6 * m * v, m, n);
+    UNROLL for (int i = 5; i > 0; i--)
+        UNROLL for (int s = 0; s < i; s++)
+            UNROLL for (int k = 0; k < n; k++) u[s * n + k] -= a[LOWER(i, s)] * u[i * n + k];
+    UNROLL for (int i = 0; i < 6; i++)
+        UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k];
+}
+
+/* x = (K - shift M)^-1 x, m vectors, by what `eliminate` left. */
+static INLINE void solve(const Task *t, const Room *w, lanes *restrict x, const int m)
+{
+    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, forward(t, w, x + j, v, m, n))
+    for (int64_t v = t->bodies - 1; v >= 0; v--) IN_COLUMNS(m, backward(t, w, x + j, v, m, n))
+}
+
+/* What body v and its edges to later bodies add to n columns of y = M x. */
+static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v, int m, const int n)
+{
+    lanes u[24], other[24];
+    pick_columns(u, x + 6 * m * v, m, n);
+    multiply(y + 6 * m * v, w->mass + OWN * v, u, m, SYMMETRIC, 0, n);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
         if (t->heavy[e]) {
-            add(y + 6 * m * v, w->mass_edge + 36 * e, x + 6 * m * t->later[e], m);
-            add_turned(y + 6 * m * t->later[e], w->mass_edge + 36 * e, x + 6 * m * v, m);
+            multiply(y + 6 * m * t->later[e], w->mass_edge + 36 * e, u, m, TURNED, 0, n);
+            pick_columns(other, x + 6 * m * t->later[e], m, n);
+            multiply(y + 6 * m * v, w->mass_edge + 36 * e, other, m, PLAIN, 0, n);
         }
 }
 
-static void product(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x)
+/* y = M x, m vectors. */
+static INLINE void product(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, const int m)
 {
-    const int m = (int)t->m;
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v, m);
-}
-
-static inline void forward(const Task *t, const Room *w, lanes *restrict y, int64_t v)
-{
-    const int m = (int)t->m;
-    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take_turned(y + 6 * m * t->later[e], w->edge + 36 * e, y + 6 * m * v, m);
-    set(y + 6 * m * v, w->inverse + 36 * v, y + 6 * m * v, m);
-}
-
-static inline void backward(const Task *t, const Room *w, lanes *restrict y, int64_t v)
-{
-    const int m = (int)t->m;
-    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take(y + 6 * m * v, w->edge + 36 * e, y + 6 * m * t->later[e], m);
-}
-
-/* y = K^-1 y */
-static void solve(const Task *t, const Room *w, lanes *restrict y)
-{
-    for (int64_t v = 0; v < t->bodies; v++) forward(t, w, y, v);
-    for (int64_t v = t->bodies - 1; v >= 0; v--) backward(t, w, y, v);
-}
-
-/* old = 2 (twice K^-1 M x - x) - old, body by body, while what belongs to it is at hand; y is for use between. */
-static void recur(const Task *t, const Room *w, lanes *restrict old, lanes *restrict y, const lanes *restrict x, lanes twice)
-{
-    const int m = (int)t->m;
-    const lanes four = twice + twice;
-    memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = 0; v < t->bodies; v++) {
-        weigh(t, w, y, x, v, m);
-        forward(t, w, y, v);
-    }
-    for (int64_t v = t->bodies - 1; v >= 0; v--) {
-        backward(t, w, y, v);
-        for (int64_t i = 6 * m * v; i < 6 * m * (v + 1); i++) old[i] = four * y[i] - (x[i] + x[i]) - old[i];
-    }
+    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, weigh(t, w, y + j, x + j, v, m, n))
 }
 
 /* ---- Rayleigh-Ritz ---- */
 
-/* g (m x m, lower triangle and its mirror) = x^T y, known to be symmetric. */
-static void gram(int64_t n, int m, lanes *g, const lanes *restrict x, const lanes *restrict y)
+/* Entry (r, i) of m vectors: they stand side by side (row m, column 1) or one after the other (row 1, column n). */
+typedef struct { int64_t row, column; } Layout;
+
+static INLINE void dots(int64_t n, int m, Layout at, lanes *g, const lanes *x, const lanes *y, int i0, int j0, const int ni, const int nj)
 {
-    for (int i0 = 0; i0 < m; i0 += 3)
-        for (int j0 = 0; j0 <= i0; j0 += 3) {
-            const int ni = m - i0 < 3 ? m - i0 : 3, nj = m - j0 < 3 ? m - j0 : 3;
-            if (ni == 3 && nj == 3) {
-                lanes s[9];
-                for (int k = 0; k < 9; k++) s[k] = all(0.0);
-                for (int64_t r = 0; r < n; r++)
-                    for (int i = 0; i < 3; i++)
-                        for (int j = 0; j < 3; j++) s[3 * i + j] += x[r * m + i0 + i] * y[r * m + j0 + j];
-                for (int i = 0; i < 3; i++)
-                    for (int j = 0; j < 3; j++) g[(i0 + i) * m + j0 + j] = g[(j0 + j) * m + i0 + i] = s[3 * i + j];
-            } else
-                for (int i = i0; i < i0 + ni; i++)
-                    for (int j = j0; j < j0 + nj; j++) {
-                        lanes s = all(0.0);
-                        for (int64_t r = 0; r < n; r++) s += x[r * m + i] * y[r * m + j];
-                        g[i * m + j] = g[j * m + i] = s;
-                    }
+    lanes s[9];
+    for (int k = 0; k < 9; k++) s[k] = all(0.0);
+    for (int64_t r = 0; r < n; r++)
+        for (int i = 0; i < ni; i++)
+            for (int j = 0; j < nj; j++) s[3 * i + j] += x[r * at.row + (i0 + i) * at.column] * y[r * at.row + (j0 + j) * at.column];
+    for (int i = 0; i < ni; i++)
+        for (int j = 0; j < nj; j++) g[(i0 + i) * m + j0 + j] = g[(j0 + j) * m + i0 + i] = s[3 * i + j];
+}
+
+/* g (m x m, lower triangle and its mirror) = x^T y, known to be symmetric. */
+static void gram(int64_t n, int m, Layout at, lanes *g, const lanes *restrict x, const lanes *restrict y)
+{
+    for (int i = 0; i < m; i += 3)
+        for (int j = 0; j <= i; j += 3) {
+            const int rows = m - i;
+            if (rows > 2) dots(n, m, at, g, x, y, i, j, 3, 3);
+            else if (rows == 2) j < i ? dots(n, m, at, g, x, y, i, j, 2, 3) : dots(n, m, at, g, x, y, i, j, 2, 2);
+            else j < i ? dots(n, m, at, g, x, y, i, j, 1, 3) : dots(n, m, at, g, x, y, i, j, 1, 1);
         }
 }
 
+static INLINE void blends(int64_t n, int m, Layout at, lanes *y, const lanes *x, const lanes *q, int c, const int ni)
+{
+    for (int64_t r = 0; r < n; r += 2) { /* n is even */
+        lanes s[6];
+        for (int k = 0; k < 6; k++) s[k] = all(0.0);
+        for (int k = 0; k < m; k++)
+            for (int i = 0; i < ni; i++) {
+                s[i] += x[r * at.row + k * at.column] * q[k * m + c + i];
+                s[3 + i] += x[(r + 1) * at.row + k * at.column] * q[k * m + c + i];
+            }
+        for (int i = 0; i < ni; i++) y[(c + i) * n + r] = s[i], y[(c + i) * n + r + 1] = s[3 + i];
+    }
+}
+
+/* y = x q, the first `count` columns of it, one after the other. */
+static void blend(int64_t n, int m, Layout at, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
+{
+    int c = 0;
+    for (; c + 3 <= count; c += 3) blends(n, m, at, y, x, q, c, 3);
+    if (count - c == 2) blends(n, m, at, y, x, q, c, 2);
+    else if (count - c == 1) blends(n, m, at, y, x, q, c, 1);
+}
+
 /* Eigenvalues on the diagonal of a and vectors in v (columns), by Jacobi's rotations; those of a lane stop when they are done. */
-static void jacobi(int m, lanes *a, lanes *v)
+static void jacobi(int m, lanes *a, lanes *v, double least)
 {
     for (int i = 0; i < m * m; i++) v[i] = all(i % (m + 1) ? 0.0 : 1.0);
     for (int sweep = 0; sweep < 20; sweep++) {
@@ -309,7 +390,7 @@ static void jacobi(int m, lanes *a, lanes *v)
         for (int p = 0; p < m - 1; p++)
             for (int q = p + 1; q < m; q++) {
                 const lanes o = a[p * m + q], d = a[p * m + p], e = a[q * m + q];
-                const marks turn = size_of(o) > 1e-17 * root(size_of(d * e));
+                const marks turn = size_of(o) > least * root(size_of(d * e));
                 if (!any(turn)) continue;
                 moved = 1;
                 const lanes half = (e - d) / pick(turn, o + o, all(1.0)), square = root(half * half + 1.0);
@@ -332,230 +413,137 @@ static void jacobi(int m, lanes *a, lanes *v)
     }
 }
 
-/* Ascending lambda (m) of stiff q = lambda mass q, q^T mass q = 1, in the columns of q. */
-static void small(int m, lanes *stiff, lanes *mass, lanes *values, lanes *q)
+/* Ascending lambda (m) of stiff q = lambda mass q, q^T mass q = 1, in the columns of q; to `least`, relative. */
+static void small(int m, lanes *stiff, lanes *mass, lanes *values, lanes *q, double least)
 {
     lanes scale[MOST], turned[MOST * MOST];
-    for (int i = 0; i < m; i++) scale[i] = 1.0 / root(stiff[i * m + i]);
+    for (int i = 0; i < m; i++) scale[i] = 1.0 / root(mass[i * m + i]);
     for (int i = 0; i < m; i++)
         for (int j = 0; j < m; j++) stiff[i * m + j] *= scale[i] * scale[j], mass[i * m + j] *= scale[i] * scale[j];
-    for (int j = 0; j < m; j++) { /* Cholesky, lower */
-        for (int k = 0; k < j; k++) stiff[j * m + j] -= stiff[j * m + k] * stiff[j * m + k];
-        stiff[j * m + j] = root(stiff[j * m + j]);
-        const lanes inverse = 1.0 / stiff[j * m + j];
+    for (int j = 0; j < m; j++) { /* Cholesky, lower, the diagonal inverted */
+        for (int k = 0; k < j; k++) mass[j * m + j] -= mass[j * m + k] * mass[j * m + k];
+        const lanes inverse = mass[j * m + j] = 1.0 / root(mass[j * m + j]);
         for (int i = j + 1; i < m; i++) {
-            for (int k = 0; k < j; k++) stiff[i * m + j] -= stiff[i * m + k] * stiff[j * m + k];
-            stiff[i * m + j] *= inverse;
+            for (int k = 0; k < j; k++) mass[i * m + j] -= mass[i * m + k] * mass[j * m + k];
+            mass[i * m + j] *= inverse;
         }
     }
-    for (int pass = 0; pass < 2; pass++) { /* L^-1 mass L^-T */
+    for (int pass = 0; pass < 2; pass++) { /* L^-1 stiff L^-T: its upper triangle first, then its lower one */
         for (int c = 0; c < m; c++)
             for (int i = 0; i < m; i++) {
-                lanes s = mass[i * m + c];
-                for (int k = 0; k < i; k++) s -= stiff[i * m + k] * mass[k * m + c];
-                mass[i * m + c] = s / stiff[i * m + i];
+                lanes s = stiff[i * m + c];
+                for (int k = 0; k < i; k++) s -= mass[i * m + k] * stiff[k * m + c];
+                stiff[i * m + c] = s * mass[i * m + i];
             }
         for (int i = 0; i < m; i++)
-            for (int j = 0; j < m; j++) turned[j * m + i] = mass[i * m + j];
-        memcpy(mass, turned, sizeof(lanes) * m * m);
+            for (int j = 0; j < m; j++) turned[j * m + i] = stiff[i * m + j];
+        memcpy(stiff, turned, sizeof(lanes) * m * m);
     }
     for (int i = 0; i < m; i++)
-        for (int j = 0; j < i; j++) mass[i * m + j] = mass[j * m + i] = 0.5 * (mass[i * m + j] + mass[j * m + i]);
-    jacobi(m, mass, turned);
+        for (int j = 0; j < i; j++) stiff[i * m + j] = stiff[j * m + i] = 0.5 * (stiff[i * m + j] + stiff[j * m + i]);
+    jacobi(m, stiff, turned, least);
     for (int c = 0; c < m; c++)
         for (int i = m - 1; i >= 0; i--) {
             lanes s = turned[i * m + c];
-            for (int k = i + 1; k < m; k++) s -= stiff[k * m + i] * turned[k * m + c];
-            turned[i * m + c] = s / stiff[i * m + i];
+            for (int k = i + 1; k < m; k++) s -= mass[k * m + i] * turned[k * m + c];
+            turned[i * m + c] = s * mass[i * m + i];
         }
     for (int lane = 0; lane < WIDTH; lane++) {
         int order[MOST];
         for (int i = 0; i < m; i++) {
             int place = i;
-            for (; place > 0 && mass[order[place - 1] * (m + 1)][lane] < mass[i * (m + 1)][lane]; place--) order[place] = order[place - 1];
+            for (; place > 0 && stiff[order[place - 1] * (m + 1)][lane] > stiff[i * (m + 1)][lane]; place--) order[place] = order[place - 1];
             order[place] = i;
         }
         for (int c = 0; c < m; c++) {
-            const double mu = mass[order[c] * (m + 1)][lane], norm = 1.0 / sqrt(mu);
-            values[c][lane] = 1.0 / mu;
-            for (int i = 0; i < m; i++) q[i * m + c][lane] = scale[i][lane] * turned[i * m + order[c]][lane] * norm;
+            values[c][lane] = stiff[order[c] * (m + 1)][lane];
+            for (int i = 0; i < m; i++) q[i * m + c][lane] = scale[i][lane] * turned[i * m + order[c]][lane];
         }
     }
 }
 
-/* y (n, m) = x q */
-static void rotate(int64_t n, int m, lanes *restrict y, const lanes *restrict x, const lanes *restrict q)
+/* Of single modes: the shift of each, the Rayleigh quotient of (K - shift M)^-1 M, the sine of the angle between a vector and what that makes of it,
+ * and how much of each is in each of the modes. */
+typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST]; } Ritz;
+
+/* The share of the platform in mode c of x q, x the platform's rows. */
+static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes *q, int m, int c)
 {
-    for (int j0 = 0; j0 < m; j0 += 3) {
-        const int nj = m - j0 < 3 ? m - j0 : 3;
-        for (int64_t r = 0; r < n; r += 2) /* n is even */
-            if (nj == 3) {
-                lanes s[6];
-                for (int k = 0; k < 6; k++) s[k] = all(0.0);
-                for (int i = 0; i < m; i++)
-                    for (int k = 0; k < 3; k++) {
-                        s[k] += x[r * m + i] * q[i * m + j0 + k];
-                        s[3 + k] += x[(r + 1) * m + i] * q[i * m + j0 + k];
-                    }
-                for (int k = 0; k < 3; k++) y[r * m + j0 + k] = s[k], y[(r + 1) * m + j0 + k] = s[3 + k];
-            } else
-                for (int k = 0; k < nj; k++) {
-                    lanes a = all(0.0), b = all(0.0);
-                    for (int i = 0; i < m; i++) a += x[r * m + i] * q[i * m + j0 + k], b += x[(r + 1) * m + i] * q[i * m + j0 + k];
-                    y[r * m + j0 + k] = a, y[(r + 1) * m + j0 + k] = b;
-                }
+    const lanes *platform = w->number + t->inertia[t->bodies - 1];
+    lanes seen[6], sum = all(0.0);
+    for (int i = 0; i < 6; i++) {
+        seen[i] = x[i * m] * q[c];
+        for (int k = 1; k < m; k++) seen[i] += x[i * m + k] * q[k * m + c];
     }
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) sum += seen[i] * platform[6 * i + k] * seen[k];
+    return sum;
 }
 
-typedef struct { lanes values[MOST], residual[MOST], share[MOST]; } Ritz;
-
-/* Rayleigh-Ritz on K^-1 M of the block in w->now, given M times it in w->force; shapes go to w->now, M times them to w->heavy. */
-static void ritz(const Task *t, Room *w, Ritz *out)
+/* Rayleigh-Ritz on (K - shift M)^-1 times the forces to begin with: all values, and M times the modes that are wanted, in w->force. */
+static void begin(const Task *t, Room *w, Ritz *out)
 {
-    const int m = (int)t->m;
+    const int m = (int)t->m, single = (int)t->single;
     const int64_t n = 6 * t->bodies;
-    lanes before[MOST * MOST], stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
-    memcpy(w->ahead, w->force, sizeof(lanes) * n * m);
-    solve(t, w, w->ahead);
-    product(t, w, w->next, w->ahead);
-    gram(n, m, before, w->now, w->force);
-    gram(n, m, stiff, w->ahead, w->force);
-    gram(n, m, mass, w->ahead, w->next);
-    small(m, stiff, mass, out->values, q);
+    lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
+    eliminate(t, w, all(t->shift), 0, 0, 0);
+    for (int64_t i = 0; i < n * m; i++) w->next[i] = w->ahead[i] = all(t->force[i]);
+    solve(t, w, w->ahead, m);
+    const Layout at = {m, 1};
+    gram(n, m, at, stiff, w->ahead, w->next);
+    product(t, w, w->next, w->ahead, m);
+    gram(n, m, at, mass, w->ahead, w->next);
+    for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
+    small(m, stiff, mass, out->values, q, 1e-6);
+    for (int c = 0; c < m; c++) out->share[c] = share_of(t, w, w->ahead + (n - 6) * m, q, m, c);
+    blend(n, m, at, w->force, w->next, q, single);
+}
+
+/* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
+ * w->force to shapes (single, n) in w->now and M times them in w->force. What is of other modes falls in each step like the value's distance from
+ * the shift over theirs. */
+static void polish(const Task *t, Room *w, Ritz *known)
+{
+    const int m = (int)t->single;
+    const int64_t n = 6 * t->bodies;
+    lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST];
     for (int c = 0; c < m; c++) {
-        lanes norm = all(0.0);
-        for (int i = 0; i < m; i++) {
-            lanes s = all(0.0);
-            for (int k = 0; k < m; k++) s += before[i * m + k] * q[k * m + c];
-            norm += q[i * m + c] * s;
+        lanes *f = w->force + c * n, *x = w->ahead + c * n, *g = w->next + c * n;
+        const lanes shift = known->shift[c] = (1.0 - BESIDE) * known->values[c];
+        eliminate(t, w, shift, 0, 0, 0);
+        lanes before = all(1.0), between = before, after = before;
+        for (int64_t step = 0; step < t->steps; step++) {
+            memcpy(x, f, sizeof(lanes) * n);
+            solve(t, w, x, 1);
+            product(t, w, g, x, 1);
+            between = after = all(0.0);
+            for (int64_t i = 0; i < n; i++) between += x[i] * f[i], after += x[i] * g[i];
+            if (step + 1 == t->steps) break;
+            before = after;
+            memcpy(f, g, sizeof(lanes) * n);
         }
-        const lanes square = 1.0 - out->values[c] * out->values[c] / norm;
-        out->residual[c] = root(pick(square > 0.0, square, all(0.0)));
-        out->residual[c] = pick(square == square, out->residual[c], square);
+        const lanes square = 1.0 - between * between / (before * after);
+        known->sine[c] = root(pick(square > 0.0, square, all(0.0)));
+        known->sine[c] = pick(square == square, known->sine[c], square);
+        known->quotient[c] = between / before;
     }
-    rotate(n, m, w->now, w->ahead, q);
-    rotate(n, m, w->heavy, w->next, q);
-    const lanes *seen = w->now + (n - 6) * m, *platform = w->number + t->inertia[t->bodies - 1];
+    const Layout at = {1, n};
+    gram(n, m, at, mass, w->ahead, w->next);
+    gram(n, m, at, stiff, w->ahead, w->force);
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
+    lanes length[MOST];
+    for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
+    small(m, stiff, mass, values, q, 1e-17);
+    blend(n, m, at, w->now, w->ahead, q, m);
+    blend(n, m, at, w->force, w->next, q, m);
     for (int c = 0; c < m; c++) {
-        out->share[c] = all(0.0);
-        for (int i = 0; i < 6; i++)
-            for (int k = 0; k < 6; k++) out->share[c] += seen[i * m + c] * platform[6 * i + k] * seen[k * m + c];
+        known->values[c] = values[c];
+        for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(q[k * m + c]) * length[k];
+        lanes one = all(1.0), seen[6];
+        for (int i = 0; i < 6; i++) seen[i] = w->now[c * n + n - 6 + i];
+        known->share[c] = share_of(t, w, seen, &one, 1, 0);
     }
-}
-
-/* Chebyshev's polynomial of the shapes in w->now, into w->now; M times the result into w->force. */
-static void filter(const Task *t, Room *w, const Ritz *known)
-{
-    const int m = (int)t->m;
-    const int64_t n = 6 * t->bodies;
-    const lanes outside = t->edge * known->values[m - 1], twice = outside + outside;
-    memcpy(w->before, w->now, sizeof(lanes) * n * m);
-    memcpy(w->force, w->heavy, sizeof(lanes) * n * m);
-    solve(t, w, w->force);
-    for (int64_t i = 0; i < n * m; i++) w->now[i] = twice * w->force[i] - w->before[i];
-    for (int64_t step = 1; step < t->degree; step++) {
-        recur(t, w, w->before, w->force, w->now, twice);
-        lanes *swap = w->before;
-        w->before = w->now, w->now = swap;
-    }
-    lanes growth[MOST];
-    for (int c = 0; c < m; c++) { /* Chebyshev's recurrence at the value itself */
-        const lanes ratio = 2.0 * outside / known->values[c] - 1.0, x = pick(ratio > 1.0, ratio, all(1.0));
-        lanes last = all(1.0), value = x;
-        for (int64_t step = 1; step < t->degree; step++) {
-            const lanes following = 2.0 * x * value - last;
-            last = value, value = following;
-        }
-        growth[c] = 1.0 / value;
-    }
-    for (int64_t r = 0; r < n; r++)
-        for (int c = 0; c < m; c++) w->now[r * m + c] *= growth[c];
-    product(t, w, w->force, w->now);
-}
-
-/* ---- single modes ---- */
-
-/* K - shift M = L D L^T: own blocks become L below the diagonal and D^-1 on it, edges L^-1 times themselves. */
-static void shifted(const Task *t, Room *w, lanes shift)
-{
-    lanes *own = w->other, *edge = w->other_edge;
-    for (int64_t i = 0; i < 36 * t->bodies; i++) own[i] = w->stiff[i] - shift * w->mass[i];
-    for (int64_t i = 0; i < 36 * t->edges; i++) edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
-    for (int64_t v = 0; v < t->bodies; v++) {
-        lanes *a = own + 36 * v;
-        for (int s = 0; s < 6; s++) {
-            const lanes inverse = 1.0 / a[7 * s];
-            for (int i = s + 1; i < 6; i++) {
-                const lanes l = a[6 * i + s] * inverse;
-                for (int j = s + 1; j <= i; j++) a[6 * i + j] -= l * a[6 * j + s];
-            }
-            for (int i = s + 1; i < 6; i++) a[6 * i + s] *= inverse;
-            a[7 * s] = inverse;
-        }
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
-            lanes *x = edge + 36 * e;
-            for (int i = 1; i < 6; i++)
-                for (int s = 0; s < i; s++)
-                    for (int k = 0; k < 6; k++) x[6 * i + k] -= a[6 * i + s] * x[6 * s + k];
-        }
-        for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
-            const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
-            const lanes *x = edge + 36 * left;
-            lanes scaled[36];
-            for (int i = 0; i < 36; i++) scaled[i] = a[7 * (i / 6)] * edge[36 * right + i];
-            if (target >= 0) take_turned(edge + 36 * target, x, scaled, 6);
-            else {
-                lanes *to = own + 36 * t->later[left];
-                for (int i = 0; i < 6; i++)
-                    for (int j = 0; j <= i; j++) {
-                        lanes sum = x[i] * scaled[j];
-                        for (int r = 1; r < 6; r++) sum += x[6 * r + i] * scaled[6 * r + j];
-                        to[6 * i + j] -= sum;
-                    }
-            }
-        }
-    }
-}
-
-/* x = (K - shift M)^-1 x, one vector, by what `shifted` left. */
-static void solve_shifted(const Task *t, const Room *w, lanes *restrict x)
-{
-    for (int64_t v = 0; v < t->bodies; v++) {
-        const lanes *a = w->other + 36 * v;
-        lanes *b = x + 6 * v, scaled[6];
-        for (int i = 1; i < 6; i++)
-            for (int s = 0; s < i; s++) b[i] -= a[6 * i + s] * b[s];
-        for (int i = 0; i < 6; i++) scaled[i] = a[7 * i] * b[i];
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take_turned(x + 6 * t->later[e], w->other_edge + 36 * e, scaled, 1);
-    }
-    for (int64_t v = t->bodies - 1; v >= 0; v--) {
-        const lanes *a = w->other + 36 * v;
-        lanes *b = x + 6 * v;
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) take(b, w->other_edge + 36 * e, x + 6 * t->later[e], 1);
-        for (int i = 0; i < 6; i++) b[i] *= a[7 * i];
-        for (int i = 5; i > 0; i--)
-            for (int s = 0; s < i; s++) b[s] -= a[6 * i + s] * b[i];
-    }
-}
-
-/* The first `single` shapes in w->now by two steps of inverse iteration, each with a shift just below its own value; M times all into
- * w->force. What is of other modes falls like the square of the value's distance from the shift over theirs. */
-static void polish(const Task *t, Room *w, const Ritz *known)
-{
-    const int m = (int)t->m;
-    const int64_t n = 6 * t->bodies;
-    lanes *x = w->next, *y = w->next + n;
-    for (int c = 0; c < t->single; c++) {
-        shifted(t, w, (1.0 - BESIDE) * known->values[c]);
-        for (int64_t i = 0; i < n; i++) x[i] = w->heavy[i * m + c];
-        solve_shifted(t, w, x);
-        memset(y, 0, sizeof(lanes) * n);
-        for (int64_t v = 0; v < t->bodies; v++) weigh(t, w, y, x, v, 1);
-        solve_shifted(t, w, y);
-        const lanes size = BESIDE * known->values[c] * BESIDE * known->values[c];
-        for (int64_t i = 0; i < n; i++) w->now[i * m + c] = size * y[i];
-    }
-    product(t, w, w->force, w->now);
 }
 
 /* ---- which modes are the platform's, one design at a time ---- */
@@ -577,12 +565,12 @@ static double left_over(const Task *t, const double *share, int count)
 
 static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 {
-    const int m = (int)t->m, count = (int)t->count;
-    double value[MOST], share[MOST], rho[MOST], mean[MOST], frequency[MOST], least = INFINITY;
+    const int m = (int)t->m, count = (int)t->count, first = (int)t->single;
+    double value[MOST], share[MOST], mean[MOST], frequency[MOST], least = INFINITY;
     int group[MOST], order[MOST], taken = 0, needed = 0;
     memset(out, 0, sizeof *out);
     for (int i = 0; i < m; i++) {
-        value[i] = known->values[i][lane], share[i] = known->share[i][lane], rho[i] = known->residual[i][lane];
+        value[i] = known->values[i][lane], share[i] = known->share[i][lane];
         if (!isfinite(value[i]) || value[i] <= 0.0) return;
         frequency[i] = sqrt(value[i]) / (2.0 * 3.14159265358979323846);
         group[i] = i && frequency[i] - frequency[i - 1] <= t->cluster * frequency[i] ? group[i - 1] : i;
@@ -603,9 +591,8 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
         if (mean[order[i]] > -INFINITY && (i < count || group[order[i]] == group[order[count - 1]])) out->mask[order[i]] = 1;
     for (int i = 0; i < m; i++)
         if (out->mask[i]) taken++, needed = i + 1, least = mean[i] < least ? mean[i] : least;
-    if (taken != count) return;
+    if (taken != count || needed > first || apart(value, m, first, t->together) != first) return;
     const double ceiling = 4.0 * 9.86960440108935861883 * t->limit * t->limit;
-    const int first = apart(value, m, needed, t->together);
     int below = first;
     while (below < m && !(left_over(t, share, below) < (below == first ? least : least - t->margin)))
         below = apart(value, m, below + 1, t->together);
@@ -615,22 +602,27 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
         while (reach < m && value[reach] < ceiling) reach++;
         below = apart(value, m, reach, t->together);
     }
-    if (first >= m || below >= m) return;
+    if (below >= m) return;
     out->below = below, out->shift = value[below - 1] + 0.1 * (value[below] - value[below - 1]);
     if (wide) {
         if (!(ceiling <= value[below])) return;
         if (ceiling > out->shift) out->shift = ceiling;
     }
-    const double inner = value[first - 1], outer = value[first];
-    double spread = 0.0;
-    for (int i = 0; i < first; i++) spread += rho[i] / value[i] * (rho[i] / value[i]);
-    spread = sqrt(spread) * inner / outer; /* of Z, which is one product further than the residual's Y */
-    for (int i = 0; i < m; i++)
+    /* What of a single vector is of modes beyond: it has gone through (K - shift M)^-1 M, whose values there are 1 / (outer - shift) at most. */
+    const double outer = below == first ? out->shift : value[first];
+    double beyond[MOST];
+    for (int k = 0; k < first; k++) {
+        const double far = (outer - known->shift[k][lane]) * fabs(known->quotient[k][lane]) - 1.0;
+        if (!(far > 0.0)) return;
+        beyond[k] = known->sine[k][lane] / far;
+    }
+    for (int i = 0; i < first; i++)
         if (out->mask[i]) {
-            const double gap = 1.0 / value[i] - 1.0 / outer, error = spread * spread * value[i] / gap;
-            if (!((rho[i] < error ? rho[i] : error) <= t->value) || !(spread / gap <= t->angle)) return;
+            double angle = 0.0;
+            for (int k = 0; k < first; k++) angle += known->part[i * first + k][lane] * beyond[k];
+            if (!(angle * angle * outer / value[i] <= t->value) || !(angle <= t->angle)) return;
         }
-    out->done = 1;
+    out->done = value[0] > BESIDE * value[first - 1];
 }
 
 /* ---- derivatives ---- */
@@ -669,21 +661,23 @@ static INLINE void link_motion(
             }
         }
     }
-    lanes strain[6 * MODES], momentum[12 * MODES];
+    const Law *law = w->law + t->link[4 * l];
+    lanes strain[6 * MODES];
     for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
-    memset(momentum, 0, sizeof(lanes) * 12 * k);
-    set(force + 6 * k, stiff, strain, k);
-    for (int p = 0; p < 2; p++)
-        for (int q = 0; q < 2; q++) {
-            lanes part[36];
-            for (int i = 0; i < 36; i++) part[i] = mass[12 * (6 * p + i / 6) + 6 * q + i % 6];
-            add(momentum + 6 * p * k, part, twist + 6 * q * k, k);
-        }
-    for (int i = 0; i < 6; i++)
-        for (int c = 0; c < k; c++) {
-            force[i * k + c] = -force[(6 + i) * k + c] - mean[c] * momentum[i * k + c];
-            force[(6 + i) * k + c] -= mean[c] * momentum[(6 + i) * k + c];
-        }
+    for (int i = 0; i < 6; i++) {
+        lanes sum[MODES];
+        for (int c = 0; c < k; c++) sum[c] = all(0.0);
+        for (int at = law->start[i]; at < law->start[i + 1]; at++)
+            for (int c = 0; c < k; c++) sum[c] += stiff[6 * i + law->column[at]] * strain[law->column[at] * k + c];
+        for (int c = 0; c < k; c++) force[(6 + i) * k + c] = sum[c], force[i * k + c] = -sum[c];
+    }
+    for (int i = 0; i < 12; i++) {
+        lanes sum[MODES];
+        for (int c = 0; c < k; c++) sum[c] = all(0.0);
+        for (int at = law->start[6 + i]; at < law->start[7 + i]; at++)
+            for (int c = 0; c < k; c++) sum[c] += mass[12 * i + law->column[at]] * twist[law->column[at] * k + c];
+        for (int c = 0; c < k; c++) force[i * k + c] -= mean[c] * sum[c];
+    }
 }
 
 /* Adds a link's or part's share of every slot that is about it. */
@@ -781,7 +775,8 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
 /* The modes of the lanes that are done in this round and were not before. */
 static void keep(const Task *t, Room *w, const Ritz *known, const Verdict *verdict, marks fresh, lanes *value, lanes *share)
 {
-    const int m = (int)t->m, k = (int)t->count;
+    const int m = (int)t->single, k = (int)t->count;
+    const int64_t n = 6 * t->bodies;
     for (int c = 0; c < k; c++) {
         int from[WIDTH], first = -1, alike = 1;
         for (int lane = 0; lane < WIDTH; lane++) {
@@ -793,63 +788,94 @@ static void keep(const Task *t, Room *w, const Ritz *known, const Verdict *verdi
             value[c][lane] = known->values[at][lane], share[c][lane] = known->share[at][lane];
         }
         if (!t->variables) continue;
-        for (int64_t r = 0; r < 6 * t->bodies; r++) {
+        for (int64_t r = 0; r < n; r++) {
             lanes *to = w->shapes + r * k + c;
-            if (alike) *to = pick(fresh, w->now[r * m + first], *to);
+            if (alike) *to = pick(fresh, w->now[first * n + r], *to);
             else
                 for (int lane = 0; lane < WIDTH; lane++)
-                    if (fresh[lane]) (*to)[lane] = w->now[r * m + from[lane]][lane];
+                    if (fresh[lane]) (*to)[lane] = w->now[from[lane] * n + r][lane];
         }
     }
 }
 
 static void designs(const Task *t, Room *w, int64_t design)
 {
-    const int64_t n = 6 * t->bodies, m = t->m;
     Verdict verdict[WIDTH];
     Ritz known;
-    lanes value[MODES], share[MODES], negative, least, shift = all(0.0);
+    lanes value[MODES], share[MODES], negative = all(0.0), least = all(INFINITY), shift = all(0.0);
     int left = WIDTH;
-    assemble(t, w);
-    memcpy(w->inverse, w->stiff, sizeof(lanes) * 36 * t->bodies);
-    memcpy(w->edge, w->stiff_edge, sizeof(lanes) * 36 * t->edges);
-    eliminate(t, w->inverse, w->edge, &negative, &least);
-    const marks firm = least > t->pivot;
-    for (int64_t i = 0; i < n * m; i++) w->now[i] = all(t->block[i]);
     for (int i = 0; i < t->count; i++) value[i] = all(1.0), share[i] = all(0.0);
-    if (t->variables) memset(w->shapes, 0, sizeof(lanes) * n * t->count);
+    if (t->variables) memset(w->shapes, 0, sizeof(lanes) * 6 * t->bodies * t->count);
     for (int lane = 0; lane < WIDTH; lane++) verdict[lane].done = 0;
-    product(t, w, w->force, w->now);
-    for (int64_t round = 0; round <= t->rounds && left; round++) {
-        if (round == 1 && t->single) polish(t, w, &known);
-        else if (round) filter(t, w, &known);
-        ritz(t, w, &known);
+    assemble(t, w);
+    begin(t, w, &known);
+    for (int64_t round = 0; round < t->rounds && left; round++) {
+        polish(t, w, &known);
         marks fresh = {0};
         left = 0;
         for (int lane = 0; lane < WIDTH; lane++) {
             if (verdict[lane].done) continue;
             judge(t, &known, lane, &verdict[lane]);
             if (verdict[lane].done) fresh[lane] = -1, shift[lane] = verdict[lane].shift;
-            else if (firm[lane]) left++;
+            else left++;
         }
         if (any(fresh)) keep(t, w, &known, verdict, fresh, value, share);
     }
-    for (int64_t i = 0; i < 36 * t->bodies; i++) w->other[i] = w->stiff[i] - shift * w->mass[i];
-    for (int64_t i = 0; i < 36 * t->edges; i++) w->other_edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
-    eliminate(t, w->other, w->other_edge, &negative, &least);
+    eliminate(t, w, shift, 1, &negative, &least);
     for (int lane = 0; lane < WIDTH; lane++)
-        t->good[design + lane] = firm[lane] && verdict[lane].done && negative[lane] == (double)verdict[lane].below;
+        t->good[design + lane] = verdict[lane].done && least[lane] > t->pivot && negative[lane] == (double)verdict[lane].below;
     for (int i = 0; i < t->count; i++)
         store(t->values + i * t->stride + design, value[i]), store(t->share + i * t->stride + design, share[i]);
     if (t->variables) derive(t, w, design, value);
 }
 
-/* The numbers (rows of `from`) of AHEAD vectors of designs, vector by vector. */
-static void gather(lanes *to, const double *from, int64_t rows, int64_t stride, int64_t design, int64_t designs)
+/* ---- what of the numbers is the same in every design ---- */
+
+/* Rows that are not the same in all designs, and how many; the others go to each of AHEAD vectors here, once. */
+static int64_t vary(lanes *to, const double *from, int64_t rows, int64_t stride, int64_t designs, int64_t *varying)
 {
-    for (int64_t i = 0; i < rows; i++)
+    int64_t count = 0;
+    for (int64_t i = 0; i < rows; i++) {
+        const double *row = from + i * stride;
+        int64_t same = 1;
+        while (same < designs && row[same] == row[0]) same++;
+        if (same < designs) varying[count++] = i;
+        else
+            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = all(row[0]);
+    }
+    return count;
+}
+
+/* The varying rows of AHEAD vectors of designs, vector by vector. */
+static void gather(
+    lanes *to, const double *from, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *varying, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++)
         for (int64_t k = 0; k < AHEAD && design + k * WIDTH < designs; k++)
-            to[k * rows + i] = load_at(from + i * stride, design + k * WIDTH, designs);
+            to[k * rows + varying[i]] = load_at(from + varying[i] * stride, design + k * WIDTH, designs);
+}
+
+/* A matrix of a law (`rows` x `rows`), whose entries in all designs are zero where it is not `filled`. */
+static void outline(const char *filled, int rows, int *zero, int *start, int *column)
+{
+    const int blocks = rows / 3;
+    for (int i = 0; i < blocks * blocks; i++) zero[i] = 1;
+    for (int i = 0; i < rows; i++) {
+        start[i + 1] = start[i];
+        for (int k = 0; k < rows; k++)
+            if (filled[rows * i + k]) zero[blocks * (i / 3) + k / 3] = 0, column[start[i + 1]++] = k;
+    }
+}
+
+static void outlines(const Task *t, Law *law, const lanes *number, const int64_t *varying, int64_t count, char *filled)
+{
+    for (int64_t i = 0; i < t->numbers; i++) filled[i] = number[i][0] != 0.0;
+    for (int64_t i = 0; i < count; i++) filled[varying[i]] = 1;
+    for (int64_t part = 0; part < t->parts; part++, law++) {
+        law->start[0] = 0;
+        outline(filled + t->start[0] + 36 * part, 6, law->zero, law->start, law->column);
+        outline(filled + t->start[1] + 144 * part, 12, law->zero + 4, law->start + 6, law->column);
+    }
 }
 
 int64_t flexstage_width(void) { return WIDTH; }
@@ -857,27 +883,37 @@ int64_t flexstage_width(void) { return WIDTH; }
 /* Every design of the task; 0, or 1 where that is too much. */
 int64_t flexstage_modes(const Task *t)
 {
-    const int64_t own = 36 * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m, pairs = t->count * (t->count + 1) / 2;
-    const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, own, edge, block, block, block, block, block, block,
+    const int64_t own = OWN * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m, pairs = t->count * (t->count + 1) / 2;
+    const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
                              6 * t->bodies * t->count, t->slots * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
     for (int i = 0; i < count; i++) total += sizes[i] + 1;
-    if (t->m > MOST || t->count > MODES) return 1;
+    if (t->m > MOST || t->count > MODES || t->single >= t->m) return 1;
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
-    if (!memory) return 1;
     Room w;
-    lanes **parts[] = {&w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.inverse, &w.edge, &w.other, &w.other_edge,
-                       &w.before, &w.now, &w.next, &w.force, &w.ahead, &w.heavy, &w.shapes, &w.sum};
+    lanes **parts[] = {&w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
+                       &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.sum};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
-    for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
-        gather(w.numbers, t->numbers_, t->numbers, t->numbers_stride, first, t->designs);
-        gather(w.changes, t->changes, t->entries, t->slopes_stride, first, t->designs);
-        for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
-            w.number = w.numbers + k * t->numbers, w.change = w.changes + k * t->entries;
-            designs(t, &w, first + k * WIDTH);
+    int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
+    char *const filled = malloc(t->numbers);
+    w.law = malloc(sizeof(Law) * t->parts);
+    w.fills = 0;
+    for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
+    const int short_of = !memory || !varying || !filled || !w.law;
+    if (!short_of) {
+        const int64_t some = vary(w.numbers, t->numbers_, t->numbers, t->numbers_stride, t->designs, varying);
+        const int64_t other = vary(w.changes, t->changes, t->entries, t->slopes_stride, t->designs, changing);
+        outlines(t, w.law, w.numbers, varying, some, filled);
+        for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
+            gather(w.numbers, t->numbers_, t->numbers, t->numbers_stride, first, t->designs, varying, some);
+            gather(w.changes, t->changes, t->entries, t->slopes_stride, first, t->designs, changing, other);
+            for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
+                w.number = w.numbers + k * t->numbers, w.change = w.changes + k * t->entries;
+                designs(t, &w, first + k * WIDTH);
+            }
         }
     }
-    free(memory);
-    return 0;
+    free(memory), free(varying), free(filled), free(w.law);
+    return short_of;
 }

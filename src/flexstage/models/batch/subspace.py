@@ -16,7 +16,7 @@ above can be the platform's if what is left of its share, six in all, is less th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -44,7 +44,8 @@ class Start:
     """The block to begin with (bodies, 6, m), and how it goes on: `degree` of each polynomial, `rounds` at most, bounds to reach.
 
     `value` bounds the relative error of eigenvalues, `angle` that of vectors. The modes outside the block are expected to begin at `edge`
-    times its highest eigenvalue. Of the first `needed` modes are the platform's.
+    times its highest eigenvalue. Of the first `needed` modes are the platform's. The kernel begins with the inertial forces `force` of the
+    block, and with K - `shift` M.
     """
 
     block: Array
@@ -55,6 +56,8 @@ class Start:
     value: float = 1e-7
     angle: float = np.inf
     needed: int = 0
+    force: Array = field(default_factory=lambda: np.zeros((0, 6, 0)))
+    shift: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
