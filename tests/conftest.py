@@ -57,9 +57,11 @@ def _one_blas_thread():
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory: pytest.TempPathFactory):
-    """Tests begin with an empty cache of superelements, and leave the user's alone."""
+    """Tests begin with an empty cache of superelements, one for all processes of a run, and leave the user's alone."""
+    own = tmp_path_factory.getbasetemp()
+    run = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("FLEXSTAGE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("FLEXSTAGE_CACHE", str(run / "cache"))
         yield
 
 

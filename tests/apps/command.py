@@ -6,6 +6,7 @@ import html
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 
 from flexstage.apps.cli import run
 from flexstage.cases.registry import case
-from flexstage.mechanism.store import dump
+from flexstage.mechanism.store import dumps
 
 
 @dataclass(frozen=True)
@@ -62,4 +63,11 @@ def command_in(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) 
 
 def design_in(folder: Path, name: str = "double-triangle") -> Path:
     """A shipped case as `stage.toml` in a folder."""
-    return dump(case(name), folder / "stage.toml")
+    path = folder / "stage.toml"
+    path.write_bytes(_design_file(name))
+    return path
+
+
+@cache
+def _design_file(name: str) -> bytes:
+    return dumps(case(name)).encode("utf-8")

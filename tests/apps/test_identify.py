@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -19,7 +20,7 @@ from flexstage.experiment.formats.write import write
 from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.mechanism.store import load
 from flexstage.models.lumped import lumped
-from tests.apps.command import Command
+from tests.apps.command import Command, Ended
 from tests.models.stage_records import stage_record
 
 
@@ -61,17 +62,15 @@ def test_identify_gives_a_document(recorded: Command) -> None:
     assert document["spectra"]["averages"] > 6
 
 
-def test_identify_without_a_stage(recorded: Command) -> None:
-    document = recorded("identify", "record.uff", "--json", "-").document
+def test_identify_without_a_stage_at_a_stated_resolution(recorded: Command, tmp_path: Path) -> None:
+    ended = recorded("identify", "record.uff", "--resolution", "2 Hz", "--json", "modes.json")
+    assert ended.code == 0
+    document = json.loads((tmp_path / "modes.json").read_text())
     assert document["name"] is None
     assert document["physics_digest"] is None
     assert "platform" not in document
     assert len(document["modes"]) == 6
-
-
-def test_tables_are_shown(recorded: Command) -> None:
-    ended = recorded("identify", "record.uff")
-    assert ended.code == 0
+    assert document["spectra"]["resolution_hz"] == 2.0
     for text in ("What was measured", "20 s at 1024 Hz", "Modes found", "95 % interval", "Shapes of the modes"):
         assert text in ended.out
 
@@ -80,11 +79,6 @@ def test_a_band_is_kept_to(recorded: Command) -> None:
     document = recorded("identify", "record.uff", "--band", "120 Hz", "0.16 kHz", "--json", "-").document
     assert [round(mode["frequency_hz"]) for mode in document["modes"]] == [126, 144]
     assert document["band_hz"] == [120.0, 160.0]
-
-
-def test_a_resolution_is_kept_to(recorded: Command) -> None:
-    document = recorded("identify", "record.uff", "--resolution", "2 Hz", "--json", "-").document
-    assert document["spectra"]["resolution_hz"] == 2.0
 
 
 def pictures(page: str) -> list[str]:
@@ -107,9 +101,10 @@ def test_the_report_stands_alone(recorded: Command, tmp_path: Path) -> None:
     assert "nan" not in "".join(drawn)
 
 
-def test_the_report_of_a_comparison(recorded: Command, tmp_path: Path) -> None:
-    ended = recorded("compare", "stage.toml", "--record", "record.uff", "--report", "compared.html")
+def test_compare_gives_a_document_and_a_report(recorded: Command, tmp_path: Path) -> None:
+    ended = recorded("compare", "stage.toml", "--record", "record.uff", "--json", "-", "--report", "compared.html")
     assert ended.code == 0, ended.err
+    _document_of_a_comparison(ended)
     page = (tmp_path / "compared.html").read_text()
     assert page.index("<h2>Theory and experiment</h2>") < page.index("<h2>Modes found</h2>")
     assert len(pictures(page)) == 1 + 6 + 5
@@ -117,9 +112,7 @@ def test_the_report_of_a_comparison(recorded: Command, tmp_path: Path) -> None:
     assert max(len(each) for each in pictures(page)) < 200_000  # 36 responses of some thousand points
 
 
-def test_compare_gives_a_document(recorded: Command) -> None:
-    ended = recorded("compare", "stage.toml", "--record", "record.uff", "--json", "-")
-    assert ended.code == 0, ended.err
+def _document_of_a_comparison(ended: Ended) -> None:
     document = ended.document
     assert (document["kind"], document["model"]) == ("compare", "lumped")
     assert [mode["name"] for mode in document["modes"]] == ["tilt", "tilt", "z", "yaw", "x", "y"]
@@ -217,7 +210,7 @@ def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_pat
 
 def test_units_can_be_stated(flexstage: Command, tmp_path: Path, short: Record) -> None:
     write(tmp_path / "bare.h5", without_unit(short))
-    ended = flexstage("identify", "bare.h5", "--units", "S*=um", "--json", "-")
+    ended = flexstage("identify", "bare.h5", "--units", "S*=um", "--band", "120 Hz", "160 Hz", "--json", "-")
     assert ended.code == 0, ended.err
     assert {each["unit"] for each in ended.document["files"][0]["outputs"]} == {"um"}
 

@@ -33,6 +33,7 @@ def guide(flexstage: Command, tmp_path: Path) -> Command:
     return flexstage
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Command, tmp_path: Path) -> None:
     words = ("--bandwidth", "30 Hz", "--seconds", "0.05")  # without any options: docs/loop.md
     ended = flexstage("loop", "stage.toml", *words, "--json", "loop.json", "--report", "loop.html")

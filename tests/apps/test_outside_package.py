@@ -89,7 +89,7 @@ def known(work, package):
     (work / "pair.toml").write_text(f'{pair}along = "-y", bends = "z" }}\n')
     commands = (
         "check s.toml",
-        "analyse s.toml --json analyse.json --report analyse.html",
+        "analyse s.toml --json analyse.json",
         "schema",
         "check pair.toml",
         "loop s.toml --setup loop.toml --json loop.json",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 from flexstage.base.finding import refuse, suggest_nearest
@@ -79,7 +80,12 @@ def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism
     >>> case("hexapod", {"slope": "50 deg", "neck.thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
     [0.0025, 0.003]
     """
-    return round_to_digits(shipped_case(name).build(parameters))
+    return round_to_digits(shipped_case(name).build(parameters)) if parameters else _as_shipped(name)
+
+
+@cache
+def _as_shipped(name: str) -> Mechanism:
+    return round_to_digits(shipped_case(name).build())
 
 
 def shipped_case(name: str) -> Shipped:
