@@ -62,6 +62,7 @@ def _own_cache(tmp_path_factory: pytest.TempPathFactory):
     run = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("FLEXSTAGE_CACHE", str(run / "cache"))
+        patch.setattr(os, "fsync", lambda _: None)  # what tests write need not outlive a power cut
         yield
 
 

@@ -128,7 +128,7 @@ def opened(path: Path, seconds: float) -> tuple[Record, Truth]:
 
 
 def test_never_more_than_a_block_is_read(tmp_path: Path, small_blocks: int) -> None:
-    whole, known = opened(tmp_path / "a.h5", 80.0)
+    whole, known = opened(tmp_path / "a.h5", 40.0)
     counted, shares = Counted(whole.samples, 12), [0.0]
     seen = identification(usable_measurement([replace(whole, samples=counted)]), told=lambda _, share: shares.append(share))
     modes_are_found(seen.found.frequencies, known)

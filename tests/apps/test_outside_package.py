@@ -49,7 +49,7 @@ def installed(folder, version="1.0", without=None):
 def flexstage(work, *commands, path=None, ok=0):
     """Commands in a process of their own; stdout and stderr."""
     known = os.pathsep.join(str(each) for each in (path, os.environ.get("PYTHONPATH")) if each)
-    surroundings = {**os.environ, "PYTHONPATH": known, "FLEXSTAGE_CACHE": str(work / "cache")}
+    surroundings = {**os.environ, "PYTHONPATH": known}
     run = [sys.executable, "-c", RUN, *commands]
     ended = subprocess.run(run, cwd=work, env=surroundings, capture_output=True, text=True, timeout=300, check=False)
     assert ended.returncode == ok, ended.stdout + ended.stderr

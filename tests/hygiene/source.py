@@ -61,14 +61,6 @@ def modules() -> tuple[Path, ...]:
 
 
 @functools.cache
-def code_files() -> tuple[Path, ...]:
-    """Every Python file of the project."""
-    folders = ("src", "tests", "benchmarks", "examples", "tools", "docs")
-    found = (path for folder in folders for path in (ROOT / folder).rglob("*.py"))
-    return tuple(sorted(path for path in found if not {"__pycache__", "_build"} & set(path.parts)))
-
-
-@functools.cache
 def tree(path: Path) -> ast.Module:
     """A file's syntax tree."""
     return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))

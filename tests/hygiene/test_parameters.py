@@ -1,18 +1,16 @@
-"""Parameters are honest: none hidden in a dictionary, flags given by name; names are imported one by one."""
+"""Parameters are honest: none hidden in a dictionary, flags given by name."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from pathlib import Path
 
-from tests.hygiene.source import SRC, Defined, Function, code_files, defined, expect_none, tree
+from tests.hygiene.source import Defined, Function, defined, expect_none, modules
 
 
-def functions(within: Path | None = None) -> Iterator[Defined]:
-    for path in code_files():
-        if within is None or within in path.parents:
-            yield from (each for each in defined(path) if isinstance(each.node, Function))
+def functions() -> Iterator[Defined]:
+    for path in modules():
+        yield from (each for each in defined(path) if isinstance(each.node, Function))
 
 
 def positional(each: Defined) -> list[ast.arg]:
@@ -36,15 +34,9 @@ def hides(each: Defined) -> bool:
 
 
 def test_no_parameters_are_hidden_in_a_dictionary() -> None:
-    expect_none((each.where for each in functions(SRC) if hides(each)), "name the parameters instead of **")
+    expect_none((each.where for each in functions() if hides(each)), "name the parameters instead of **")
 
 
 def test_flags_are_given_by_name() -> None:
     # `feed(state, value, True)` says nothing at the call. Private helpers are read, too.
-    expect_none((each.where for each in functions(SRC) if takes_a_flag(each)), "put * before the flag")
-
-
-def test_no_star_imports() -> None:
-    imports = ((path, node) for path in code_files() for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom))
-    found = (f"{path}:{node.lineno}" for path, node in imports if any(alias.name == "*" for alias in node.names))
-    expect_none(found, "import names")
+    expect_none((each.where for each in functions() if takes_a_flag(each)), "put * before the flag")

@@ -17,7 +17,7 @@ from flexstage.experiment.identification.jackknife import jackknife
 from flexstage.experiment.identification.likelihood import fit, noise
 from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, in_memory
 from tests.conftest import FULL
-from tests.models.identification_study import CASES, Trial, compared, trial, trials
+from tests.models.identification_study import CASES, Trial, compared, trials
 from tests.models.synthetic_records import WIDE, record, truth
 from tests.models.wrong_models import (
     Made,
@@ -207,7 +207,7 @@ def test_trials_fail_when_modes_are_wrong():
     known, other = truth(WIDE), truth(tuple(1.002 * value for value in WIDE))
     found = compared(known, identify(record(other, 9)))
     assert np.min(np.abs(found.frequency)) > 0.0015
-    assert trial(CASES[0], 3).found == 6
+    assert _trials(0)[0].found == 6
 
 
 @pytest.mark.parametrize(("unit", "told"), [("m/s^2", True), ("mm/s", True), ("g0", True), ("N", False), ("um", False), ("", False)])

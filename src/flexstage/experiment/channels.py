@@ -82,8 +82,10 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: A
     count = len(outputs)
     if count < _FEWEST or count > _MOST_OUTPUTS or not shapes.shape[1]:
         return None
-    tried = list(_remedies(outputs, scales))
     before = score(shapes)
+    if before > 1.0 - _LEAST:
+        return None  # nothing is left to gain
+    tried = list(_remedies(outputs, scales))
     single, alone = _best(tried, shapes, score)
     chosen, best = single, alone
     if alone < _COMPLETE and count <= _MOST_TOGETHER:

@@ -167,14 +167,15 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     own = _shapes_at_sensors(linear, theory, candidates, sensors)
     groups = _groups(theory, candidates)
     frequencies = first_design(theory.frequencies, 1)[list(candidates)]
-    pairs, likeness = _pair(frequencies, experiment, groups, own, seen)
+    bases = [(group, _basis(own[:, group])) for group in groups]
+    pairs, likeness = _pair(frequencies, experiment, bases, seen)
 
     def score(shapes: Array) -> float:
-        found, alike = _pair(frequencies, experiment, groups, own, shapes)
+        found, alike = _pair(frequencies, experiment, bases, shapes)
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
     doubt = shape_doubt(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
-    right = pairs if doubt is None else _pair(frequencies, experiment, groups, own, _unit(doubt.put_right(seen)))[0]
+    right = pairs if doubt is None else _pair(frequencies, experiment, bases, _unit(doubt.put_right(seen)))[0]
     matched = _match_groups(groups, candidates, right)
     misnamed = gain_doubts(_residues(mechanism, linear, theory, experiment, sensors, matched=matched, doubt=doubt))
     misnamed = misnamed if doubt is None else (doubt.text, *misnamed)
@@ -243,11 +244,13 @@ def _unit(shapes: Array) -> Array:
     return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
 
 
-def _pair(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> tuple[dict[int, int], Array]:
-    """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace."""
-    likeness = np.zeros((own.shape[1], seen.shape[1]))
-    for group in groups:
-        basis = _basis(own[:, group])
+def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int], Array]], seen: Array) -> tuple[dict[int, int], Array]:
+    """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace.
+
+    `bases` are orthonormal ones (p, m) of theory's groups of modes.
+    """
+    likeness = np.zeros((len(frequencies), seen.shape[1]))
+    for group, basis in bases:
         likeness[group] = np.sum((basis.T @ seen) ** 2, axis=0)
     if not likeness.size:
         return {}, likeness
@@ -255,7 +258,7 @@ def _pair(frequencies: Array, experiment: Identified, groups: list[list[int]], o
     fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
     first, second = assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
-    return _sort_within_groups(found, groups), likeness
+    return _sort_within_groups(found, [group for group, _ in bases]), likeness
 
 
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:

@@ -22,7 +22,6 @@ MOTION = UnitOf(lambda name: TWIST_UNITS[COMPONENTS.index(name)])
 """Annotates motions by coordinate: x in m, rz in rad."""
 
 _UNIT = np.eye(6)
-_NEXT, _AFTER_NEXT = [1, 2, 0], [2, 0, 1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +89,9 @@ def cross_matrix(vector: Array) -> Array:
     """
     vector = np.asarray(vector)
     result = np.zeros((*vector.shape, 3), dtype=vector.dtype)
-    result[..., _NEXT, _AFTER_NEXT] = -vector
-    result[..., _AFTER_NEXT, _NEXT] = vector
+    back = -vector
+    result[..., 1, 2], result[..., 2, 0], result[..., 0, 1] = back[..., 0], back[..., 1], back[..., 2]
+    result[..., 2, 1], result[..., 0, 2], result[..., 1, 0] = vector[..., 0], vector[..., 1], vector[..., 2]
     return result
 
 
@@ -164,7 +164,7 @@ def normalise(vector: Array) -> Array:
     >>> normalise(np.array([3.0, 0.0, 4.0])).tolist()
     [0.6, 0.0, 0.8]
     """
-    return vector / np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
+    return vector / np.sqrt(np.add.reduce(vector * vector, axis=-1, keepdims=True))
 
 
 def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
@@ -181,7 +181,7 @@ def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
         z = np.where(steep, np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     else:
         z = stack(up) if isinstance(up, tuple) else up
-    z = normalise(z - np.sum(z * x, axis=-1, keepdims=True) * x)
+    z = normalise(z - np.add.reduce(z * x, axis=-1, keepdims=True) * x)
     x, z = np.broadcast_arrays(x, z)
     return np.stack([x, (cross_matrix(z) @ x[..., None])[..., 0], z], axis=-1)
 
