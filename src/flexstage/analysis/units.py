@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
@@ -114,8 +115,14 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> 
         load_compliance=float(load),
         series=_series(mechanism, copy),
         lever=lever,
-        omitted=None if lever is None else omitted(guided, lever_theory(guided, unit), channel),
+        omitted=None if lever is None else _omitted(guided, unit, channel),
     )
+
+
+@lru_cache(maxsize=8)
+def _omitted(guided: Mechanism, unit: str, channel: tuple[str, str]) -> Omitted:
+    """Most of the work on a unit, kept: designs that differ elsewhere have the same one."""
+    return omitted(guided, lever_theory(guided, unit), channel)
 
 
 def _series(mechanism: Mechanism, copy: str) -> float | None:

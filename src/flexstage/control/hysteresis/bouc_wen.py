@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,11 +58,14 @@ class BoucWen(Hysteresis):
 class BoucWenStepper:
     """A Bouc-Wen model that runs: holds its state."""
 
-    __slots__ = ("_lagging", "_model", "_volts")
+    __slots__ = ("_lagging", "_model", "_relax_ahead", "_relax_behind", "_volts", "_way_to_zero")
 
     def __init__(self, model: BoucWen, state: Array) -> None:
         self._model = model
         self._volts, self._lagging = np.array(state, dtype=float).T
+        slow, fast = model.beta - model.gamma, model.beta + model.gamma
+        self._relax_behind, self._relax_ahead = _relaxation(slow, model.lag), _relaxation(fast, model.lag)
+        self._way_to_zero = _way_to_zero(-slow, model.lag)
 
     @property
     def state(self) -> Array:
@@ -75,12 +78,11 @@ class BoucWenStepper:
         travel = value - self._volts
         sign, way = np.sign(travel), np.abs(travel)
         lagging = sign * self._lagging
-        slow, fast = model.beta - model.gamma, model.beta + model.gamma
         behind = np.minimum(lagging, 0.0)
-        before = np.minimum(way, -_way_to_zero(-slow, behind, model.lag))
+        before = np.minimum(way, -self._way_to_zero(behind))
         ahead = np.where(before < way, np.maximum(lagging, 0.0), lagging)
-        first = _relax(behind, slow, before, model.lag)
-        passed = _relax(ahead, fast, way - before, model.lag)
+        first = self._relax_behind(behind, before)
+        passed = self._relax_ahead(ahead, way - before)
         moved = np.where((lagging < 0.0) & (before >= way), first, passed)
         self._lagging = np.where(way > 0.0, sign * moved, self._lagging)
         self._volts = np.array(value, dtype=float)
@@ -89,17 +91,29 @@ class BoucWenStepper:
         return np.add(model.offset, out, out=out)
 
 
-def _relax(start: Array, rate: Array, way: Array, lag: Array) -> Array:
-    """g e^{-c e} + A (1 - e^{-c e})/c, and g + A e where c is 0."""
-    with np.errstate(invalid="ignore"):
-        gained = np.where(rate == 0.0, way, -np.expm1(-rate * way) / np.where(rate == 0.0, 1.0, rate))
-    return start * np.exp(-rate * way) + lag * gained
+def _relaxation(rate: Array, lag: Array) -> Callable[[Array, Array], Array]:
+    """Of g and e: g e^{-c e} + A (1 - e^{-c e})/c, and g + A e where c is 0."""
+    level = rate == 0.0
+    some, safe, fall = bool(np.any(level)), np.where(level, 1.0, rate), -rate
+
+    def relax(start: Array, way: Array) -> Array:
+        exponent = fall * way
+        gained = -np.expm1(exponent) / safe
+        return start * np.exp(exponent) + lag * (np.where(level, way, gained) if some else gained)
+
+    return relax
 
 
-def _way_to_zero(rate: Array, start: Array, lag: Array) -> Array:
-    """ln(1 + c g/A)/c, and g/A where c is 0: minus the way to g = 0 for c = -(beta - gamma)."""
-    safe = np.where(rate == 0.0, 1.0, rate)
-    return np.where(rate == 0.0, start / lag, np.log1p(rate * start / lag) / safe)
+def _way_to_zero(rate: Array, lag: Array) -> Callable[[Array], Array]:
+    """Of g: ln(1 + c g/A)/c, and g/A where c is 0: minus the way to g = 0 for c = -(beta - gamma)."""
+    level = rate == 0.0
+    some, safe = bool(np.any(level)), np.where(level, 1.0, rate)
+
+    def way(start: Array) -> Array:
+        curved = np.log1p(rate * start / lag) / safe
+        return np.where(level, start / lag, curved) if some else curved
+
+    return way
 
 
 def _findings(model: BoucWen) -> Iterator[Finding]:
