@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.lazy import Late
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.unit import parse
 from flexstage.experiment import options
 from flexstage.experiment.cross_spectra import Segments
-from flexstage.experiment.formats.read import read
 from flexstage.experiment.health import Needs
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identify import Search
@@ -27,6 +27,11 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.show.command.options import text_option, word_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
+
+if TYPE_CHECKING:
+    from flexstage.experiment.formats import read as files
+else:
+    files = Late("flexstage.experiment.formats.read")  # a loop is not always closed around a record
 
 Inputs: TypeAlias = Annotated[
     list[str] | None, text_option("--inputs", "NAMES", 'Channels that were inputs, e.g. "u*" or B1,B2. Default: told by name.')
@@ -137,7 +142,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
     findings = list(_repeated(paths))
     for path in dict.fromkeys(paths):
         try:
-            found.append(read(path, reader))
+            found.append(files.read(path, reader))
         except DesignError as error:
             findings += error.findings
     require(findings)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from flexstage.analysis.complete import felt, platform_modes
 from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.solid_modes import FeaModes
-from flexstage.analysis.stance import Stance
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Table
 from flexstage.control.damping.charge import ChargedStacks, at_constant_charge, describe_charge, leak_charge
@@ -33,6 +33,9 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
+
+if TYPE_CHECKING:
+    from flexstage.analysis.stance import Stance
 
 _USUAL = 10e3
 _OVER_HIGHEST = 10.0

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import numpy as np
 
 from flexstage.analysis.load_effect import LoadEffect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.solid_modes import FeaModes
-from flexstage.analysis.stance import Stance
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -40,6 +39,9 @@ from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from flexstage.analysis.stance import Stance
 
 _Found = TypeVar("_Found")
 _LOWEST = 0.1

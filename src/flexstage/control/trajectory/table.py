@@ -5,18 +5,24 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.experiment.formats.table.layout import read_layout
-from flexstage.experiment.formats.table.values import TableSamples, index_lines
 from flexstage.experiment.record import Channel, Record
 from flexstage.experiment.unit import in_si, plain_unit
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+if TYPE_CHECKING:
+    from flexstage.experiment.formats.table import layout as layouts
+    from flexstage.experiment.formats.table import values as tabled
+else:  # the formats of all records, which few trajectories come from
+    layouts, tabled = Late("flexstage.experiment.formats.table.layout"), Late("flexstage.experiment.formats.table.values")
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,9 +117,9 @@ def from_file(path: str | os.PathLike[str], point: str = PLATFORM) -> Table:
     ([0.0, 0.1, 0.4], [0.0, 2e-06, 0.0])
     """
     place = Path(path)
-    layout = read_layout(place)
-    lines = index_lines(place, layout.start)
-    samples = TableSamples(place, layout, lines, tuple(range(len(layout.names))), lines.count)
+    layout = layouts.read_layout(place)
+    lines = tabled.index_lines(place, layout.start)
+    samples = tabled.TableSamples(place, layout, lines, tuple(range(len(layout.names))), lines.count)
     channels = tuple(Channel(name, plain_unit(unit)) for name, unit in zip(layout.names, layout.units, strict=True))
     if channels[0].name.lower() not in ("time", "t"):
         raise refuse(str(place), f'its first column is "{channels[0].name}"', 'Begin with times, as "time [s], x [um]"')

@@ -4,21 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from flexstage.analysis.load_effect import LoadEffect, load_effect
-from flexstage.analysis.stance import Stance, stance
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.lazy import Late
 from flexstage.base.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
 from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse, quantity_of_unit
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
 from flexstage.show.command.options import text_option
 from flexstage.show.table import Table, matrix_table
+
+if TYPE_CHECKING:
+    from flexstage.analysis import stance as stances
+    from flexstage.analysis.stance import Stance
+    from flexstage.models.nonlinear import stage as displaced
+    from flexstage.models.nonlinear.stage import Nonlinear
+else:  # few commands are asked about another place than the drawn one
+    stances, displaced = Late("flexstage.analysis.stance"), Late("flexstage.models.nonlinear.stage")
 
 Load: TypeAlias = Annotated[
     list[str] | None,
@@ -138,8 +145,8 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
         raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
-    known = nonlinear(mechanism)
-    there = stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), hold=asked.locked, temperature=asked.warmth)
+    known = displaced.nonlinear(mechanism)
+    there = stances.stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), hold=asked.locked, temperature=asked.warmth)
     return Footing(mechanism, model, there)
 
 
