@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import platform
 import shutil
 import subprocess
 from dataclasses import replace
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexstage.base.native import compiler
+from flexstage.base.native import Lanes, compile_source, kernel_recipe, processor_lanes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.batch import compiled
 from flexstage.models.batch.compiled import kernel_job
@@ -29,14 +28,14 @@ FLAGS = ("-O3", "-ffp-contract=fast", "-fno-math-errno", "-Wall", "-Wextra", "-W
 ARM, EMULATOR, ROOT = "aarch64-linux-gnu-gcc", "qemu-aarch64", "/usr/aarch64-linux-gnu"
 
 
-def drawn() -> tuple[Solution, compiled.Job]:
-    """Eleven designs (no whole number of vectors) as the kernel of this processor solves them, and as a task for two lanes."""
+def drawn(width: int) -> tuple[Solution, compiled.Job]:
+    """Eleven designs (no whole number of vectors) as the kernel of this processor solves them, and as a task for so many lanes."""
     family = plan(double_triangle(), NAMES)
     values = family.family.nominal * (1.0 + np.random.default_rng(3).uniform(-0.05, 0.05, (11, len(NAMES))))
     stage = Stage(family.scheme, numbers_of(family.family, values), len(NAMES), slopes_of(family.family, values))
     assert family.start is not None
     start = replace(family.start, angle=1e-6)
-    return iterate(family, stage), kernel_job(2, stage, start, family.tables[True])
+    return iterate(family, stage), kernel_job(width, stage, start, family.tables[True])
 
 
 def agree(found: compiled.Job, known: Solution) -> None:
@@ -49,16 +48,16 @@ def agree(found: compiled.Job, known: Solution) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.skipif(kernel() is None or platform.machine() != "x86_64", reason="no kernel, or another processor")
-def test_two_lanes_give_what_eight_give(tmp_path: Path) -> None:
-    found = compiler()
-    assert found is not None
+@pytest.mark.skipif(kernel() is None, reason="no kernel")
+@pytest.mark.parametrize("lanes", processor_lanes()[1:], ids=lambda lanes: lanes.name)
+def test_narrower_lanes_give_what_the_widest_give(lanes: Lanes, tmp_path: Path) -> None:
     made = tmp_path / "narrow.so"
-    subprocess.run([*found.command, *FLAGS, "-msse2", "-fPIC", "-shared", "-o", str(made), str(KERNEL), "-lm"], check=True)
+    made.write_bytes(compile_source(kernel_recipe("the kernel", KERNEL, lanes)))
     library = ctypes.CDLL(str(made))
     library.flexstage_width.restype = library.flexstage_modes.restype = ctypes.c_int64
-    known, job = drawn()
-    assert library.flexstage_width() == 2
+    width = library.flexstage_width()
+    assert width == {"avx2": 4, "sse2": 2}[lanes.name]
+    known, job = drawn(width)
     assert library.flexstage_modes(ctypes.byref(job.task)) == 0
     agree(job, known)
 
@@ -68,7 +67,7 @@ def test_two_lanes_give_what_eight_give(tmp_path: Path) -> None:
 def test_neon_gives_what_this_processor_gives(tmp_path: Path) -> None:
     driver, task, results = tmp_path / "driver", tmp_path / "task", tmp_path / "results"
     subprocess.run([ARM, *FLAGS, "-static", "-o", str(driver), str(HERE / "lanes_driver.c"), str(KERNEL), "-lm"], check=True)
-    known, job = drawn()
+    known, job = drawn(2)
     task.write_bytes(written(job))
     ran = subprocess.run([EMULATOR, str(driver), str(task), str(results)], check=True, capture_output=True, text=True)
     assert ran.stdout.strip() == "2"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import platform
 import subprocess
 import sys
 import tempfile
@@ -11,9 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from flexstage.base import native
 from flexstage.base.finding import DesignError
 from flexstage.base.jobs import environment
-from flexstage.base.native import Recipe, compile_source, compiler, folder_defect, load_library
+from flexstage.base.native import Recipe, compile_source, compiler, folder_defect, kernel_lanes, kernel_recipe, key, load_library
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no compiler of C")
 owners = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owners here")
@@ -183,3 +185,52 @@ def test_builders_at_once_build_one(cache: Path) -> None:
     assert [each.communicate(timeout=120)[0].split() for each in several] == [["42"]] * 3
     assert len(libraries(cache)) == 1
     assert not list(cache.glob(".building-*"))
+
+
+AVX512 = frozenset(["avx512f", "avx512dq", "avx512vl", "avx2", "fma", "sse2"])
+
+
+@pytest.mark.parametrize(
+    ("machine", "features", "found"),
+    [
+        ("x86_64", AVX512, ["avx512", "avx2", "sse2"]),
+        ("x86_64", AVX512 - {"avx512dq"}, ["avx2", "sse2"]),
+        ("x86_64", frozenset(), ["sse2"]),
+        ("aarch64", frozenset({"asimd"}), ["neon"]),
+        ("arm64", frozenset(), ["neon"]),
+        ("riscv64", frozenset(), []),
+    ],
+)
+def test_lanes_are_asked_of_the_processor(
+    machine: str, features: frozenset[str], found: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("FLEXSTAGE_KERNEL", raising=False)
+    monkeypatch.setattr(platform, "machine", lambda: machine)
+    monkeypatch.setattr(native, "_features", lambda: features)
+    assert [each.name for each in native.processor_lanes()] == found
+    assert kernel_lanes().name == (found[0] if found else "plain")
+    for name in found:
+        monkeypatch.setenv("FLEXSTAGE_KERNEL", name)
+        assert kernel_lanes().name == name
+
+
+def test_lanes_that_the_processor_has_not_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(platform, "machine", lambda: "x86_64")
+    monkeypatch.setattr(native, "_features", lambda: AVX512 - {"avx512vl"})
+    monkeypatch.setenv("FLEXSTAGE_KERNEL", "avx512")
+    with pytest.raises(DesignError, match="FLEXSTAGE_KERNEL: it is avx512, and kernels run here with avx2, sse2, or are off"):
+        kernel_lanes()
+
+
+def test_a_kept_kernel_is_of_its_lanes_and_of_no_one_processor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, source = compiler(), tmp_path / "one.c"
+    assert found is not None
+    source.write_text("int one(void);")
+    monkeypatch.setattr(platform, "machine", lambda: "x86_64")
+
+    def named(features: frozenset[str]) -> str:
+        monkeypatch.setattr(native, "_features", lambda: features)
+        return key(kernel_recipe("one", source), found)
+
+    assert named(AVX512) == named(AVX512 | {"amx_tile"})
+    assert named(AVX512) != named(AVX512 - {"avx512f"})

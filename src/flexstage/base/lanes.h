@@ -1,5 +1,6 @@
-/* Vectors of doubles for every kernel of the project, with the vector extensions of GCC and Clang: as wide as the processor's, which the
- * compiler is told of (-march=native). A "lane" is one case or one design; nothing that happens in a lane depends on the others.
+/* Vectors of doubles for every kernel of the project, with the vector extensions of GCC and Clang: as wide as the lanes that the
+ * compiler is told of (native.py, which asks the processor). A "lane" is one case or one design; nothing that happens in a
+ * lane depends on the others.
  */
 #ifndef FLEXSTAGE_LANES_H
 #define FLEXSTAGE_LANES_H

@@ -26,8 +26,8 @@ from flexstage.base.finding import DesignError, refuse
 from flexstage.base.store import cache_folder, temporary_folder
 
 SWITCH = "FLEXSTAGE_KERNEL"
-"""The variable that, at `off`, does without kernels."""
-_KERNEL = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
+"""The variable that, at `off`, does without kernels, and else names their lanes."""
+_KERNEL = ("-O3", "-ffp-contract=fast", "-fno-math-errno", "-fPIC", "-shared")
 COMPILERS = ("cc", "gcc", "clang")
 """Names by which a compiler is looked for."""
 _KEPT = 64
@@ -45,6 +45,26 @@ class Compiler:
 
     command: tuple[str, ...]
     version: str
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """Vectors that kernels are compiled for: the architecture, the features a processor must have, and the flags that tell the compiler."""
+
+    name: str
+    machines: tuple[str, ...]
+    features: frozenset[str]
+    flags: tuple[str, ...]
+
+
+_X86, _ARM = ("x86_64", "AMD64"), ("aarch64", "arm64")
+LANES = (
+    Lanes("avx512", _X86, frozenset({"avx512f", "avx512dq", "avx512vl", "fma"}), ("-mavx512f", "-mavx512dq", "-mavx512vl", "-mfma")),
+    Lanes("avx2", _X86, frozenset({"avx2", "fma"}), ("-mavx2", "-mfma")),
+    Lanes("sse2", _X86, frozenset(), ()),
+    Lanes("neon", _ARM, frozenset(), ()),
+)
+"""Widest first: eight, four and two doubles. Where none is known, two lanes as the compiler makes them."""
 
 
 @dataclass(frozen=True)
@@ -85,13 +105,13 @@ def require_compiler(what: str) -> Compiler:
 
 
 def key(recipe: Recipe, found: Compiler) -> str:
-    """What a library depends on: sources, flags, compiler, and the processor, for a folder may be shared by machines that differ.
+    """What a library depends on: sources, flags (lanes among them), compiler, architecture; a folder may be shared by machines that differ.
 
     >>> one, other = (key(Recipe("one", {"one.c": text}, ()), Compiler(("cc",), "1")) for text in ("int a;", "int b;"))
     >>> len(one), one == other
     (24, False)
     """
-    content = repr((sorted(recipe.sources.items()), recipe.flags, found.command, found.version, _processor()))
+    content = repr((sorted(recipe.sources.items()), recipe.flags, found.command, found.version, platform.system(), platform.machine()))
     return hashlib.sha256(content.encode()).hexdigest()[:24]
 
 
@@ -131,25 +151,52 @@ def load_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL:
             raise refuse("compiler", what, "Set CC to another compiler") from None
 
 
-def kernel_recipe(what: str, source: Path) -> Recipe:
-    """How a kernel of the package is built: one file of C and the vectors that all kernels share (lanes.h), for this processor.
+def processor_lanes() -> tuple[Lanes, ...]:
+    """The lanes that this processor has, asked now, widest first.
+
+    >>> all(platform.machine() in each.machines for each in processor_lanes())
+    True
+    """
+    features = _features()
+    return tuple(each for each in LANES if platform.machine() in each.machines and each.features <= features)
+
+
+def kernel_lanes() -> Lanes:
+    """The widest lanes of this processor, or those of them that FLEXSTAGE_KERNEL names; raises `DesignError` for others.
+
+    >>> kernel_lanes().name in {each.name for each in LANES} or not processor_lanes()
+    True
+    """
+    found = {each.name: each for each in processor_lanes()} or {"plain": Lanes("plain", (), frozenset(), ())}
+    stated = os.environ.get(SWITCH, "")
+    if stated and stated not in found:
+        what = f"it is {stated}, and kernels run here with {', '.join(found)}, or are off"
+        raise refuse(SWITCH, what, "State one of these, or nothing for the fastest")
+    return found[stated] if stated else next(iter(found.values()))
+
+
+def kernel_recipe(what: str, source: Path, lanes: Lanes | None = None) -> Recipe:
+    """How a kernel of the package is built: one file of C and the vectors that all kernels share (lanes.h), for this processor's lanes.
 
     >>> sorted(kernel_recipe("none", Path(__file__)).sources)
     ['lanes.h', 'native.py']
     """
     files = (source, Path(__file__).with_name("lanes.h"))
-    return Recipe(what, {each.name: each.read_text(encoding="utf-8") for each in files}, _KERNEL)
+    flags = (kernel_lanes() if lanes is None else lanes).flags
+    return Recipe(what, {each.name: each.read_text(encoding="utf-8") for each in files}, (*_KERNEL, *flags))
 
 
-def kernel_library(recipe: Recipe, answers: Answers) -> ctypes.CDLL | None:
+def kernel_library(what: str, source: Path, answers: Answers) -> ctypes.CDLL | None:
     """A kernel, which does what numpy does faster; `None` where FLEXSTAGE_KERNEL is off, nothing can build it, or what is built fails.
 
-    >>> one = Recipe("an example", {"one.c": "int one(void); int one(void) { return 1; }"}, ("-fPIC", "-shared"))
-    >>> kernel_library(one, lambda library: library.one() == 2) is None
+    Raises `DesignError` where FLEXSTAGE_KERNEL names lanes that this processor has not.
+
+    >>> kernel_library("none", Path(__file__), lambda library: False) is None
     True
     """
     if os.environ.get(SWITCH, "") == "off":
         return None
+    recipe = kernel_recipe(what, source)
     try:
         return load_library(recipe, answers)
     except DesignError:
@@ -268,14 +315,12 @@ def _compile(recipe: Recipe, found: Compiler, folder: Path) -> bytes:
         raise refuse("compiler", f"{found.command[0]} made no library of {recipe.what}", advice) from None
 
 
-def _processor() -> str:
-    """Architecture and features of the processor."""
-    try:
+def _features() -> frozenset[str]:
+    """What the processor says it can do; nothing where the system does not tell."""
+    with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        lines = []
-    told = [next((line for line in lines if line.startswith(name)), "") for name in ("model name", "flags", "Features", "CPU part")]
-    return "\n".join([platform.system(), platform.machine(), platform.processor(), *told])
+        return frozenset(next((line for line in lines if line.startswith(("flags", "Features"))), "").split())
+    return frozenset()
 
 
 def _version(command: tuple[str, ...]) -> str:

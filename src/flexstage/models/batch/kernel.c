@@ -107,24 +107,25 @@ static INLINE void multiply(lanes *restrict y, const lanes *restrict a, const la
 
 /* ---- assembly ---- */
 
-/* out (6x6, 3x3 blocks at row0, col0 of `from`, `stride` wide) turned into the stage's axes: R block R^T. */
-static void turn(lanes *out, const lanes *from, int stride, const lanes *r, const int *zero)
+/* out (6x6) = 3x3 blocks of `from`, `stride` wide, turned into the stage's axes: R block R^T; of what is symmetric the upper half follows. */
+static INLINE void turn(lanes *out, const lanes *from, const int stride, const lanes *r, const int *zero, const int symmetric)
 {
     for (int p = 0; p < 2; p++)
-        for (int q = 0; q < 2; q++) {
+        for (int q = 0; q < (symmetric ? p + 1 : 2); q++) {
             lanes *o = out + 18 * p + 3 * q;
             const lanes *f = from + 3 * stride * p + 3 * q;
             lanes half[9];
-            if (zero[(stride == 12 ? 4 : 2) * p + q]) {
-                for (int i = 0; i < 3; i++)
-                    for (int k = 0; k < 3; k++) o[6 * i + k] = all(0.0);
-                continue;
-            }
-            for (int i = 0; i < 3; i++)
-                for (int k = 0; k < 3; k++) half[3 * i + k] = r[3 * i] * f[k] + r[3 * i + 1] * f[stride + k] + r[3 * i + 2] * f[2 * stride + k];
-            for (int i = 0; i < 3; i++)
-                for (int k = 0; k < 3; k++) o[6 * i + k] = half[3 * i] * r[3 * k] + half[3 * i + 1] * r[3 * k + 1] + half[3 * i + 2] * r[3 * k + 2];
+            const int none = zero[(stride == 12 ? 4 : 2) * p + q];
+            UNROLL for (int i = 0; i < 9 && !none; i++)
+                half[i] = r[i - i % 3] * f[i % 3] + r[i - i % 3 + 1] * f[stride + i % 3] + r[i - i % 3 + 2] * f[2 * stride + i % 3];
+            UNROLL for (int i = 0; i < 3; i++)
+                UNROLL for (int k = 0; k < 3; k++)
+                    if (none) o[6 * i + k] = all(0.0);
+                    else if (!symmetric || p > q || k <= i) o[6 * i + k] = half[3 * i] * r[3 * k] + half[3 * i + 1] * r[3 * k + 1] + half[3 * i + 2] * r[3 * k + 2];
         }
+    if (symmetric)
+        UNROLL for (int i = 0; i < 6; i++)
+            UNROLL for (int k = i + 1; k < 6; k++) out[6 * i + k] = out[6 * k + i];
 }
 
 /* p = n T(b), T = [1, [arm]x; 0, 1]. */
@@ -186,13 +187,13 @@ static void assemble(const Task *t, Room *w)
         const lanes *m = w->number + t->start[1] + 144 * part;
         const int *zero = w->law[part].zero;
         lanes n[36], p[36];
-        turn(n, w->number + t->start[0] + 36 * part, 6, r, zero);
+        turn(n, w->number + t->start[0] + 36 * part, 6, r, zero, 1);
         if (a >= 0) carried(p, n, first), join(w->stiff + OWN * a, p, first, 1.0, SYMMETRIC);
         if (b >= 0) carried(p, n, second), join(w->stiff + OWN * b, p, second, 1.0, SYMMETRIC);
         if (e >= 0) join_edge(w->stiff_edge + 36 * e, p, first, -1.0, a > b);
-        if (a >= 0) turn(n, m, 12, r, zero + 4), carried(p, n, first), join(w->mass + OWN * a, p, first, 1.0, SYMMETRIC);
-        if (b >= 0) turn(n, m + 78, 12, r, zero + 14), carried(p, n, second), join(w->mass + OWN * b, p, second, 1.0, SYMMETRIC);
-        if (e >= 0) turn(n, m + 6, 12, r, zero + 6), carried(p, n, second), join_edge(w->mass_edge + 36 * e, p, first, 1.0, a > b);
+        if (a >= 0) turn(n, m, 12, r, zero + 4, 1), carried(p, n, first), join(w->mass + OWN * a, p, first, 1.0, SYMMETRIC);
+        if (b >= 0) turn(n, m + 78, 12, r, zero + 14, 1), carried(p, n, second), join(w->mass + OWN * b, p, second, 1.0, SYMMETRIC);
+        if (e >= 0) turn(n, m + 6, 12, r, zero + 6, 0), carried(p, n, second), join_edge(w->mass_edge + 36 * e, p, first, 1.0, a > b);
     }
 }
 
@@ -464,7 +465,7 @@ static void small(int m, lanes *stiff, lanes *mass, lanes *values, lanes *q, dou
 
 /* Of single modes: the shift of each, the Rayleigh quotient of (K - shift M)^-1 M, the sine of the angle between a vector and what that makes of it,
  * and how much of each is in each of the modes. */
-typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST]; } Ritz;
+typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST], mix[MOST * MOST]; } Ritz;
 
 /* The share of the platform in mode c of x q, x the platform's rows. */
 static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes *q, int m, int c)
@@ -500,7 +501,7 @@ static void begin(const Task *t, Room *w, Ritz *out)
 }
 
 /* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
- * w->force to shapes (single, n) in w->now and M times them in w->force. What is of other modes falls in each step like the value's distance from
+ * w->force to shapes (single, n) in w->now. What is of other modes falls in each step like the value's distance from
  * the shift over theirs. */
 static void polish(const Task *t, Room *w, Ritz *known)
 {
@@ -536,7 +537,7 @@ static void polish(const Task *t, Room *w, Ritz *known)
     for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
     small(m, stiff, mass, values, q, 1e-17);
     blend(n, m, at, w->now, w->ahead, q, m);
-    blend(n, m, at, w->force, w->next, q, m);
+    memcpy(known->mix, q, sizeof(lanes) * m * m);
     for (int c = 0; c < m; c++) {
         known->values[c] = values[c];
         for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(q[k * m + c]) * length[k];
@@ -810,6 +811,7 @@ static void designs(const Task *t, Room *w, int64_t design)
     assemble(t, w);
     begin(t, w, &known);
     for (int64_t round = 0; round < t->rounds && left; round++) {
+        if (round) blend(6 * t->bodies, (int)t->single, (Layout){1, 6 * t->bodies}, w->force, w->next, known.mix, (int)t->single);
         polish(t, w, &known);
         marks fresh = {0};
         left = 0;
@@ -836,12 +838,13 @@ static int64_t vary(lanes *to, const double *from, int64_t rows, int64_t stride,
 {
     int64_t count = 0;
     for (int64_t i = 0; i < rows; i++) {
-        const double *row = from + i * stride;
-        int64_t same = 1;
-        while (same < designs && row[same] == row[0]) same++;
-        if (same < designs) varying[count++] = i;
+        const lanes first = all(from[i * stride]);
+        marks other = {0};
+        for (int64_t design = 0; design < designs && !any(other); design += 4 * WIDTH)
+            for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(from + i * stride, design + k * WIDTH, designs) != first;
+        if (any(other)) varying[count++] = i;
         else
-            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = all(row[0]);
+            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = first;
     }
     return count;
 }

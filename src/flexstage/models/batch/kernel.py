@@ -1,7 +1,7 @@
 """The iteration in C, several designs in each vector of the processor: built where there is a compiler, never required.
 
 Where nothing is found to build it, or what is built does not work, there is none and numpy does the same work. FLEXSTAGE_KERNEL=off does
-without it.
+without it, FLEXSTAGE_KERNEL=avx2 takes vectors of four where a processor has those of eight.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ import ctypes
 import functools
 from pathlib import Path
 
-from flexstage.base.native import Recipe, compiler, kernel_library, kernel_recipe, key
+from flexstage.base.native import compiler, kernel_lanes, kernel_library, kernel_recipe, key
+
+_WHAT, _SOURCE = "the kernel", Path(__file__).with_name("kernel.c")
 
 
 @functools.cache
@@ -21,7 +23,7 @@ def kernel() -> ctypes.CDLL | None:
     >>> found is None or found.flexstage_width() in (2, 4, 8)
     True
     """
-    return kernel_library(_recipe(), _answers)
+    return kernel_library(_WHAT, _SOURCE, _answers)
 
 
 @functools.cache
@@ -32,11 +34,7 @@ def kernel_name() -> str:
     True
     """
     found = compiler() if kernel() is not None else None
-    return "no kernel" if found is None else f"kernel {key(_recipe(), found)[:12]}"
-
-
-def _recipe() -> Recipe:
-    return kernel_recipe("the kernel", Path(__file__).with_name("kernel.c"))
+    return "no kernel" if found is None else f"kernel {kernel_lanes().name} {key(kernel_recipe(_WHAT, _SOURCE), found)[:12]}"
 
 
 def _answers(library: ctypes.CDLL) -> bool:

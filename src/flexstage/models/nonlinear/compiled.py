@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.native import kernel_library, kernel_recipe
+from flexstage.base.native import kernel_library
 from flexstage.base.number import Array
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
@@ -78,7 +78,7 @@ def kernel() -> ctypes.CDLL | None:
     >>> found is None or found.flexstage_equilibria_width() in (2, 4, 8)
     True
     """
-    return kernel_library(kernel_recipe("the kernel of large displacements", Path(__file__).with_name("kernel.c")), _answers)
+    return kernel_library("the kernel of large displacements", Path(__file__).with_name("kernel.c"), _answers)
 
 
 def _answers(library: ctypes.CDLL) -> bool:
