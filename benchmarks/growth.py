@@ -1,10 +1,11 @@
 """How cost grows: with bodies, designs, samples, hinges as solids and workers of a cluster; a process each size, seconds and memory.
 
-    python benchmarks/growth.py [bodies | designs | samples | hinges | workers] [SIZES ...] [--figure FILE]
+    python benchmarks/growth.py [bodies | trees | designs | samples | hinges | workers] [SIZES ...] [--figure FILE]
 
-Bodies: models, statics, modes and drift of coiled chains. What bounds each: expanding the description and the links' operators grow with
-the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some 300 solves of it. Below 60 bodies matrices are
-dense. Designs: six platform frequencies of the shipped stage over four numbers, features fitted once; what is found is let go, as a study
+Bodies: models, statics, modes and drift of coiled chains; trees: the same of bodies that branch in two. What bounds each: expanding the
+description and the links' operators grow with the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some
+300 solves of it. Below 60 bodies matrices are dense.
+Designs: six platform frequencies of the shipped stage over four numbers, features fitted once; what is found is let go, as a study
 writes it.
 Samples: spectra of one drive and one reading, taken from a source that makes them as they are asked for, in segments of a second.
 Hinges: the 6x6 of so many notches by finite elements to 1 %, all of another thickness, none from a cache.
@@ -32,13 +33,16 @@ from dataclasses import dataclass
 
 SIZES = {
     "bodies": (10, 30, 100, 300, 1000, 3000, 10000),
+    "trees": (100, 1000, 10000),
     "designs": (10**3, 10**4, 10**5, 10**6, 10**7),
     "samples": (10**4, 10**5, 10**6, 10**7, 10**8),
     "hinges": (1, 3, 10, 30, 100),
     "workers": (1, 2, 4, 8),
 }
+_OF_BODIES = ("describe", "lumped", "statics", "modes", "drift", "ideal")
 STEPS = {
-    "bodies": ("describe", "lumped", "statics", "modes", "drift", "ideal"),
+    "bodies": _OF_BODIES,
+    "trees": _OF_BODIES,
     "designs": ("fit", "solve"),
     "samples": ("open", "spectra"),
     "hinges": ("describe", "solve"),
@@ -52,31 +56,59 @@ def chain(count: int) -> object:
     """A coil of bodies of 0.1 kg, each joined to the next one by a steel rod, the last one the platform."""
     import numpy as np
 
-    import flexstage as fs
-
     angles = 0.3 * np.arange(count + 1)
     places = np.column_stack([0.1 * np.cos(angles), 0.1 * np.sin(angles), 0.002 * np.arange(count + 1)])
-    names = ["ground", *(f"b{number}" for number in range(1, count)), "platform"]
+    return joined(places, range(count), platform=count)
+
+
+def tree(count: int) -> object:
+    """Bodies that branch in two each, 30 mm from one to the next in directions of chance; the platform is the last one."""
+    import numpy as np
+
+    steps = np.random.default_rng(4).normal(size=(count + 1, 3))
+    places = np.zeros((count + 1, 3))
+    parents = [0, *(max(1, number // 2) for number in range(2, count + 1))]
+    for number, parent in enumerate(parents, start=1):
+        places[number] = places[parent] + 0.03 * steps[number] / np.linalg.norm(steps[number])
+    return joined(places, parents, platform=count)
+
+
+def joined(places: object, parents: object, platform: int) -> object:
+    """Bodies at places (from 1 on), each joined to its parent by a steel rod; 0 is the ground."""
+    import numpy as np
+
+    import flexstage as fs
+
+    names = ["ground", *("platform" if number == platform else f"b{number}" for number in range(1, len(places)))]
     inertia = fs.Inertia(1e-5, 1e-5, 1e-5)
     bodies = {
         name: fs.Body(mass=0.1, centre=tuple(at), inertia=inertia, reference=tuple(at))
         for name, at in zip(names[1:], places[1:], strict=True)
     }
     links = {}
-    for number in range(count):
-        along, middle = places[number + 1] - places[number], 0.5 * (places[number + 1] + places[number])
-        ends = (names[number], names[number + 1])
+    for number, parent in enumerate(parents, start=1):
+        along, middle = places[number] - places[parent], 0.5 * (places[number] + places[parent])
+        ends = (names[parent], names[number])
         links[f"r{number}"] = fs.Link(ends, "rod", at=tuple(middle), along=tuple(along / np.linalg.norm(along)))
     steel = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=1.1e-5)
     rod = fs.Rod("steel", length=0.03, diameter=0.004)
-    return fs.Mechanism("coil", materials={"steel": steel}, parts={"rod": rod}, bodies=bodies, links=links, gravity=(0.0, 0.0, 0.0))
+    return fs.Mechanism("joined", materials={"steel": steel}, parts={"rod": rod}, bodies=bodies, links=links, gravity=(0.0, 0.0, 0.0))
 
 
 def bodies(count: int) -> Iterator[None]:
     """Step by step, the models and analyses of a coil."""
+    return analysed(chain(count))
+
+
+def trees(count: int) -> Iterator[None]:
+    """Step by step, the models and analyses of a tree."""
+    return analysed(tree(count))
+
+
+def analysed(stage: object) -> Iterator[None]:
+    """Its models and analyses."""
     import flexstage as fs
 
-    stage = chain(count)
     yield
     model = fs.lumped(stage)
     yield
@@ -173,6 +205,7 @@ def workers(count: int) -> Iterator[None]:
 
 OF: dict[str, Callable[[int], Iterator[None]]] = {
     "bodies": bodies,
+    "trees": trees,
     "designs": designs,
     "samples": samples,
     "hinges": hinges,
@@ -219,7 +252,7 @@ def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("words", nargs="*", help="bodies, designs, samples, hinges or workers; sizes")
+    parser.add_argument("words", nargs="*", help="bodies, trees, designs, samples, hinges or workers; sizes")
     parser.add_argument("--figure")
     asked = parser.parse_args()
     kinds = [word for word in asked.words if word in SIZES]

@@ -16,15 +16,18 @@ from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import DesignError
-from flexstage.base.sparse import Rows
+from flexstage.base.sparse import Rows, Sparse
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models import ideal as ideals
 from flexstage.models import lumped as lumpeds
 from flexstage.models.linear import eigen
+from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.material import Material
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Circular
 from flexstage.parts.rod import Rod
 from flexstage.spatial.frame import Frame, axes, twist_transform
 from tests.conftest import FULL
@@ -75,7 +78,12 @@ def test_stages_eliminated_body_by_body_have_the_same_ideal_motions(stage):
         found = ideals.ideal(stage)
     assert found.coordinates == expected.coordinates
     assert (len(found.idle), len(found.redundant)) == (len(expected.idle), len(expected.redundant))
-    for one, other in ((found.motion, expected.motion), (found.actuation, expected.actuation), (found.sensing, expected.sensing)):
+    for one, other in (
+        (found.motion, expected.motion),
+        (found.actuation, expected.actuation),
+        (found.sensing, expected.sensing),
+        (found.bodies, expected.bodies),
+    ):
         assert np.max(np.abs(one - other), initial=0.0) <= 1e-9 * np.max(np.abs(other), initial=1.0)
 
 
@@ -157,6 +165,24 @@ def test_a_chain_of_wires_leaves_its_platform_all_motions():
     assert (found.mobility, len(found.idle), found.redundant) == (6, 6 * 79 - 80, ())
 
 
+def test_a_chain_of_notches_deforms_least_as_with_dense_matrices():
+    count = 90
+    stage = stage_of([*range(1, count), -1], helix(count)[::-1])
+    links = {name: replace(link, bends=(0.0, 0.0, 1.0)) for name, link in stage.links.items()}
+    stage = replace(stage, parts={"rod": Notch("steel", 1e-3, 0.01, Circular(0.003))}, links=links)
+    found = ideals.ideal(stage)
+    with patch.object(ideals, "LARGE", count + 1):
+        ideals._kept.cache_clear()
+        expected = ideals.ideal(stage)
+    assert np.max(np.abs(found.bodies - expected.bodies)) <= 1e-10 * np.max(np.abs(expected.bodies))
+
+
+def test_a_body_that_its_rows_feel_by_rounding_alone_is_idle():
+    rows = [Sparse(np.array([6, 12]), np.array([[1e-17, 1.0]]), 18)]
+    found = eliminate_blocks(rows, np.ones(18), bodies=3, strokes=0)
+    assert (len(found.last.independent), len(found.idle), found.redundant) == (6, 11, ())
+
+
 def test_a_straight_chain_is_a_row_of_springs_though_rounding_hides_its_stiffness():
     count = 1500 if FULL else 600
     stage = stage_of([*range(1, count), -1], STEP * np.outer(np.arange(count, 0, -1), [1.0, 0.0, 0.0]))
@@ -185,6 +211,19 @@ def test_a_tree_has_the_compliance_of_its_path_and_drifts_without_stress():
     drifted = drift(stage, model, ground="none")
     for one, other in ((drifted.motion.values, dense.motion.values), (drifted.forces.values, 0.0 * dense.forces.values)):
         assert np.max(np.abs(one - other)) <= 1e-9 * np.max(np.abs(one), initial=1.0)
+
+
+def test_a_long_chain_grows_about_its_foot_without_turning():
+    count = 400
+    places = helix(count + 1)[:0:-1]
+    stage = stage_of([*range(1, count), -1], places)
+    drifted = drift(stage, lumpeds.lumped(stage), ground="none")
+    last = stage.links[f"r{count - 1}"]
+    foot = np.array(last.at) - 0.5 * STEP * np.array(last.along)
+    grown = drifted.of(PLATFORM).values[:, 0]
+    np.testing.assert_allclose(grown[:3], STEEL.expansion * (places[0] - foot), rtol=1e-12)
+    assert np.max(np.abs(grown[3:])) <= 1e-12 * STEEL.expansion
+    assert np.max(np.abs(drifted.forces.values[:, 0])) <= 1e-12 * STEEL.expansion * STEEL.young * 0.004**2
 
 
 def test_modes_of_a_large_stage_are_its_lowest_and_say_so():

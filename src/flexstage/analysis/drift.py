@@ -26,8 +26,7 @@ from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.arguments import takes_models
-from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
-from flexstage.models.linear.static import displacement
+from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, cross_matrix, spatial_rotation, transport
@@ -114,15 +113,13 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     misfits = {name: thermal.misfit(link) for name, link in thermal.assembly.links.items()}
     fitted = _fit_misfits(thermal.assembly, misfits)
     strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
-    size = len(model.coordinates)
     if LOADED in model.stiffness:
         strains[LOADED] = _stacked(fitted, model.stiffness[LOADED])
     if other := _unlinked(model, strains):
         what = f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none"
         raise refuse("drift", what, "Take the lumped model")
     whole = {name: _without_modes(strains[name], part.law.shape[-1] - strains[name].shape[-2]) for name, part in model.stiffness.items()}
-    load = _load(model, whole, size)
-    motion = displacement(model, -load)
+    motion = model.follow(whole)
     twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
     parts = {name: part for name, part in model.stiffness.items() if name in misfits}
     forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in parts.items()}
@@ -216,13 +213,6 @@ def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     )
 
 
-def _load(model: LinearModel, strains: Mapping[str, Array], size: int) -> Array:
-    """Generalised forces (..., n, 4) of what the links grow."""
-    if model.is_sparse:
-        return strain_forces(model.stiffness, strains)
-    return sum((_transpose(part.operator) @ (part.law @ strains[name]) for name, part in model.stiffness.items()), np.zeros((size, 4)))
-
-
 def _twists(assembly: Assembly, model: LinearModel, motion: Array) -> dict[str, Array]:
     """The twist (..., 6, 4) of every body."""
     places = {body: model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)) for body in assembly.bodies}
@@ -270,7 +260,3 @@ def _label(blocks: Mapping[str, Array], components: tuple[str, ...], units: tupl
 def _broadcast(arrays: list[Array]) -> list[Array]:
     batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
     return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]
-
-
-def _transpose(matrix: Array) -> Array:
-    return np.swapaxes(matrix, -1, -2)

@@ -31,7 +31,7 @@ from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
-from flexstage.models.linear.large import symmetric_factor
+from flexstage.models.linear.large import least_strain
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.spatial.frame import COMPONENTS
 
@@ -148,8 +148,10 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
     watching = [*(_reading(graph, name) for name in assembly.gauges), *_elongations(graph).values()]
     if rest or (strained is not None and any(_sees_few(row, idle) for row in watching)):
         return None
-    bodies = _least_deformed(graph, solved.wanted[:size, columns], idle, strained)
-    strokes = solved.wanted[size:, columns]
+    strokes = solved.last.basis[6:, columns]
+    bodies = _least_deformed(graph, solved.last.basis[:6, columns], strokes)
+    if bodies is None:
+        return None
     strains = graph.strain @ bodies
     found = Kinematics(
         actuators=tuple(assembly.strokes),
@@ -200,13 +202,16 @@ def _sees_few(row: Array, idle: Any) -> bool:
     return bool(np.any(np.abs(seen) > _NEGLIGIBLE * most))
 
 
-def _least_deformed(graph: _Graph, wanted: Array, idle: Any, strained: Any) -> Array:
-    """As `_without_idle`, of idle motions without their zeros."""
-    if strained is None or not wanted.shape[1]:
-        return wanted
-    weights = scipy.sparse.diags_array(np.tile(_weights(graph.length), len(graph.assembly.links)))
-    spun, before = weights @ strained, weights @ (graph.strain @ wanted)
-    return wanted - idle @ symmetric_factor((spun.T @ spun).tocsc()).solve(spun.T @ before)
+def _least_deformed(graph: _Graph, motion: Array, strokes: Array) -> Array | None:
+    """The bodies' motions (N, f) for those of platform (6, f) and strokes (n, f), idle ones as `_without_idle` sets them."""
+    links = graph.assembly.links.values()
+    rigid = np.array([freedom not in free_freedoms(link) for link in links for freedom in ALL])
+    weights = np.tile(_weights(graph.length), len(links))
+    over = graph.scale[6 : graph.order.size]
+    strain = (scipy.sparse.diags_array(weights) @ cast("Rows", graph.strain).entries).tocsc()
+    imposed = strain[:, :6] @ motion - (rigid * weights)[:, None] * (free_deformations(graph.assembly) @ strokes)
+    others = least_strain(strain[:, 6:] @ scipy.sparse.diags_array(over), rigid, imposed)
+    return None if others is None else np.concatenate([motion, over[:, None] * others])
 
 
 def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:

@@ -2,7 +2,8 @@
 
 A body's rows are turned (pivoted QR of its six columns) into some that give its coordinates from those of its neighbours, and others in
 which it does not occur and that bind the neighbours to one another. Coordinates that no row holds are idle motions; rows that vanish are
-redundant. Bodies with the fewest neighbours go first; the platform and the strokes are kept.
+redundant. Bodies with the fewest neighbours go first, where these are alike such that fewest wait for one another: idle motions then take
+few bodies along. The platform and the strokes are kept.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array
@@ -46,13 +48,11 @@ class _Given:
 class Solved:
     """Motions that fulfil the constraints.
 
-    `last` is the elimination of platform and strokes, `wanted` (N, c) the motions of everything by its columns, idle coordinates at rest;
-    `idle` (k rows, N) one motion for every coordinate that nothing holds; `redundant` the numbers of the constraints of each state of
-    self-stress.
+    `last` is the elimination of platform and strokes, `idle` (k rows, N) one motion for every coordinate that nothing holds;
+    `redundant` the numbers of the constraints of each state of self-stress.
     """
 
     last: Elimination
-    wanted: Array
     idle: tuple[Sparse, ...]
     redundant: tuple[tuple[int, ...], ...]
 
@@ -73,16 +73,19 @@ def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes:
             near[block].add(number)
     given: dict[int, _Given] = {}
     stresses: list[tuple[Array, Array]] = []
+    depth = dict.fromkeys(near, 0)
     heap = [(_degree(groups, near[block]), block) for block in range(1, bodies)]
     heapq.heapify(heap)
     while heap:
-        degree, block = heapq.heappop(heap)
-        now = _degree(groups, near[block])
-        if degree != now:
+        cost, block = heapq.heappop(heap)
+        now = depth[block] + _degree(groups, near[block])
+        if cost != now:
             heapq.heappush(heap, (now, block))
             continue
         own = _take(groups, near, block)
         given[block], left = _eliminate(block, _join(own, block, starts), starts, stresses)
+        for other in given[block].others:
+            depth[other] = max(depth[other], depth[block] + 1)
         if left is not None:
             key = len(rows) + block
             groups[key] = left
@@ -155,8 +158,7 @@ def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Ar
     turn, triangle, order = pivoted_qr(group.rows[:, :width])
     rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
     rest, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
-    upper = triangle[:rank, :rank]
-    solved = -np.linalg.solve(upper, np.concatenate([triangle[:rank, rank:], rest[:rank]], axis=1)) if rank else np.zeros((0, 0))
+    solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], rest[:rank]], axis=1))
     free = width - rank
     given = _Given(order[rank:], order[:rank], solved[:, :free], others, solved[:, free:])
     vanished = np.max(np.abs(rest[rank:]), axis=1, initial=0.0) < _RANK
@@ -179,14 +181,7 @@ def _solved(
         sizes = np.where(sizes > 0.0, sizes, 1.0)
         stresses += [(whole.made, state @ whole.shares) for state in null_space((rows / sizes[:, None]).T).T / sizes]
     last = eliminate(rows / scale[columns], scale[columns], keep=tuple(range(6)))
-    wanted = np.zeros((len(scale), last.basis.shape[1]))
-    wanted[columns] = last.basis / scale[columns, None]
-    for block in reversed(given):
-        found = given[block]
-        if len(found.others):
-            seen = np.concatenate([wanted[starts[other] : starts[other + 1]] for other in found.others])
-            wanted[starts[block] + found.bound] = found.rest @ seen
-    return Solved(last, wanted * scale[:, None], tuple(_idle_motions(given, starts, scale)), _named(stresses))
+    return Solved(last, tuple(_idle_motions(given, starts, scale)), _named(stresses))
 
 
 def _idle_motions(given: dict[int, _Given], starts: Array, scale: Array) -> list[Sparse]:
@@ -238,7 +233,7 @@ def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
     if not stresses:
         return ()
     parts: list[tuple[int, ...]] = []
-    for members in _connected([set(made[np.abs(share) > _RANK].tolist()) for made, share in stresses]):
+    for members in _connected([made[np.abs(share) > _RANK] for made, share in stresses]):
         made = np.unique(np.concatenate([stresses[member][0] for member in members]))
         states = np.zeros((len(members), len(made)))
         for row, member in enumerate(members):
@@ -247,14 +242,11 @@ def _named(stresses: list[tuple[Array, Array]]) -> tuple[tuple[int, ...], ...]:
     return tuple(parts)
 
 
-def _connected(sets: list[set[int]]) -> list[list[int]]:
+def _connected(sets: list[Array]) -> list[list[int]]:
     """Numbers of sets by those that have members in common, directly or by way of others."""
-    owner: dict[int, int] = {}
-    groups: dict[int, list[int]] = {}
-    for number, members in enumerate(sets):
-        met = sorted({owner[each] for each in members if each in owner})
-        whole = [each for group in met for each in groups.pop(group)] + [number]
-        groups[number] = whole
-        for each in (each for one in whole for each in sets[one]):
-            owner[each] = number
-    return [sorted(group) for group in groups.values()]
+    owners = np.repeat(np.arange(len(sets)), [len(each) for each in sets])
+    members = len(sets) + np.concatenate(sets)
+    size = int(np.max(members, initial=len(sets) - 1)) + 1
+    joined = scipy.sparse.coo_array((np.ones(len(members)), (owners, members)), (size, size))
+    part = scipy.sparse.csgraph.connected_components(joined, directed=False)[1][: len(sets)]
+    return sorted((np.flatnonzero(part == number).tolist() for number in np.unique(part)), key=max)

@@ -28,6 +28,8 @@ _ENOUGH = 1e-9
 _USABLE = 1e-6
 """What loads in balance with one another, as of growing parts, may leave: their own rounding says no more."""
 _STEPS = 12
+_SOFT = 1e-8
+"""What rigid strains give in the factor, beside one for the others; refinement takes it away."""
 _RATIO = 1e-10
 _MASSLESS = 1e-13
 _LEAST = 32
@@ -86,6 +88,12 @@ class Solver:
         return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
 
     @cached_property
+    def _root(self) -> Array:
+        """What makes the diagonal of the links' law one."""
+        diagonal = np.abs(self.stiffness.law.diagonal())
+        return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+
+    @cached_property
     def _factor(self) -> Any:
         over = scipy.sparse.diags_array(1.0 / self.scale)
         scaled = (over @ self.stiffness.matrix @ over).tocsc()
@@ -94,9 +102,7 @@ class Solver:
     @cached_property
     def _augmented(self) -> tuple[Any, Any, Any]:
         """Factor of [[1, -B], [B^T k, 0]] for scaled strains and motions; B and B^T k."""
-        law = self.stiffness.law
-        diagonal = np.abs(law.diagonal())
-        root = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        law, root = self.stiffness.law, self._root
         rows = scipy.sparse.diags_array(root) @ self.stiffness.rows @ scipy.sparse.diags_array(1.0 / self.scale)
         pull = rows.T @ (scipy.sparse.diags_array(1.0 / root) @ law @ scipy.sparse.diags_array(1.0 / root))
         whole = scipy.sparse.block_array([[scipy.sparse.eye_array(rows.shape[0]), -rows], [pull, None]], format="csc")
@@ -114,17 +120,21 @@ class Solver:
     def solve(self, load: Array) -> Array:
         """q (n, k) for loads (n, k). Raises `DesignError` where the digits that computers carry do not suffice."""
         try:
-            motion, left = self._refined(load, self._direct, self._missing)
+            motion, left = _refine(load, self._direct, self._missing)
         except RuntimeError:
             motion, left = load, np.inf
         if not left <= _ENOUGH:
             motion, left = self._with_strains(load)
+        self._require(left)
+        return motion
+
+    @staticmethod
+    def _require(left: float) -> None:
         if not left <= _USABLE:
             what = (
                 f"its equations are known to {left:.1g} of their solution only: rounding hides how stiff a large part of it is as a whole"
             )
             raise refuse("stage", what, "Look for stiffnesses out of all proportion, or read parts of the stage")
-        return motion
 
     def _direct(self, load: Array) -> Array:
         over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
@@ -133,35 +143,72 @@ class Solver:
     def _missing(self, load: Array, motion: Array) -> Array:
         return load - self.stiffness @ motion
 
-    def _with_strains(self, load: Array) -> tuple[Array, float]:
+    def follow(self, imposed: Array) -> Array:
+        """q (n, k) of least energy under strains (R, k) that come on top of those of q: K q = -G^T k `imposed`.
+
+        The strains enter as they are, as forces they would lose by rounding that they fit. Raises `DesignError` as `solve` does.
+        """
+        motion, left = self._with_strains(np.zeros((len(self.scale), imposed.shape[1])), imposed)
+        self._require(left)
+        return motion
+
+    def _with_strains(self, load: Array, imposed: Array | None = None) -> tuple[Array, float]:
         factor, rows, pull = self._augmented
         over = self.scale.reshape(-1, *[1] * (load.ndim - 1))
-        whole = np.concatenate([np.zeros((rows.shape[0], *load.shape[1:])), load / over])
         count = rows.shape[0]
+        given = np.zeros((count, *load.shape[1:])) if imposed is None else self._root[:, None] * imposed
+        whole = np.concatenate([given, load / over])
 
         def missing(wanted: Array, found: Array) -> Array:
             strain, motion = found[:count], found[count:]
             return np.concatenate([wanted[:count] - strain + rows @ motion, wanted[count:] - pull @ strain])
 
-        found, left = self._refined(whole, factor.solve, missing)
+        found, left = _refine(whole, factor.solve, missing)
         return found[count:] / over, left
 
-    @staticmethod
-    def _refined(load: Array, solve: Any, missing: Any) -> tuple[Array, float]:
-        """A solution refined until it stands, and how much it changed last, as a share."""
-        found = solve(load)
-        last = np.inf
-        for _ in range(_STEPS):
-            step = solve(missing(load, found))
-            size = float(
-                np.max(np.linalg.norm(step, axis=0) / np.maximum(np.linalg.norm(found, axis=0), np.finfo(float).tiny), initial=0.0)
-            )
-            if not size < 0.5 * last:
-                break
-            found, last = found + step, size
-            if size < _EXACT:
-                break
-        return found, last
+
+def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
+    """Motions q (n, k) for which the strains `rows` q + `imposed` (R, k) vanish where they are `rigid` (R,), and are least elsewhere.
+
+    Strains and motions are unknowns beside one another. Rigid strains give a little in the factor, so that it exists where they are
+    redundant too. `None` where these equations do not determine the motions.
+    """
+    count, size = rows.shape
+    give = scipy.sparse.diags_array(np.where(rigid, 0.0, 1.0))
+    soft = scipy.sparse.diags_array(np.where(rigid, _SOFT, 1.0))
+    whole = scipy.sparse.block_array([[soft, -rows], [rows.T, None]], format="csc")
+
+    def missing(wanted: Array, found: Array) -> Array:
+        force, motion = found[:count], found[count:]
+        return np.concatenate([wanted[:count] - give @ force + rows @ motion, wanted[count:] - rows.T @ force])
+
+    try:
+        with _fits(whole):
+            factor = scipy.sparse.linalg.splu(whole)
+    except RuntimeError:  # exactly singular
+        return None
+    load = np.concatenate([imposed, np.zeros((size, imposed.shape[1]))])
+    found, left = _refine(load, factor.solve, missing, first=count)  # forces of redundant strains do not settle
+    return found[count:] if left <= _ENOUGH else None
+
+
+def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Array, float]:
+    """A solution refined until it stands from its `first` row on, and how much it changed there last, as a share.
+
+    `solve` answers loads (n, k) roughly, `missing` tells what a solution leaves of a load.
+    """
+    found = solve(load)
+    last = np.inf
+    for _ in range(_STEPS):
+        step = solve(missing(load, found))
+        before = np.maximum(np.linalg.norm(found[first:], axis=0), np.finfo(float).tiny)
+        size = float(np.max(np.linalg.norm(step[first:], axis=0) / before, initial=0.0))
+        if not size < 0.5 * last:
+            break
+        found, last = found + step, size
+        if size < _EXACT:
+            break
+    return found, last
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:

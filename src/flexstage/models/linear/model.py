@@ -126,6 +126,13 @@ class LinearModel:
         """K^-1 load (..., n, k)."""
         return self.solver.solve(load) if self.is_sparse else np.linalg.solve(self.stiffness_matrix, load)
 
+    def follow(self, strains: Mapping[str, Array]) -> Array:
+        """The motion (..., n, k) of least energy under strains (..., r, k) by part that come on top of its own, -K^-1 sum G^T k strain."""
+        if self.is_sparse:
+            return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
+        forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
+        return np.linalg.solve(self.stiffness_matrix, -sum(forces, np.zeros((len(self.coordinates), 1))))
+
     def momenta(self, motion: Array) -> Array:
         """M times a motion (..., n, k)."""
         return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
