@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import linecache
 import os
 import signal
 import sys
@@ -25,6 +26,10 @@ providers._get_local_constants = lambda: providers._local_constants
 # A script that runs the tests in its background ignores interrupts, and so would every process that a test starts and interrupts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Each of the thousand doctests would look whether any file that was read before has changed meanwhile.
+_look_whether_changed = linecache.checkcache
+linecache.checkcache = lambda filename=None: None if filename is None else _look_whether_changed(filename)
 
 FULL = os.environ.get("FLEXSTAGE_TESTS") == "full"
 QUICK = os.environ.get("FLEXSTAGE_TESTS") == "quick"
@@ -88,6 +93,7 @@ def pytest_collection_finish() -> None:
     """Thousands of tests and modules stay to the end: the collector need not look through them again and again."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -301,7 +301,6 @@ def towards_ideal(mechanism, step):
     return replace(mechanism, parts=parts)
 
 
-@examples(60, 2000)
 @given(actuated_platforms())
 def test_ideal_is_the_limit_of_lumped(mechanism):
     """Stacks as they are, hinges stiffer and softer: the distance d = c s/(1 + c s) falls with the step s, ever more in proportion."""
@@ -316,7 +315,6 @@ def test_ideal_is_the_limit_of_lumped(mechanism):
     assert distances[1] < 0.1 * distances[0] * (1.0 + 4.0 * distances[0]) + 1e-8
 
 
-@examples(60, 2000)
 @given(rosettes())
 def test_threefold_symmetry_is_isotropic_in_plane(mechanism):
     """Three or more equal units around z: the in-plane stiffness has no direction, and x, y do not couple with z and yaw."""
@@ -365,7 +363,6 @@ any_stage = st.one_of(mechanisms(), platforms().map(lambda drawn: drawn[0]), ros
 picks = st.lists(st.integers(0, 10**6), min_size=1, max_size=12)
 
 
-@examples(60, 2000)
 @given(any_stage, picks, st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=3))
 def test_a_batch_is_a_loop(mechanism, picked, steps):
     """Arrays in place of numbers give, design by design, what single numbers give."""
@@ -380,7 +377,6 @@ def test_a_batch_is_a_loop(mechanism, picked, steps):
             near(found[design] if found.ndim == 3 else found, expected, 1e-12)
 
 
-@examples(60, 2000)
 @given(actuated_platforms(), picks, st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=3))
 def test_an_ideal_batch_is_a_loop(mechanism, picked, steps):
     """Where a small change of one number may break a closed loop's fit, only the platform's own numbers and poses are varied."""
@@ -394,7 +390,6 @@ def test_an_ideal_batch_is_a_loop(mechanism, picked, steps):
             near(found[design] if found.ndim == 3 else found, expected, 1e-9)
 
 
-@examples(60, 2000)
 @given(any_stage, st.integers(0, 10**6))
 def test_complex_step_is_the_finite_difference(mechanism, picked):
     """dK/dp and dM/dp by complex step against central differences of one part in ten thousand."""
