@@ -10,11 +10,9 @@ import fcntl
 import hashlib
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +55,7 @@ def set_up(wanted: str) -> None:
         stamp.unlink()
     for lock in LOCKS[wanted]:
         print(f"Installing the packages of requirements/{lock}.txt ...", flush=True)
-        install_pinned(ROOT / "requirements" / f"{lock}.txt")
+        pip("--require-hashes", "-r", str(ROOT / "requirements" / f"{lock}.txt"))
     pip("--no-deps", "--no-build-isolation", "-e", str(ROOT))
     if said := quadmath.provide(site_packages()):
         print(f"NGSolve, the solver of the solid model, may not load: {said}. Everything else works.", file=sys.stderr)
@@ -77,37 +75,10 @@ def make_venv() -> None:
         raise OSError("this Python cannot make virtual environments (on Debian: apt-get install python3-venv)")
 
 
-def install_pinned(lock: Path) -> None:
-    """Install what a lock file pins, all of it and nothing else, by two pips side by side: unpacking takes the time."""
-    pinned = re.split(r"\n(?=\S)", lock.read_text().strip())
-    with tempfile.TemporaryDirectory() as folder:
-        halves = [Path(folder) / f"{number}.txt" for number in range(2)]
-        for number, half in enumerate(halves):
-            half.write_text("\n".join(pinned[number::2]) + "\n")
-        started = [start_pip("--require-hashes", "--no-deps", "-r", str(half)) for half in halves]
-        for process in started:
-            process.wait()
-    for process in started:
-        require_success(process)
-
-
 def pip(*arguments: str) -> None:
-    """Run pip within .venv; raises `CalledProcessError` where it fails."""
-    process = start_pip(*arguments)
-    process.wait()
-    require_success(process)
-
-
-def start_pip(*arguments: str) -> subprocess.Popen[bytes]:
-    """Start pip within .venv, quiet unless it fails. Python translates modules when they are first used: all of them would take long."""
+    """Run pip within .venv, quiet unless it fails. Python translates modules when they are first used: all of them would take long."""
     command = [str(PYTHON), "-m", "pip", "install", "-qq", "--disable-pip-version-check", "--no-input", "--no-compile", *arguments]
-    return subprocess.Popen(command, cwd=ROOT, env=clean_environment())
-
-
-def require_success(process: subprocess.Popen[bytes]) -> None:
-    """Raise `CalledProcessError` where a process that ended failed."""
-    if process.returncode:
-        raise subprocess.CalledProcessError(process.returncode, process.args)
+    subprocess.run(command, check=True, cwd=ROOT, env=clean_environment())
 
 
 def clean_environment() -> dict[str, str]:
