@@ -16,10 +16,12 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Placement, Unit
 from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Inertia, Solid, Sphere
-from flexstage.parts.mass import MassProperties, mass_properties
+from flexstage.parts.mass import MassProperties, drawn_solids, mass_properties
 from flexstage.parts.material import Material
+from flexstage.parts.union import Moments, common_moments
 from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.spatial.frame import Frame, cross_matrix
 
 DENSITY = 1000.0
 MATERIALS = {"steel": Material(young=200e9, poisson=0.3, density=DENSITY), "lead": Material(young=16e9, poisson=0.4, density=11340.0)}
@@ -387,3 +389,50 @@ def test_a_mirrored_body_is_the_image_of_what_is_drawn() -> None:
         drawn = move_solid(draw_form(piece.form), piece.frame)
         assert np.isclose(float(mass.mass) / DENSITY * 1e9, drawn.mass, rtol=1e-6)  # type: ignore[union-attr]
         assert np.allclose(1e3 * mass.centre, [drawn.center.x, drawn.center.y, drawn.center.z], rtol=0.0, atol=1e-4)  # type: ignore[union-attr]
+
+
+CROSSING = {
+    "blocks": (UNIT, Block("steel", (0.02, 0.006, 0.007), (0.009, 0.006, 0.004), along=(1.0, 0.3, -0.2))),
+    "blocks, one with a hole": (replace(UNIT, size=(0.02, 0.012, 0.01), hole=(0.008, 0.006)), Block("steel", (0.02, 0.006, 0.007))),
+    "a disc in a plate": (UNIT, Cylinder("steel", diameter=0.012, length=0.01, at=(0.002, 0.003, 0.008))),
+    "tubes side by side": (
+        Cylinder("steel", diameter=0.012, length=0.01, at=(0.002, 0.003, 0.008), bore=0.004),
+        Cylinder("steel", diameter=0.014, length=0.01, at=(0.006, 0.001, 0.003)),
+    ),
+}
+
+
+def _common(solids: tuple[Solid, ...], rotation: np.ndarray, position: np.ndarray, scale: complex = 1.0) -> list[Moments]:
+    """What solids have in common, in a frame that may be turning, moving and growing."""
+    grown = {f"s{number}": _grown(solid, scale) for number, solid in enumerate(solids)}
+    return [found for _, found in common_moments(drawn_solids(Body(solids=grown), MATERIALS, "", Frame(rotation, position)))]
+
+
+def _grown(solid: Any, scale: complex) -> Solid:
+    lengths = {"at": tuple(scale * each for each in solid.at)}
+    for name in ("size", "hole", "diameter", "bore", "length"):
+        if (own := getattr(solid, name, None)) is not None:
+            lengths[name] = tuple(scale * each for each in own) if isinstance(own, tuple) else scale * own
+    return replace(solid, **lengths)
+
+
+@pytest.mark.parametrize("name", CROSSING)
+def test_what_moves_as_one_changes_as_its_motion_says(name: str) -> None:
+    """Moved, turned and grown, with all faces: V' = 3 g V, s' = V p' + w x s + 4 g s, S' = 2 sym(p' s + [w]x S) + 5 g S."""
+    drift, spin, growth, step = np.array([0.3, -0.2, 0.5]), np.array([0.4, 0.7, -0.6]), 0.8, 1e-30
+    turn = cross_matrix(spin)
+    still = _common(CROSSING[name], np.eye(3), np.zeros(3))
+    moved = _common(CROSSING[name], np.eye(3) + 1j * step * turn, 1j * step * drift, 1.0 + 1j * step * growth)
+    assert still
+    for now, then in zip(still, moved, strict=True):
+        size = abs(float(now.volume)) ** (1.0 / 3.0)
+        half = drift[:, None] * now.first + turn @ now.second
+        wanted = Moments(
+            3.0 * growth * now.volume,
+            now.volume * drift + turn @ now.first + 4.0 * growth * now.first,
+            half + half.T + 5.0 * growth * now.second,
+        )
+        for kind, power in (("volume", 2), ("first", 3), ("second", 4)):
+            difference = np.imag(getattr(then, kind)) / step - getattr(wanted, kind)
+            assert np.max(np.abs(difference)) <= 100.0 * ROUND_OFF * size**power
+            assert np.allclose(np.real(getattr(then, kind)), getattr(now, kind), rtol=0.0, atol=0.0)

@@ -2,23 +2,27 @@
 
 The union of solids follows by inclusion and exclusion from their intersections, each solid being its outer form less its hole. Those
 of blocks, however they are turned, are polytopes; with cylinders they are prisms where all axes are parallel to faces that cross them.
-Which corners a polytope has is told from the real parts of one design; their places are formulas, so that derivatives by complex step and
-batches pass through. Designs of a batch that have other corners are told for themselves.
+Which corners a polytope has is told from one design; their places are formulas, so that batches pass through. Designs of a batch that have
+other corners are told for themselves. Derivatives by complex step are integrals over the surface (`parts.surface`): the region of the real
+parts is worked out once, however many numbers are stepped after one another.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property, lru_cache, reduce
 from itertools import combinations
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy
 
+from flexstage.base.digest import Description, digest
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, Sphere, triangles, within_polygon
+from flexstage.parts.surface import PLANE, ROUND, Face, Hull, Path, Prism, Surface, gains, hull_planes
 from flexstage.spatial.convex import Boxes, separations
 from flexstage.spatial.frame import Frame, axes
 
@@ -72,6 +76,8 @@ class _Cell:
     offsets: Array
     rounds: tuple[_Round, ...] = ()
     balls: tuple[_Ball, ...] = ()
+    made: tuple[tuple[int, int], ...] = ()
+    """Of which solids it is the common region, each by its number and that of its cell."""
 
     def common(self, other: _Cell) -> _Cell:
         """The region of both."""
@@ -79,17 +85,53 @@ class _Cell:
         normals = [np.broadcast_to(cell.normals, (*shape, *cell.normals.shape[-2:])) for cell in (self, other)]
         offsets = [np.broadcast_to(cell.offsets, (*shape, cell.offsets.shape[-1])) for cell in (self, other)]
         return _Cell(
-            np.concatenate(normals, axis=-2), np.concatenate(offsets, axis=-1), self.rounds + other.rounds, self.balls + other.balls
+            np.concatenate(normals, axis=-2),
+            np.concatenate(offsets, axis=-1),
+            self.rounds + other.rounds,
+            self.balls + other.balls,
+            self.made + other.made,
         )
+
+
+_SYMMETRIC: Array = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])
+"""Where second moments stand among 1, x, y, z, xx, yy, zz, xy, xz, yz."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Region:
-    """A convex region with its sign and its moments."""
+    """A convex region with its sign, its moments, and its surfaces as far as they are known."""
 
     sign: float
     cell: _Cell
     moments: Moments
+    surfaces: tuple[Surface, ...] = ()
+
+    @cached_property
+    def gains(self) -> Mapping[Face, Array]:
+        """What its moments are to the motion of its faces."""
+        flat = _flat_cell(self.cell, self.moments.volume.shape)
+        return gains(self.surfaces, [(item.axis, item.point) for item in flat.rounds], self.moments.volume.size)
+
+    def moved(self, cell: _Cell) -> Moments:
+        """Its moments with the derivatives by complex step that a cell of the same real numbers has."""
+        shape = self.moments.volume.shape
+        numbers = [cell.normals, cell.offsets, *(each for item in cell.rounds for each in (item.axis, item.point, item.radius))]
+        if not any(map(np.iscomplexobj, numbers)):
+            return self.moments
+        flat, turns = _flat_cell(cell, shape), np.iscomplexobj(cell.normals)
+        total = np.zeros((self.moments.volume.size, 10))
+        for (kind, number), gain in self.gains.items():
+            if kind == PLANE:
+                rates = [np.imag(flat.offsets[:, number, None]), *([np.imag(flat.normals[:, number])] if turns else [])]
+            else:
+                item = flat.rounds[number]
+                rates = [np.imag(item.radius)[:, None], np.imag(item.point), np.imag(item.axis)]
+            rate = np.concatenate(rates, axis=1)
+            total += (gain[..., : rate.shape[1]] @ rate[..., None])[..., 0]
+        second = total[:, _SYMMETRIC].reshape(*shape, 3, 3)
+        own = self.moments
+        first = total[:, 1:4].reshape(*shape, 3)
+        return Moments(own.volume + 1j * total[:, 0].reshape(shape), own.first + 1j * first, own.second + 1j * second)
 
 
 _Group: TypeAlias = tuple[tuple[int, ...], list[_Region]]
@@ -126,10 +168,79 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
 
 def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """The moments that make the union of solids, of every material by itself, of the sum of them."""
+    if len(seen) < 2:
+        return
+    if any(isinstance(drawn.solid, Sphere) for drawn in seen):
+        yield from ((seen[number].density, _weighed(weight, region.moments)) for number, weight, region in _regions(seen))
+        return
+    cells: dict[int, list[tuple[float, _Cell]]] = {}
+    for number, weight, region in _known(_Key(tuple(_real(drawn) for drawn in seen))):
+        for member, _ in region.cell.made:
+            if member not in cells:
+                cells[member] = _cells(seen[member])
+        cell = reduce(_Cell.common, (cells[member][place][1] for member, place in region.cell.made))
+        yield seen[number].density, _weighed(weight, region.moved(cell))
+
+
+def _weighed(weight: float, moments: Moments) -> Moments:
+    return Moments(weight * moments.volume, weight * moments.first, weight * moments.second)
+
+
+@dataclass(frozen=True, eq=False)
+class _Key:
+    """Solids of real numbers, compared by content."""
+
+    seen: tuple[Drawn, ...]
+
+    @cached_property
+    def content(self) -> str:
+        """Everything that counts."""
+        return digest([(each.name, each.solid, each.density, each.frame.rotation, each.frame.position) for each in self.seen])
+
+    def __hash__(self) -> int:
+        return hash(self.content)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Key) and self.content == other.content
+
+
+_Weighed: TypeAlias = tuple[int, float, _Region]
+"""A region that would weigh more than once: a solid whose density it has, and how often it is to be added."""
+
+
+@lru_cache(maxsize=4)
+def _known(key: _Key) -> tuple[_Weighed, ...]:
+    """The regions of some bodies, kept while numbers are stepped one after the other: their real parts stay."""
+    return tuple(_regions(key.seen))
+
+
+def _real(drawn: Drawn) -> Drawn:
+    return Drawn(drawn.name, _real_part(drawn.solid), _real_part(drawn.density), _real_frame(drawn.frame))
+
+
+def _real_frame(frame: Frame) -> Frame:
+    return replace(frame, rotation=np.real(frame.rotation), position=np.real(frame.position))
+
+
+def _real_part(value: Any) -> Any:
+    """A number or a description, its numbers without their steps."""
+    if isinstance(value, (complex, np.ndarray)):
+        return np.real(value) if np.iscomplexobj(value) else value
+    if isinstance(value, tuple):
+        real = tuple(map(_real_part, value))
+        return value if all(one is other for one, other in zip(real, value, strict=True)) else real
+    if isinstance(value, Description):
+        own = {field.name: getattr(value, field.name) for field in fields(value)}  # type: ignore[arg-type]
+        changed = {name: real for name, item in own.items() if (real := _real_part(item)) is not item}
+        return replace(value, **changed) if changed else value  # type: ignore[type-var]
+    return value
+
+
+def _regions(seen: Sequence[Drawn]) -> Iterator[_Weighed]:
     near = _near(seen) if len(seen) > 1 else {}
     if not near:
         return
-    cells = {number: _cells(seen[number]) for pair in near for number in pair}
+    cells = {number: _numbered(number, _cells(seen[number])) for pair in near for number in pair}
     scale = max(float(np.max(np.abs(_first(drawn.frame.position, 1)) + np.max(_first(drawn.solid.sides, 1)))) for drawn in seen)
     problems: list[Finding] = []
     groups: list[_Group] = []
@@ -148,6 +259,10 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
             groups.append((pair, found))
     require(problems)
     yield from _alternating(seen, cells, groups, scale)
+
+
+def _numbered(number: int, cells: list[tuple[float, _Cell]]) -> list[tuple[float, _Cell]]:
+    return [(sign, replace(cell, made=((number, place),))) for place, (sign, cell) in enumerate(cells)]
 
 
 def _beside(
@@ -179,7 +294,7 @@ def _is_clear(centre: Array, diameter: Array, corners: Array) -> bool:
 
 def _alternating(
     seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], groups: list[_Group], scale: float
-) -> Iterator[tuple[Number, Moments]]:
+) -> Iterator[_Weighed]:
     """Inclusion and exclusion: pairs count -1, triples +1, and so on."""
     pairs = {group for group, _ in groups}
     told = 0
@@ -187,8 +302,7 @@ def _alternating(
         larger: list[_Group] = []
         for group, found in groups:
             for region in found:
-                weight, moments = region.sign * (-1.0) ** (len(group) - 1), region.moments
-                yield seen[group[0]].density, Moments(weight * moments.volume, weight * moments.first, weight * moments.second)
+                yield group[0], region.sign * (-1.0) ** (len(group) - 1), region
             for other in range(group[-1] + 1, len(seen)):
                 if all((member, other) in pairs for member in group):
                     where = np.any(np.stack(np.broadcast_arrays(*(region.moments.volume != 0.0 for region in found))), axis=0)
@@ -323,9 +437,9 @@ def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float,
     found: list[_Region] = []
     for (sign, one), (other_sign, other) in ((a, b) for a in first for b in second):
         cell = one.common(other)
-        moments = _moments(cell, where, scale)
+        moments, surfaces = _moments(cell, where, scale)
         if np.any(np.real(moments.volume) > 0.0):
-            found.append(_Region(sign * other_sign, cell, moments))
+            found.append(_Region(sign * other_sign, cell, moments, surfaces))
     total = sum((region.sign * np.real(region.moments.volume) for region in found), np.zeros(()))
     return found if np.any(np.abs(total) > (_FLUSH * scale) * scale**2) else []
 
@@ -373,8 +487,8 @@ def _volume(cubic_metres: float) -> str:
 # Moments of regions
 
 
-def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
-    """Moments of a region in the designs `where`, nothing in the others; those together whose corners and edges are alike."""
+def _moments(cell: _Cell, where: Array, scale: float) -> tuple[Moments, tuple[Surface, ...]]:
+    """Moments and surfaces of a region in the designs `where`, nothing in the others; those together whose corners and edges are alike."""
     numbers = [each for item in cell.rounds for each in (item.axis, item.point)] + [item.point for item in cell.balls]
     radii = [item.radius for item in (*cell.rounds, *cell.balls)]
     shape = np.broadcast_shapes(
@@ -384,6 +498,7 @@ def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
     count = int(np.prod(shape, dtype=int))
     flat = _flat_cell(cell, shape)
     volume, first, second = np.zeros(count, kind), np.zeros((count, 3), kind), np.zeros((count, 3, 3), kind)
+    surfaces: list[Surface] = []
     pending = np.flatnonzero(np.broadcast_to(where, shape))
     if not (cell.balls or cell.rounds):
         pending = pending[~_is_flat(np.real(flat.normals[pending]), np.real(flat.offsets[pending]), 2.0 * _FLUSH * scale)]
@@ -391,11 +506,12 @@ def _moments(cell: _Cell, where: Array, scale: float) -> Moments:
         if cell.balls:
             done, values = pending[:1], _ball_moments(_pick(flat, pending[0]), scale)
         else:
-            alike, values = (_round_moments if cell.rounds else _polytopes)(_pick(flat, pending), scale)
+            alike, values, surface = (_round_moments if cell.rounds else _polytopes)(_pick(flat, pending), scale)
             done = pending[alike]
+            surfaces += [] if surface is None else [replace(surface, designs=done)]
         volume[done], first[done], second[done] = values
         pending = np.setdiff1d(pending, done, assume_unique=True)
-    return Moments(volume.reshape(shape), first.reshape((*shape, 3)), second.reshape((*shape, 3, 3)))
+    return Moments(volume.reshape(shape), first.reshape((*shape, 3)), second.reshape((*shape, 3, 3))), tuple(surfaces)
 
 
 def _flat_cell(cell: _Cell, shape: tuple[int, ...]) -> _Cell:
@@ -439,15 +555,15 @@ def _is_flat(normals: Array, offsets: Array, within: float) -> Array:
     return np.asarray((opposite & (offsets[:, :, None] + offsets[:, None] <= within)).any(axis=(1, 2)))
 
 
-def _polytopes(cell: _Cell, scale: float) -> tuple[Array, _Values]:
-    """Moments of those polytopes of a batch that have the corners of the first one; which they are."""
+def _polytopes(cell: _Cell, scale: float) -> tuple[Array, _Values, Surface | None]:
+    """Moments and surface of those polytopes of a batch that have the corners of the first one; which they are."""
     normals, offsets, within = cell.normals, cell.offsets, _FLUSH * scale
     planes = _distinct(np.real(normals[0]), np.real(offsets[0]), within)
     corners = _corners(np.real(normals[0]), np.real(offsets[0]), planes, within)
-    empty = (np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3))))
+    empty = (np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3))), None)
     if len(corners) < 4:
         done = _empty_alike(np.real(normals), np.real(offsets) / scale)
-        return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3)))
+        return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3))), None
     places = np.linalg.solve(normals[:, corners], offsets[:, corners][..., None])[..., 0]
     beyond = np.einsum("bkx,bvx->bvk", np.real(normals), np.real(places)) - np.real(offsets)[:, None]
     alike = np.flatnonzero(np.all(beyond <= 2.0 * within, axis=(1, 2)))
@@ -460,8 +576,9 @@ def _polytopes(cell: _Cell, scale: float) -> tuple[Array, _Values]:
         if flat <= 2.0 * within:
             return empty
     middle = np.mean(places[alike], axis=1, keepdims=True)
-    arms = (places[alike] - middle)[:, _outward(hull)]
-    return alike, _fan(arms, middle[:, 0])
+    outward = _outward(hull)
+    owners = np.array(planes)[hull_planes(hull, np.real(normals[0, planes]), np.real(offsets[0, planes]), scale)]
+    return alike, _fan((places[alike] - middle)[:, outward], middle[:, 0]), Hull(alike, places[alike], outward, owners)
 
 
 def _empty_alike(normals: Array, offsets: Array) -> Array:
@@ -534,8 +651,8 @@ def _corners(normals: Array, offsets: Array, planes: Sequence[int], within: floa
     return triples[kept]
 
 
-def _round_moments(cell: _Cell, scale: float) -> tuple[Array, _Values]:
-    """Moments of those regions of a batch that have the edges of the first one; which they are.
+def _round_moments(cell: _Cell, scale: float) -> tuple[Array, _Values, Surface | None]:
+    """Moments and surface of those regions of a batch that have the edges of the first one; which they are.
 
     Regions with round faces: prisms along the rounds' common axis, or nothing.
     """
@@ -548,11 +665,12 @@ def _round_moments(cell: _Cell, scale: float) -> tuple[Array, _Values]:
             volume = _by_numbers(_pick(cell, np.array(0)), scale)
             if volume > _FLUSH * scale**3:
                 raise _InexactError(volume) from None
-            return np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3)))
+            return np.array([0]), (np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3, 3))), None
         done = np.flatnonzero(alike.designs)
         if found is None:
-            return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3)))
-        frame, (low, high), (area, first, second) = found
+            return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3))), None
+        surface, (area, first, second) = found
+        frame, (low, high) = surface.frame, surface.ends
         size, middle = high - low, 0.5 * (low + high)
         moments = np.zeros((len(size), 3, 3), dtype=np.result_type(area, size, frame.rotation))
         moments[:, 0, 0] = area * size**3 / 12.0
@@ -561,7 +679,7 @@ def _round_moments(cell: _Cell, scale: float) -> tuple[Array, _Values]:
         turn = frame.rotation
         own = (area * size, (turn @ flat[..., None])[..., 0], turn @ moments @ np.swapaxes(turn, -1, -2))
         volume, first, second = _shift(own, frame.position + middle[:, None] * turn[..., 0])
-    return done, (volume[done], first[done], second[done])
+    return done, (volume[done], first[done], second[done]), surface.take(done)
 
 
 def _ball_moments(cell: _Cell, scale: float) -> _Values:
@@ -604,8 +722,8 @@ def _cap(normal: Array, radius: Array, depth: Array) -> _Values:
     return np.asarray(volume), first * normal, along * line + across * (np.eye(3) - line)
 
 
-def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Frame, tuple[Array, Array], _Values] | None:
-    """Regions as prisms: their frame (x along the axis), where they begin and end, and the moments of their sections; `None`: empty.
+def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Prism, _Values] | None:
+    """Regions as prisms (x along the axis), and the moments of their sections; `None`: empty.
 
     Raises `_InexactError` where rounds are not parallel, or a plane cuts them aslant.
     """
@@ -620,11 +738,13 @@ def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Frame, tuple[Arra
     sideways = alike.as_first(np.abs(steep) < _FLUSH)
     upward = alike.as_first(square & (steep > 0.0))
     cuts = offsets / np.where(square, slopes[..., 0], 1.0)
-    high, low = _least(cuts[:, upward]), -_least(-cuts[:, square & ~upward])
+    downward = square & ~upward
+    high, low = _least(cuts[:, upward]), -_least(-cuts[:, downward])
     if alike.as_first(np.real(high - low) <= within):
         return None
     circles = [(((item.point - frame.position)[:, None, :] @ frame.rotation[..., 1:])[:, 0], item.radius) for item in cell.rounds]
-    lines = [(slopes[:, number, 1:], offsets[:, number]) for number in np.flatnonzero(sideways)]
+    sides = np.flatnonzero(sideways)
+    lines = [(slopes[:, number, 1:], offsets[:, number]) for number in sides]
     for number in np.flatnonzero(~square & ~sideways):
         slope, offset = np.real(slopes[:, number]), np.real(offsets[:, number])
         across = radius * np.hypot(slope[:, 1], slope[:, 2])
@@ -634,7 +754,14 @@ def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Frame, tuple[Arra
         if alike.as_first(np.maximum(*ends) + across > offset + within):
             raise _InexactError(0.0)
     section = _section(circles, lines, within, alike)
-    return None if section is None else (frame, (low, high), section)
+    if section is None:
+        return None
+    paths = tuple(replace(path, face=(PLANE, int(sides[path.face[1]]))) if path.face[0] == PLANE else path for path in section[0])
+    caps = tuple(
+        np.flatnonzero(which)[np.argmin(side, axis=1)]
+        for which, side in ((downward, -np.real(cuts[:, downward])), (upward, np.real(cuts[:, upward])))
+    )
+    return Prism(np.arange(len(low)), frame, (low, high), (caps[0], caps[1]), paths), section[1]
 
 
 def _least(values: Array) -> Array:
@@ -656,45 +783,41 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Exact to rounding for the trigonometric and other polynomials of second moments along an arc or a side."""
 
 
-def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> _Values | None:
-    """Moments of the regions within all circles (centre, radius) and lines (normal, offset): by Green, along what is left of each."""
-    circles, lines = _distinct_edges(circles, lines, within, alike)
+def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> tuple[tuple[Path, ...], _Values] | None:
+    """Rims and moments of the regions within all circles (centre, radius) and lines (normal, offset): by Green, along each."""
+    own_circles, own_lines = _distinct_edges(circles, within, within, alike), _distinct_edges(lines, _FLUSH, within, alike)
+    circles, lines = [circles[number] for number in own_circles], [lines[number] for number in own_lines]
     sides = [
-        *(_along_line(number, circles, lines, alike) for number in range(len(lines))),
-        *(piece for number in range(len(circles)) for piece in _along_circle(number, circles, lines, alike)),
+        *(((PLANE, own), _along_line(number, circles, lines, alike)) for number, own in enumerate(own_lines)),
+        *(((ROUND, own), piece) for number, own in enumerate(own_circles) for piece in _along_circle(number, circles, lines, alike)),
     ]
-    paths = [side for side in sides if side is not None]
+    paths = tuple(Path(face, *side) for face, side in sides if side is not None)
     if not paths:
         return None
-    area = sum((0.5 * np.sum(turn, axis=-1) for _, turn in paths), np.zeros(()))
+    area = sum((0.5 * np.sum(path.turn, axis=-1) for path in paths), np.zeros(()))
     if alike.as_first(np.real(area) <= within * within):
         return None
-    first = sum((np.sum(places * turn[..., None], axis=-2) / 3.0 for places, turn in paths), np.zeros(2))
-    second = sum((np.einsum("bnx,bny,bn->bxy", places, places, turn) / 4.0 for places, turn in paths), np.zeros((2, 2)))
-    return np.asarray(area), first, second
+    first = sum((np.sum(path.places * path.turn[..., None], axis=-2) / 3.0 for path in paths), np.zeros(2))
+    second = sum((np.einsum("bnx,bny,bn->bxy", path.places, path.places, path.turn) / 4.0 for path in paths), np.zeros((2, 2)))
+    return paths, (np.asarray(area), first, second)
 
 
-def _distinct_edges(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> tuple[list[_Circle], list[_Line]]:
-    """The circles and lines that differ from those before them."""
-    rounds: list[_Circle] = []
-    for centre, radius in circles:
+def _distinct_edges(edges: Sequence[tuple[Array, Array]], near: float, within: float, alike: _Alike) -> list[int]:
+    """The circles (or lines) that differ from those before them in their centres (normals) by `near`, or in their radii (offsets)."""
+    kept: list[int] = []
+    for number, (vector, size) in enumerate(edges):
         same = [
-            alike.as_first((np.abs(np.real(centre - other)).max(axis=-1) < within) & (np.abs(np.real(radius - size)) < within))
-            for other, size in rounds
+            alike.as_first(
+                (np.abs(np.real(vector - edges[other][0])).max(axis=-1) < near) & (np.abs(np.real(size - edges[other][1])) < within)
+            )
+            for other in kept
         ]
-        rounds += [] if any(same) else [(centre, radius)]
-    straight: list[_Line] = []
-    for normal, offset in lines:
-        same = [
-            alike.as_first((np.abs(np.real(normal - other)).max(axis=-1) < _FLUSH) & (np.abs(np.real(offset - size)) < within))
-            for other, size in straight
-        ]
-        straight += [] if any(same) else [(normal, offset)]
-    return rounds, straight
+        kept += [] if any(same) else [number]
+    return kept
 
 
-def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> tuple[Array, Array] | None:
-    """Places along the part of a line that bounds the region, and p x dp there."""
+def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> tuple[Array, Array, Array] | None:
+    """Places along the part of a line that bounds the region, p x dp and the lengths there."""
     normal, offset = lines[number]
     along = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
     lows, highs = [], []
@@ -721,11 +844,11 @@ def _along_line(number: int, circles: Sequence[_Circle], lines: Sequence[_Line],
         return None
     half = 0.5 * (high - low)
     places = offset[:, None, None] * normal[:, None] + (0.5 * (low + high)[:, None] + half[:, None] * _NODES)[..., None] * along[:, None]
-    return places, (offset * half)[:, None] * _WEIGHTS
+    return places, (offset * half)[:, None] * _WEIGHTS, half[:, None] * _WEIGHTS
 
 
-def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> Iterator[tuple[Array, Array]]:
-    """Places along the arcs of a circle that bound the region, and p x dp there."""
+def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line], alike: _Alike) -> Iterator[tuple[Array, Array, Array]]:
+    """Places along the arcs of a circle that bound the region, p x dp and the lengths there."""
     centre, radius = circles[number]
     limits = [(normal, (offset - _dot(normal, centre)) / radius) for normal, offset in lines]
     for other, (middle, size) in enumerate(circles):
@@ -742,7 +865,8 @@ def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line
         angles = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
         outward = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
         turn = radius[:, None] ** 2 + radius[:, None] * (outward @ centre[..., None])[..., 0]
-        yield centre[:, None] + radius[:, None, None] * outward, turn * half[:, None] * _WEIGHTS
+        places = centre[:, None] + radius[:, None, None] * outward
+        yield places, turn * half[:, None] * _WEIGHTS, (radius * half)[:, None] * _WEIGHTS
 
 
 def _intervals(limits: Sequence[tuple[Array, Array]], alike: _Alike) -> Iterator[tuple[Array, Array]]:

@@ -23,7 +23,7 @@ from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
-from flexstage.models.batch.numbers import Family, family, numbers_of, slopes_of
+from flexstage.models.batch.numbers import Family, Slopes, family, numbers_of, slopes_of
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
@@ -89,6 +89,11 @@ class Plan:
     def tables(self) -> Mapping[bool, Tables]:
         """What the kernel is told of the topology, without and with derivatives."""
         return {False: Tables(self.scheme, ()), True: Tables(self.scheme, self.family.changes)}
+
+    @cached_property
+    def wide_tables(self) -> Tables:
+        """What it is told where designs change more than those near the nominal one."""
+        return Tables(self.scheme, self.family.wide)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,8 +205,8 @@ def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: 
     return PlatformModes(*(np.concatenate(column) for column in columns))
 
 
-def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> PlatformModes:
-    """The designs of one chunk."""
+def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method, wide: bool = False) -> PlatformModes:
+    """The designs of one chunk; with `wide` by all that can change of bodies."""
     finite: Array = np.asarray(np.isfinite(values).all(axis=1))
     safe = np.where(finite[:, None], values, plan_.family.nominal)
     result = _nothing(plan_, len(values), slopes=slopes)
@@ -211,7 +216,7 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> Platf
             for design in np.flatnonzero(finite):
                 _write(plan_, result, np.array([design]), locked_solution(plan_.family, safe[design], plan_.choice, slopes=slopes))
             return result
-        stage = _stage(plan_, safe, slopes=slopes)
+        stage = _stage(plan_, safe, slopes=slopes, wide=wide)
         finite = finite & np.isfinite(stage.numbers).all(axis=0)
         result.status[~finite] = Status.NOT_FINITE
         left = finite
@@ -224,6 +229,11 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> Platf
         rest = np.flatnonzero(left)
         for design, solution in zip(rest, wholly(stage.take(rest), plan_.choice), strict=True):
             _write(plan_, result, np.array([design]), solution)
+    again = np.flatnonzero(stage.slopes.missed) if stage.slopes is not None else np.zeros(0, dtype=int)
+    if len(again):
+        wider = _piece(plan_, values[again], slopes=True, method=method, wide=True)
+        for field in fields(PlatformModes):
+            getattr(result, field.name)[again] = getattr(wider, field.name)
     return result
 
 
@@ -250,10 +260,16 @@ def _from(plan_: Plan, stage: Stage, start: Start, method: Method) -> Solution:
     start = replace(start, degree=min(2, start.degree)) if stage.slopes is None else replace(start, angle=_ANGLE)
     library = kernel() if method is Method.FASTEST and plan_.choice.count <= MODES else None
     if library is not None:
-        return by_kernel(library, stage, start, plan_.tables[stage.slopes is not None])
+        return by_kernel(library, stage, start, _tables(plan_, stage.slopes))
     size = stage.numbers.shape[1]
     portions = [by_iteration(stage.take(slice(first, first + PORTION)), start) for first in range(0, size, PORTION)]
     return Solution(*(np.concatenate([getattr(portion, field.name) for portion in portions]) for field in fields(Solution)))
+
+
+def _tables(plan_: Plan, slopes: Slopes | None) -> Tables:
+    if slopes is None or slopes.changes is plan_.family.changes:
+        return plan_.tables[slopes is not None]
+    return plan_.wide_tables
 
 
 def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
@@ -268,17 +284,18 @@ def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
     )
 
 
-def _stage(plan_: Plan, values: Array, *, slopes: bool) -> Stage:
-    if plan_.surface is None:
+def _stage(plan_: Plan, values: Array, *, slopes: bool, wide: bool) -> Stage:
+    if plan_.surface is None or wide:
         numbers = numbers_of(plan_.family, values)
-        derivatives = slopes_of(plan_.family, values, numbers) if slopes else None
+        derivatives = slopes_of(plan_.family, values, numbers, wide=wide) if slopes else None
     else:
         numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
         outside = np.flatnonzero(~plan_.surface.holds(values))
         if len(outside):
             numbers[:, outside] = numbers_of(plan_.family, values[outside])
             if derivatives is not None:
-                derivatives.values[:, outside] = slopes_of(plan_.family, values[outside]).values
+                there = slopes_of(plan_.family, values[outside])
+                derivatives.values[:, outside], derivatives.missed[outside] = there.values, there.missed
     return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives)
 
 

@@ -22,6 +22,9 @@ from flexstage.models.batch.features import Feature, Topology, distinct_links, e
 from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
+_OF_BODIES = frozenset({"first", "second", "inertia"})
+_NOUGHT = 1e-12
+"""What a feature changes by, over its largest number, that counts as rounding."""
 
 Key = tuple[str, int]
 """A feature by kind and owner."""
@@ -88,13 +91,37 @@ class Family:
         }
 
     @cached_property
+    def dropped(self) -> Mapping[int, tuple[Change, ...]]:
+        """By variable: what of bodies and their places is not among the changes. Where outlines overlap otherwise it may not be zero."""
+        known = {(change.variable, change.place.start): change.rows for change in self.changes}
+        found: dict[int, tuple[Change, ...]] = {}
+        for change in self.widest:
+            rows = np.setdiff1d(change.rows, known.get((change.variable, change.place.start), []), assume_unique=True)
+            if change.place.kind in _OF_BODIES and len(rows):
+                found[change.variable] = (*found.get(change.variable, ()), replace(change, rows=rows))
+        return found
+
+    @cached_property
+    def wide(self) -> tuple[Change, ...]:
+        """The changes of parts and axes, and all there can be of bodies and their places."""
+        return tuple(
+            sorted(
+                (
+                    *(change for change in self.changes if change.place.kind not in _OF_BODIES),
+                    *(c for c in self.widest if c.place.kind in _OF_BODIES),
+                ),
+                key=lambda change: (change.variable, change.place.start),
+            )
+        )
+
+    @cached_property
     def changes(self) -> tuple[Change, ...]:
         """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas."""
         shift = np.where(self.nominal != 0.0, 0.01 * self.nominal, 1e-4) * np.cos(np.arange(len(self.nominal)) + 1.0)
         values = self.nominal + np.array([[0.0], [1.0], [-0.7]]) * shift
         found: list[Change] = []
         start = 0
-        slopes = _slopes(self, values, self.widest, {})
+        slopes = _slopes(self, values, self.widest, {}, {})[0]
         for change in self.widest:
             own = slopes[start : start + len(change.rows)]
             start += len(change.rows)
@@ -212,18 +239,22 @@ def numbers_of(family_: Family, values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Derivatives (rows of all changes, b) of features by variables."""
+    """Derivatives (rows of all changes, b) of features by variables; `missed` (b,): designs that change where these changes say nothing."""
 
     changes: tuple[Change, ...]
     values: Array
+    missed: Array
 
     def take(self, designs: Array | slice) -> Slopes:
         """Those of some designs."""
-        return Slopes(self.changes, self.values[:, designs])
+        return Slopes(self.changes, self.values[:, designs], self.missed[designs])
 
 
-def slopes_of(family_: Family, values: Array, numbers: Array | None = None) -> Slopes:
+def slopes_of(family_: Family, values: Array, numbers: Array | None = None, *, wide: bool = False) -> Slopes:
     """Derivatives of the features by every number that varies; `numbers` are those of the features, if they are known already.
+
+    With `wide` all that can change of bodies and their places, not what changes near the nominal design only: where outlines overlap
+    otherwise, more does.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = family(double_triangle(), ("materials.steel.young",))
@@ -232,18 +263,20 @@ def slopes_of(family_: Family, values: Array, numbers: Array | None = None) -> S
     >>> bool(np.allclose(slopes.values[:6] * 200e9, numbers_of(found, value)[:36:7]))
     True
     """
-    found = _slopes(family_, values, family_.changes, family_.told)
+    changes = family_.wide if wide else family_.changes
+    found, missed = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
     if family_.told:
-        _follow(family_, values, numbers_of(family_, values) if numbers is None else numbers, found)
+        _follow(family_, (values, numbers_of(family_, values) if numbers is None else numbers), changes, found)
     lost = np.flatnonzero((values[:, [item.variable for told in family_.told.values() for item in told]] == 0.0).any(axis=1))
     if len(lost):
-        found[:, lost] = _slopes(family_, values[lost], family_.changes, {})
-    return Slopes(family_.changes, found)
+        found[:, lost] = _slopes(family_, values[lost], changes, {}, {})[0]
+    return Slopes(changes, found, missed)
 
 
-def _follow(family_: Family, values: Array, numbers: Array, slopes: Array) -> None:
-    """Write the derivatives that follow from others by units."""
-    places = {(change.variable, change.place.kind, change.place.owner): (at, change) for at, change in _starts(family_.changes)}
+def _follow(family_: Family, known: tuple[Array, Array], changes: tuple[Change, ...], slopes: Array) -> None:
+    """Write the derivatives that follow from others by units; `known` are the values and the numbers of the features."""
+    values, numbers = known
+    places = {(change.variable, change.place.kind, change.place.owner): (at, change) for at, change in _starts(changes)}
     for key, told in family_.told.items():
         for item in told:
             at, change = places.get((item.variable, *key), (0, None))
@@ -251,9 +284,9 @@ def _follow(family_: Family, values: Array, numbers: Array, slopes: Array) -> No
                 continue
             found = item.powers(key[0], change.rows)[:, None] * numbers[change.place.start + change.rows]
             for other, factor in item.rest:
-                start, known = places.get((other, *key), (0, None))
-                if known is not None:
-                    _, to, of = np.intersect1d(change.rows, known.rows, assume_unique=True, return_indices=True)
+                start, stepped = places.get((other, *key), (0, None))
+                if stepped is not None:
+                    _, to, of = np.intersect1d(change.rows, stepped.rows, assume_unique=True, return_indices=True)
                     found[to] -= factor * values[:, other] * slopes[start + of]
             slopes[at : at + len(change.rows)] = found / np.where(values[:, item.variable] != 0.0, values[:, item.variable], np.nan)
 
@@ -265,8 +298,16 @@ def _starts(changes: tuple[Change, ...]) -> Iterator[tuple[int, Change]]:
         start += len(change.rows)
 
 
-def _slopes(family_: Family, values: Array, changes: tuple[Change, ...], told: Mapping[Key, tuple[Told, ...]]) -> Array:
+def _slopes(
+    family_: Family,
+    values: Array,
+    changes: tuple[Change, ...],
+    told: Mapping[Key, tuple[Told, ...]],
+    dropped: Mapping[int, tuple[Change, ...]],
+) -> tuple[Array, Array]:
+    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes."""
     mechanism = describe(family_, values)
+    missed = np.zeros(len(values), dtype=bool)
     result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     for start, change in _starts(changes):
@@ -279,10 +320,20 @@ def _slopes(family_: Family, values: Array, changes: tuple[Change, ...], told: M
         arrays = features(step_numbers(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
         for number in group:
             for at, change in places.get(number, []):
-                array = arrays[change.place.kind, change.place.owner]
-                flat = array.reshape(*array.shape[: array.ndim - len(change.place.shape)], -1)[..., change.rows]
+                flat = _flat(arrays[change.place.kind, change.place.owner], change)[..., change.rows]
                 result[at : at + len(change.rows)] = (np.imag(flat) / width(family_, number)).reshape(-1, len(change.rows)).T
-    return result
+            for change in dropped.get(number, ()):
+                array = arrays.get((change.place.kind, change.place.owner))
+                if array is not None and np.iscomplexobj(array):
+                    flat = _flat(array, change)
+                    rate = np.abs(np.imag(flat[..., change.rows])) / (width(family_, number) / abs(family_.nominal[number] or 1.0))
+                    missed |= np.any(rate > _NOUGHT * np.max(np.abs(np.real(flat)), axis=-1, keepdims=True), axis=-1)
+    return result, missed
+
+
+def _flat(array: Array, change: Change) -> Array:
+    """A feature's numbers along one axis."""
+    return array.reshape(*array.shape[: array.ndim - len(change.place.shape)], -1)
 
 
 def step_numbers(family_: Family, mechanism: Mechanism, values: Array, group: tuple[int, ...]) -> Mechanism:

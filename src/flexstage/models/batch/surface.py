@@ -81,7 +81,7 @@ class Surface:
                     to, of = self._places[number, int(variable)]
                     basis = _basis(piece, table, (place, steep))
                     result[to, start:stop] = (piece.coefficients[:, of].T @ basis)[:, : stop - start]
-        return Slopes(changes, result)
+        return Slopes(changes, result, np.zeros(len(values), dtype=bool))
 
     def _tables(self, values: Array) -> Iterator[tuple[int, Array, Array]]:
         """Chebyshev polynomials (degree, P, designs) and their derivatives by the values, portion by portion."""
