@@ -182,6 +182,18 @@ def test_frequencies_and_gradients_of_the_shipped_stage(names: tuple[str, ...], 
             assert np.max(np.abs(mine - slopes) * scale[:, :1]) < 1e-6
 
 
+def test_overlaps_that_begin_away_from_the_nominal_design_have_their_derivatives() -> None:
+    """A taller pole's side reaches into its top: then its width moves the pole's centre up and down, too."""
+    names = ("units.vertical.bodies.pole.solids.left.at.y", "units.vertical.bodies.pole.solids.left.size.z")
+    family_plan = plan(double_triangle(), names)
+    values = family_plan.family.nominal * np.array([[1.01, 0.99], [1.01, 1.01]])
+    assert slopes_of(family_plan.family, values).missed.tolist() == [False, True]
+    found = platform_modes(family_plan, values, slopes=True)
+    for design in range(2):
+        exact = fs.sensitivities(one(family_plan, values[design]), names, modes=6)
+        assert np.max(np.abs(found.gradient[design] - exact.frequency) * values[design][:, None] / exact.frequencies) < 1e-6
+
+
 @pytest.mark.parametrize("slopes", [False, True])
 def test_the_kernel_is_numpy(slopes: bool) -> None:
     if kernel() is None:

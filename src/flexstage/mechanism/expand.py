@@ -38,15 +38,30 @@ NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in
 class PlacedBody:
     """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame.
 
-    `drawn` is the body with those lent to it; the mass is that of all of them.
+    `drawn` is the body with those lent to it; the mass is that of all of them, made of `materials`. `links` are those of the stage.
     """
 
     name: str
     body: Body
     frame: Frame
-    reference: Array
-    mass: MassProperties | None
     drawn: tuple[_DrawnBody, ...]
+    links: tuple[PlacedLink | PlacedSuperelement, ...]
+    materials: Mapping[str, Material]
+
+    @cached_property
+    def mass(self) -> MassProperties | None:
+        """Its own mass properties, with those of the bodies lent to it; `None` without any."""
+        return _mass(self.drawn, self.materials)
+
+    @cached_property
+    def reference(self) -> Array:
+        """As stated, else its centre of mass, else the middle of its joints (..., 3)."""
+        if self.body.reference is not None:
+            return self.frame.point(stack(self.body.reference))
+        if self.mass is not None:
+            return self.mass.centre
+        joints = [place for link in self.links for place in link.joints(self.name)]
+        return sum(joints, np.zeros(3)) / len(joints) if joints else self.frame.position
 
     @cached_property
     def solids(self) -> Mapping[str, PlacedSolid]:
@@ -208,6 +223,19 @@ def expand(mechanism: Mechanism) -> Assembly:
     >>> len(expand(double_triangle()).links)
     27
     """
+    assembly = lay_out(mechanism)
+    for body in assembly.bodies.values():
+        _ = body.reference, body.mass  # what cannot be weighed is refused here
+    return assembly
+
+
+def lay_out(mechanism: Mechanism) -> Assembly:
+    """As `expand`, each body weighed when its mass or reference is first asked for.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(lay_out(double_triangle()).bodies)
+    19
+    """
     return _assembly(Same(mechanism))
 
 
@@ -239,7 +267,9 @@ def _assembly(key: Same) -> Assembly:
     joined = (*links.values(), *elements.values())
     lent = _by_owner(drawn)
     bodies = {
-        item.name: _placed_body((item, *lent.get(item.name, ())), joined, mechanism.materials) for item in drawn if item.body.of is None
+        item.name: PlacedBody(item.name, item.body, item.frame, (item, *lent.get(item.name, ())), joined, mechanism.materials)
+        for item in drawn
+        if item.body.of is None
     }
     require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
     require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
@@ -571,22 +601,6 @@ def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> 
             else:
                 part = replace_member(part, complete(part, path), value)
     return link, part
-
-
-def _placed_body(
-    drawn: tuple[_DrawnBody, ...], links: Iterable[PlacedLink | PlacedSuperelement], materials: Mapping[str, Material]
-) -> PlacedBody:
-    """The first body, with what the others lend it."""
-    name, body, frame = drawn[0].name, drawn[0].body, drawn[0].frame
-    mass = _mass(drawn, materials)
-    if body.reference is not None:
-        reference = frame.point(stack(body.reference))
-    elif mass is not None:
-        reference = mass.centre
-    else:
-        joints = [place for link in links for place in link.joints(name)]
-        reference = sum(joints, np.zeros(3)) / len(joints) if joints else frame.position
-    return PlacedBody(name, body, frame, reference, mass, drawn)
 
 
 def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:

@@ -208,7 +208,7 @@ _Weighed: TypeAlias = tuple[int, float, _Region]
 """A region that would weigh more than once: a solid whose density it has, and how often it is to be added."""
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=16)
 def _known(key: _Key) -> tuple[_Weighed, ...]:
     """The regions of some bodies, kept while numbers are stepped one after the other: their real parts stay."""
     return tuple(_regions(key.seen))

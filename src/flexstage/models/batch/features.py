@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.digest import Description
 from flexstage.base.number import Array
 from flexstage.beams.mass import law_and_mass
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.expand import Assembly, PlacedLink, lay_out
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
@@ -100,7 +100,7 @@ def topology(assembly: Assembly) -> Topology:
     """The topology of an expanded stage; links of one part and material share its number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = topology(expand(double_triangle()))
+    >>> found = topology(lay_out(double_triangle()))
     >>> found.size, len(found.links), found.parts
     (114, 27, 6)
     """
@@ -128,7 +128,7 @@ def distinct_links(assembly: Assembly) -> tuple[PlacedLink, ...]:
     """A link of each distinct part and material, by the part's number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> len(distinct_links(expand(double_triangle())))
+    >>> len(distinct_links(lay_out(double_triangle())))
     6
     """
     return tuple(_distinct(assembly).values())
@@ -158,7 +158,7 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     >>> features(double_triangle())["inertia", 0].diagonal()[:3].round(3).tolist()  # the platform's mass
     [13.997, 13.997, 13.997]
     """
-    assembly = expand(mechanism)
+    assembly = lay_out(mechanism)
     result: dict[tuple[str, int], Array] = {}
     for number, link in enumerate(distinct_links(assembly)):
         if wanted("stiffness", number) or wanted("mass", number):
@@ -166,7 +166,8 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     for number, link in enumerate(assembly.links.values()):
         result["turn", number] = link.frame.rotation
         for kind, body in zip(("first", "second"), link.joins, strict=True):
-            result[kind, number] = np.zeros(3) if body == GROUND else assembly.bodies[body].reference - link.frame.position
+            if wanted(kind, number):
+                result[kind, number] = np.zeros(3) if body == GROUND else assembly.bodies[body].reference - link.frame.position
     for number, body in enumerate(layout(assembly).bodies):
         if wanted("inertia", number):
             inertia = moving_inertia(mechanism, assembly.bodies[body])

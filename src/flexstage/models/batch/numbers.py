@@ -41,6 +41,11 @@ class Change:
     place: Feature
     rows: Array
 
+    @property
+    def key(self) -> Key:
+        """The feature by kind and owner."""
+        return self.place.kind, self.place.owner
+
 
 @dataclass(frozen=True, eq=False)
 class Family:
@@ -276,7 +281,7 @@ def slopes_of(family_: Family, values: Array, numbers: Array | None = None, *, w
 def _follow(family_: Family, known: tuple[Array, Array], changes: tuple[Change, ...], slopes: Array) -> None:
     """Write the derivatives that follow from others by units; `known` are the values and the numbers of the features."""
     values, numbers = known
-    places = {(change.variable, change.place.kind, change.place.owner): (at, change) for at, change in _starts(changes)}
+    places = {(change.variable, *change.key): (at, change) for at, change in _starts(changes)}
     for key, told in family_.told.items():
         for item in told:
             at, change = places.get((item.variable, *key), (0, None))
@@ -311,19 +316,20 @@ def _slopes(
     result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     for start, change in _starts(changes):
-        if all(change.variable != item.variable for item in told.get((change.place.kind, change.place.owner), ())):
+        if all(change.variable != item.variable for item in told.get(change.key, ())):
             places.setdefault(change.variable, []).append((start, change))
     for group in family_.together:
-        wanted = {(change.place.kind, change.place.owner) for number in group for _, change in places.get(number, [])}
+        wanted = {change.key for number in group for _, change in places.get(number, [])}
         if not wanted:
             continue
+        wanted |= {key for number in group for change in dropped.get(number, ()) if (key := change.key)[0] != "inertia"}
         arrays = features(step_numbers(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
         for number in group:
             for at, change in places.get(number, []):
-                flat = _flat(arrays[change.place.kind, change.place.owner], change)[..., change.rows]
+                flat = _flat(arrays[change.key], change)[..., change.rows]
                 result[at : at + len(change.rows)] = (np.imag(flat) / width(family_, number)).reshape(-1, len(change.rows)).T
             for change in dropped.get(number, ()):
-                array = arrays.get((change.place.kind, change.place.owner))
+                array = arrays.get(change.key)
                 if array is not None and np.iscomplexobj(array):
                     flat = _flat(array, change)
                     rate = np.abs(np.imag(flat[..., change.rows])) / (width(family_, number) / abs(family_.nominal[number] or 1.0))
