@@ -49,7 +49,6 @@ from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind
-from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import Scene, displace, largest_motion, scene
 from flexstage.show.scene.view import Side, draw, order_facets, outline, triad, view, write
 from flexstage.solid.fea.fineness import Fineness, Reduction
@@ -116,7 +115,17 @@ def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
 
 def guide() -> Any:
     """The parallelogram of the page on theory."""
-    return stage_picture(scene(fs.case("parallelogram")))
+    return _alone(scene(fs.case("parallelogram")), FULL)
+
+
+def _alone(drawn: Scene, width: float) -> Any:
+    """A stage from above its corner."""
+    flat = np.concatenate([view(Side.ISOMETRIC).project(facet.points) for facet in drawn.facets])
+    across, up = np.max(flat, axis=0) - np.min(flat, axis=0)
+    with style_context():
+        figure = canvas(width, width * min(1.1, up / across))
+        _side(figure.add_axes((0.0, 0.0, 1.0, 1.0)), drawn, Side.ISOMETRIC)
+    return figure
 
 
 def six_by_six() -> Any:
@@ -466,7 +475,7 @@ DRAWN: Mapping[str, tuple[Callable[[], Any], str]] = {
 
 def _shipped(name: str) -> Any:
     """A case of the gallery."""
-    return stage_picture(scene(fs.case(name)), width=0.7 * FULL)
+    return _alone(scene(fs.case(name)), 0.7 * FULL)
 
 
 RASTER: Mapping[str, Callable[[], Any]] = {"solid": solid} | {f"case-{name}": partial(_shipped, name) for name in SHOWN}

@@ -152,7 +152,7 @@ def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[P
         picture = mode_picture(seen, twists, width=THIRD)
         if picture is not None:
             caption = f"{index + 1}: {number(float(frequency))} Hz, damping {number(100.0 * float(found.damping[index]), 3)} %"
-            yield Picture(to_svg(picture, f"measured{index + 1}", caption), caption, f"mode measured {index + 1}")
+            yield Picture(picture.svg(f"measured{index + 1}", caption), caption, f"mode measured {index + 1}")
 
 
 def compare_section(found: Compared) -> Section | None:

@@ -19,7 +19,6 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show import render
-from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Prose
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import scene
@@ -66,7 +65,7 @@ def to_html(value: Any) -> str:
 
 def _picture(mechanism: Mechanism) -> str:
     try:
-        figure = stage_picture(scene(mechanism))
+        picture = stage_picture(scene(mechanism))
     except DesignError as error:
         return "".join(str(render.templates().prose(Prose(str(finding)))) for finding in error.findings)
-    return to_svg(figure, f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")
+    return picture.svg(f"stage{digest(mechanism)[:12]}", f"{mechanism.name} from above its corner")

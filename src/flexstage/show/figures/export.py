@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from flexstage.base.text import printable
@@ -48,8 +49,8 @@ def to_svg(figure: Any, name: str, description: str) -> str:
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
         for each in scenery:
             each.set_visible(True)
-    head, start, rest = compact_svg(buffer.getvalue(), name, description).partition(">")
-    return head + start + "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery)) + rest
+    opening, start, rest = compact_svg(buffer.getvalue(), name, description).partition(">")
+    return opening + start + "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery)) + rest
 
 
 def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
@@ -114,10 +115,19 @@ def compact_svg(text: str, name: str, description: str) -> str:
     body = _STYLE.sub(lambda found: f' style="{_styling(found[1])}"', body)
     body = _drop_empty(re.sub(r">\s+<", "><", body))
     body, classes = _classes(_join_marks(body), name)
-    width = round(float(box.split()[2]) * 96.0 / 72.0)
-    size = f"--width:{width}px;max-width:{width}px"
-    head = f'<svg viewBox="{_shorten_numbers(box)}" role="img" aria-label="{_attribute(description)}" style="{size}">'
-    return printable(f"{head}{classes}{body.strip()}</svg>", keep="\n\t")
+    size = [float(each) for each in box.split()[2:]]
+    return printable(f"{head(size, description)}{classes}{body.strip()}</svg>", keep="\n\t")
+
+
+def head(size: Sequence[float], description: str) -> str:
+    """How a picture of that size [pt] begins; `description` is read to those who cannot see it.
+
+    >>> head((72.0, 36.0), "a < b")
+    '<svg viewBox="0 0 72 36" role="img" aria-label="a &lt; b" style="--width:96px;max-width:96px">'
+    """
+    width = round(float(size[0]) * 96.0 / 72.0)
+    box = " ".join(_round(f"{float(each):f}", 1) for each in (0.0, 0.0, *size))
+    return f'<svg viewBox="{box}" role="img" aria-label="{_attribute(description)}" style="--width:{width}px;max-width:{width}px">'
 
 
 def _attribute(text: str) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.show.figures.style import ABOUT, ALONG, FULL, canvas, style_context
+from flexstage.show.figures.scenery import Paper
+from flexstage.show.figures.style import ABOUT, ALONG, FULL
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.stage import Scene, displace, largest_motion
 from flexstage.show.scene.view import Side, View, draw, order_facets, outline, triad, view, write
@@ -23,26 +23,24 @@ _IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
 _SHAFT = {"arrowstyle": "-|>", "lw": 1.8, "mutation_scale": 9, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
-def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Any:
-    """The stage from one side, with the names of actuators and gauges, as a matplotlib Figure.
+def stage_picture(scene: Scene, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Paper:
+    """The stage from one side, with the names of actuators and gauges.
 
     >>> from flexstage.mechanism.mechanism import Mechanism
     >>> from flexstage.show.scene.stage import scene
-    >>> len(stage_picture(scene(Mechanism("")), side=Side.TOP).axes)
-    1
+    >>> stage_picture(scene(Mechanism("")), side=Side.TOP).svg("top", "nothing")[:24]
+    '<svg viewBox="0 0 518.4 '
     """
     seen = view(side)
     facets = order_facets(scene, seen)
-    labels = scene.labels if names else ()
-    with style_context():
-        axes = _axes(facets, seen, width)
-        draw(axes, facets, seen)
-        write(axes, labels, seen)
-        triad(axes, seen)
-    return axes.figure
+    paper = _paper(facets, seen, width)
+    draw(paper, facets, seen)
+    write(paper, scene.labels if names else (), seen, paper.per_point)
+    triad(paper, seen)
+    return paper
 
 
-def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FULL) -> Any:
+def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FULL) -> Paper | None:
     """The stage moved by its bodies' twists, as far as to be seen, over the platform's outline at rest; hinges and gauges left out.
 
     Seen from above where the platform stays in its plane, else from above a corner. Arrows are the platform's motion: blue along, red
@@ -61,17 +59,16 @@ def mode_picture(scene: Scene, twists: Mapping[str, Array], *, width: float = FU
     seen = view(Side.TOP if sizes[_IN_PLANE].max() > sizes[_OUT_OF_PLANE].max() else Side.ISOMETRIC)
     still = [facet for facet in order_facets(scene, seen) if facet.paint.kind in _MOVED]
     moved = displace(still, scene, twists, _REACH * scene.size / largest)
-    with style_context():
-        axes = _axes([*still, *moved], seen, width)
-        draw(axes, moved, seen)
-        outline(axes, [facet for facet in still if facet.paint.kind is Kind.PLATFORM], seen)
-        triad(axes, seen)
-        if np.any(sizes):
-            _arrows(axes, scene, twist, sizes, seen)
-    return axes.figure
+    paper = _paper([*still, *moved], seen, width)
+    draw(paper, moved, seen)
+    outline(paper, [facet for facet in still if facet.paint.kind is Kind.PLATFORM], seen)
+    triad(paper, seen)
+    if np.any(sizes):
+        _arrows(paper, scene, twist, sizes, seen)
+    return paper
 
 
-def _arrows(axes: Any, scene: Scene, twist: Array, sizes: Array, seen: View) -> None:
+def _arrows(axes: Paper, scene: Scene, twist: Array, sizes: Array, seen: View) -> None:
     """The platform's translation and rotation, each where it is not small beside the other, named where it is along one axis."""
     start, largest = scene.references[PLATFORM], sizes.max()
     for part, names, colour in ((slice(0, 3), "xyz", ALONG), (slice(3, 6), ("rx", "ry", "rz"), ABOUT)):
@@ -88,7 +85,7 @@ def _arrows(axes: Any, scene: Scene, twist: Array, sizes: Array, seen: View) -> 
         _write(axes, seen.project(start) + 1.2 * (tip - seen.project(start)), name, colour)
 
 
-def _turn(axes: Any, middle: Array, radius: float, sense: float, name: str) -> None:
+def _turn(axes: Paper, middle: Array, radius: float, sense: float, name: str) -> None:
     """A turn about the direction of sight: an arc with a head."""
     angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
     arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -97,21 +94,15 @@ def _turn(axes: Any, middle: Array, radius: float, sense: float, name: str) -> N
     _write(axes, middle + np.array([0.0, 1.45 * radius]), name, ABOUT)
 
 
-def _write(axes: Any, place: Array, name: str, colour: str) -> None:
-    axes.text(*place, name, ha="center", va="center", fontsize=8, fontweight="bold", color=colour, parse_math=False)
+def _write(axes: Paper, place: Array, name: str, colour: str) -> None:
+    axes.text(float(place[0]), float(place[1]), name, fontsize=8, fontweight="bold", color=colour)
 
 
-def _axes(facets: list[Facet], seen: View, width: float) -> Any:
-    """Axes that the facets fill, in a figure as high as they need."""
+def _paper(facets: list[Facet], seen: View, width: float) -> Paper:
+    """Paper that the facets fill, as high as they need."""
     points = [seen.project(facet.points) for facet in facets] or [np.zeros((1, 2))]
     flat = np.concatenate(points)
     low, high = flat.min(axis=0), flat.max(axis=0)
     gap = 0.05 * float(max(high - low)) or 1.0
     extent = high - low + 2.0 * gap
-    figure = canvas(width, width * min(_TALLEST, float(extent[1] / extent[0])))
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set_xlim(low[0] - gap, high[0] + gap)
-    axes.set_ylim(low[1] - gap, high[1] + gap)
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    return axes
+    return Paper(low - gap, high + gap, width, width * min(_TALLEST, float(extent[1] / extent[0])))

@@ -167,22 +167,18 @@ def _tone(facet: Facet, seen: View) -> int:
 @cache
 def _fill_style(kind: Kind, tone: int) -> Style:
     """The kind's colour in a tone; opaque areas have an edge of their own colour, or seams show."""
-    from flexstage.show.figures.scenery import Style
+    from flexstage.show.figures.scenery import Style, channels
 
     colour, alpha = _COLOURS[kind]
-    fill = (*(round(channel * tone / _SHADES, 3) for channel in _channels(colour)), alpha)
+    fill = (*(round(channel * tone / _SHADES, 3) for channel in channels(colour)[:3]), alpha)
     return Style(fill, fill, 0.45) if alpha == 1.0 else Style(fill)
-
-
-def _channels(colour: str) -> tuple[float, ...]:
-    return tuple(int(colour[place : place + 2], 16) / 255.0 for place in (1, 3, 5))
 
 
 @cache
 def _line_style(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
-    from flexstage.show.figures.scenery import Style
+    from flexstage.show.figures.scenery import Style, channels
 
-    return Style(edge=(*_channels(colour), 1.0), width=width, dashed=dashed)
+    return Style(edge=channels(colour), width=width, dashed=dashed)
 
 
 def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
@@ -199,8 +195,10 @@ def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
         axes.add_artist(Scenery(lines))
 
 
-def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
+def write(axes: Any, labels: tuple[Label, ...], seen: View, per_point: float | None = None) -> None:
     """Write names beside their points, moved apart where they would cover one another.
+
+    `per_point` is the length in the picture per point of paper, where it is known.
 
     >>> from flexstage.show.figures.style import canvas
     >>> axes = canvas(1.0, 1.0).add_subplot()
@@ -209,7 +207,7 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
     'B1'
     """
     sizes = np.array([(_LETTER * len(label.text) + _ROUND, _LINE) for label in labels]).reshape(-1, 2)
-    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), _per_point(axes) * sizes)
+    places = _spread(seen.project(np.array([label.point for label in labels]).reshape(-1, 3)), (per_point or _per_point(axes)) * sizes)
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     for label, (x, y) in zip(labels, places, strict=True):
         colour = _LABEL_COLOURS.get(label.kind, INK)

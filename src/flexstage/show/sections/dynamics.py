@@ -65,7 +65,7 @@ def _shapes(modes: Modes, model: LinearModel, kinematics: Kinematics, seen: Scen
         picture = mode_picture(seen, twists, width=THIRD)
         if picture is not None:
             caption = f"{index + 1}: {modes.names[index]}, {number(float(frequencies[index]))} Hz; kinetic energy: {_shares(modes, index)}"
-            yield Picture(to_svg(picture, f"mode{index + 1}", caption), caption, f"mode {index + 1}")
+            yield Picture(picture.svg(f"mode{index + 1}", caption), caption, f"mode {index + 1}")
 
 
 def _shares(modes: Modes, index: int) -> str:

@@ -33,7 +33,7 @@ def stage_section(seen: Scene, *, motion: str = "", ghost: str = "", said: str =
     >>> stage_section(scene(double_triangle())).title
     'The stage'
     """
-    corner = to_svg(stage_picture(seen), "corner", "The stage from above its front corner")
+    corner = stage_picture(seen).svg("corner", "The stage from above its front corner")
     caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
     viewer = Viewer("stage", (Picture(corner, caption),), motion, ghost)
     return section("The stage", [viewer, Legend(legend(seen)), Prose(said) if said else None])
@@ -108,7 +108,7 @@ def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
 
 
 def _side(seen: Scene, side: Side, name: str, caption: str) -> Picture:
-    return Picture(to_svg(stage_picture(seen, side=side, width=_WIDTH, names=side is Side.TOP), name, caption), caption)
+    return Picture(stage_picture(seen, side=side, width=_WIDTH, names=side is Side.TOP).svg(name, caption), caption)
 
 
 def _ring_texts(mechanism: Mechanism) -> list[str]:

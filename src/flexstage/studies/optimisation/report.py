@@ -67,7 +67,7 @@ def _stage(study: Study, final: Mechanism | None, stages: Mapping[str, StageData
 
 
 def _still(seen: Scene, name: str, caption: str) -> Picture:
-    return Picture(to_svg(stage_picture(seen, width=4.4), name, caption), caption)
+    return Picture(stage_picture(seen, width=4.4).svg(name, caption), caption)
 
 
 def front_report(found: Front) -> str:
