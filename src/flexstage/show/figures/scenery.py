@@ -25,8 +25,11 @@ _NONE: Colour = (0.0, 0.0, 0.0, 0.0)
 _DASHES = (3.7, 1.6)
 _UNITS = 10.0
 """Units of a picture's numbers in a point: steps of a tenth, 0.035 mm on paper, are less than what a printer or a screen resolves."""
-_LETTER, _MIDDLE = 0.68, 0.32
-"""Width of a bold letter, and how far its foot lies below its middle, of the height of a font."""
+_LETTER = 0.68
+"""Width of a bold letter, of the height of a font."""
+_ANCHORS = {"left": "start", "center": "middle", "right": "end"}
+_FEET = {"baseline": 0.0, "center": 0.32}
+"""How far the foot of letters lies below the place that they are written at, of the height of a font."""
 
 
 @dataclass(frozen=True)
@@ -134,18 +137,28 @@ class Paper:
         self.strokes.append(Stroke(np.stack([start, back]), style, [(0, 1)]))
         self.strokes.append(Stroke(np.stack([tip, back + head[1], back - head[1]]), replace(style, fill=look)))
 
-    def text(self, x: float, y: float, text: str, *, fontsize: float, color: str, bbox: object = None, **look: Any) -> None:
-        """A name with its middle there, on a lighter ground if it is to have a `bbox`."""
+    def text(  # noqa: PLR0913 (what matplotlib's axes are told)
+        self,
+        x: float,
+        y: float,
+        text: str,
+        *,
+        fontsize: float,
+        color: str,
+        ha: str = "center",
+        va: str = "center",
+        fontweight: str = "normal",
+        style: str = "normal",
+        bbox: object = None,
+    ) -> None:
+        """A name at a place, on a lighter ground if it is to have a `bbox`."""
         across, up = self._points(np.array([[x, y]]))[0]
-        said = {"font-weight": look.get("fontweight"), "font-style": look.get("style")}
-        style = "".join(f";{name}:{value}" for name, value in said.items() if value)
         if bbox is not None and text:
             wide, high = _LETTER * fontsize * len(text) + 2.5, 1.2 * fontsize
-            ground = f"fill:{theme_colour(PAPER)};fill-opacity:.8"
             place = f'x="{across - 0.5 * wide:.1f}" y="{up - 0.5 * high:.1f}" width="{wide:.1f}" height="{high:.1f}" rx="1.3"'
-            self.words.append(f'<rect {place} style="{ground}"/>')
-        style = f"font-size:{fontsize:g}px;fill:{theme_colour(color)};text-anchor:middle{style}"
-        self.words.append(f'<text x="{across:.1f}" y="{up + _MIDDLE * fontsize:.1f}" style="{style}">{escape(text)}</text>')
+            self.words.append(f'<rect {place} style="fill:{theme_colour(PAPER)};fill-opacity:.8"/>')
+        look = f"font-size:{fontsize:g}px;fill:{theme_colour(color)};text-anchor:{_ANCHORS[ha]};font-weight:{fontweight};font-style:{style}"
+        self.words.append(f'<text x="{across:.1f}" y="{up + _FEET[va] * fontsize:.1f}" style="{look}">{escape(text)}</text>')
 
     def svg(self, name: str, description: str) -> str:
         """The picture as an SVG element to stand inside a page; see `to_svg`."""

@@ -211,7 +211,7 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View, per_point: float | N
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     for label, (x, y) in zip(labels, places, strict=True):
         colour = _LABEL_COLOURS.get(label.kind, INK)
-        axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box, parse_math=False)
+        axes.text(x, y, label.text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box)
 
 
 _LETTER, _ROUND, _LINE = 5.0, 4.0, 11.5
