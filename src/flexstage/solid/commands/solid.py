@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
 import typer
@@ -15,6 +15,7 @@ from flexstage.analysis.pairing import Pair
 from flexstage.analysis.standing import require_standing
 from flexstage.analysis.units import driven_units
 from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.lazy import Late
 from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse
@@ -31,11 +32,9 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, Report, X
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
-from flexstage.show.page import Headline, Section
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
-from flexstage.show.viewer.motions import Motion
 from flexstage.solid import calibration, verification
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.fineness import Reduction
@@ -46,17 +45,7 @@ from flexstage.solid.fea.remote import Limits
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.plan import verification_plan
 from flexstage.solid.read import Solids, solids
-from flexstage.solid.report import solid_report
 from flexstage.solid.resolution import Converged, Resolution
-from flexstage.solid.sections import (
-    hinge_section,
-    paired_with_theory,
-    solid_motions,
-    stage_solid_section,
-    unit_section,
-    verification_headline,
-    verification_section,
-)
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -70,6 +59,15 @@ from flexstage.solid.tables import (
 )
 from flexstage.solid.verified import Known, recall, retain
 from flexstage.solid.what import What
+
+if TYPE_CHECKING:
+    from flexstage.show import page
+    from flexstage.show.page import Headline, Section
+    from flexstage.show.viewer.motions import Motion
+    from flexstage.solid import report as reports
+    from flexstage.solid import sections as pages
+else:  # few are asked for a report
+    page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.report"), Late("flexstage.solid.sections")
 
 Scope: TypeAlias = Annotated[
     What,
@@ -139,7 +137,7 @@ def solid(  # noqa: PLR0913 (its options)
     with progress_bar() as shown:
         found = _STUDIES[what](mechanism, asked, shown)
     if report is not None:
-        save(report, solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
+        save(report, reports.solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
     answer(
         "solid",
         mechanism,
@@ -183,12 +181,12 @@ def verify(  # noqa: PLR0913 (its options)
         print_note("\n".join(("to do: nothing, the verification is in the cache.", *known.notes)))
         found, cautions = known.of(mechanism), known.cautions
     if report is not None:
-        units = None if found.units is None else unit_section(found.units)
-        stage = None if found.stage is None else stage_solid_section(found.stage)
-        pairs, beside = ({}, None) if found.stage is None else paired_with_theory(mechanism, found.stage.result)
-        more = () if found.stage is None else solid_motions(mechanism, found.stage.result, pairs)
-        sections = iter([verification_section(found), beside, hinge_section(found.hinges), units, stage])
-        save(report, solid_report(mechanism, verification_headline(found), sections, cautions, more), "--report")
+        units = None if found.units is None else pages.unit_section(found.units)
+        stage = None if found.stage is None else pages.stage_solid_section(found.stage)
+        pairs, beside = ({}, None) if found.stage is None else pages.paired_with_theory(mechanism, found.stage.result)
+        more = () if found.stage is None else pages.solid_motions(mechanism, found.stage.result, pairs)
+        sections = iter([pages.verification_section(found), beside, pages.hinge_section(found.hinges), units, stage])
+        save(report, reports.solid_report(mechanism, pages.verification_headline(found), sections, cautions, more), "--report")
     print_missing(found.reasons)
     answer(
         "verify",
@@ -317,10 +315,10 @@ def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
     found = solid_hinges(mechanism, _hinges(asked, shown))
     cautions = _inexact_hinges(found)
     return _Result(
-        said=Headline(f"{len(found)} distinct hinges, {len(cautions) or 'none'} of them less exact than was asked.", not cautions),
+        said=page.Headline(f"{len(found)} distinct hinges, {len(cautions) or 'none'} of them less exact than was asked.", not cautions),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
-        sections=lambda: iter([hinge_section(found)]),
+        sections=lambda: iter([pages.hinge_section(found)]),
         cautions=cautions,
     )
 
@@ -338,7 +336,7 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
         said=_accuracy_headline(found, asked.resolution),
         results=(found, {"units": found.result}),
         tables=tables,
-        sections=lambda: iter([unit_section(found)]),
+        sections=lambda: iter([pages.unit_section(found)]),
         cautions=_accuracy_cautions("units", found, asked.resolution),
     )
 
@@ -357,15 +355,15 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
 
     @cache
     def paired() -> tuple[Mapping[int, Pair], Section | None]:
-        return paired_with_theory(mechanism, stage)
+        return pages.paired_with_theory(mechanism, stage)
 
     return _Result(
         said=_accuracy_headline(found, asked.resolution),
         results=(found, stage),
         tables=tables,
-        sections=lambda: iter([stage_solid_section(found), paired()[1]]),
+        sections=lambda: iter([pages.stage_solid_section(found), paired()[1]]),
         cautions=_accuracy_cautions("stage", found, asked.resolution),
-        motions=lambda: solid_motions(mechanism, stage, paired()[0]),
+        motions=lambda: pages.solid_motions(mechanism, stage, paired()[0]),
     )
 
 
@@ -414,7 +412,7 @@ def _accuracy_text(found: Converged[Any]) -> str:
 def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
     """How exact a result is, against what was asked."""
     said = _accuracy_text(found)
-    return Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
+    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
 
 
 def _verification_tables(found: verification.Verification) -> Iterator[Table]:
