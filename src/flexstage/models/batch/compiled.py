@@ -24,6 +24,9 @@ MODES = 12
 _MORE, _ROUNDS = 1, 2
 """Vectors of a block beyond the wanted modes; how often these are found one by one at most."""
 
+_NEAR = 48
+"""Slots whose sums of six modes and eight designs the nearest cache holds."""
+
 _KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
 _DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
 _SIZES = (
@@ -43,7 +46,7 @@ _SIZES = (
     "single",
     "parts",
 )
-_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry")
+_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "alike")
 _ARRAYS = ("force", "numbers_", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
 _RESULTS = ("values", "share", "good", "slopes")
@@ -188,19 +191,21 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
         "product": np.searchsorted([firsts[item[0]] for item in update], np.arange(bodies + 1)).astype(np.int64),
         "update": np.array(update, dtype=np.int64).reshape(-1, 3),
         "inertia": np.array([inertia + 36 * body for body in graph.order], dtype=np.int64),
+        "alike": np.argsort([part for part, *_ in link], kind="stable").astype(np.int64),
         "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),
     }
 
 
 def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
-    """Slots, the single numbers that derivatives are about, the slots that each link has a share in, and entries (variable, slot)."""
-    slots: dict[tuple[int, int, int, int], int] = {}
-    entries: list[tuple[int, int]] = []
+    """Slots, the single numbers that derivatives are about, the slots that each link has a share in, and entries (variable, slot, row)."""
+    found: list[tuple[int, tuple[int, int, int, int]]] = []
     for change in changes:
         kind, owner = _KINDS.index(change.place.kind), _owner(scheme, change.place)
         columns = change.place.shape[-1] if len(change.place.shape) == 2 else 1
-        keys = [(kind, owner, row // columns, row % columns) for row in change.rows.tolist()]
-        entries += [(change.variable, slots.setdefault(key, len(slots))) for key in keys]
+        found += [(change.variable, (kind, owner, row // columns, row % columns)) for row in change.rows.tolist()]
+    slots = {key: number for number, key in enumerate(sorted({key for _, key in found}))}
+    entries = [(variable, slots[key], row) for row, (variable, key) in enumerate(found)]
+    entries.sort(key=lambda entry: (entry[1] // _NEAR, entry[0]))
     of: dict[tuple[bool, int], list[int]] = {}
     for (kind, owner, _, _), number in slots.items():
         if kind < 5:
@@ -208,7 +213,7 @@ def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
     lists = [of.get((True, link[0]), []) + of.get((False, index), []) for index, link in enumerate(scheme.topology.links)]
     return {
         "slot": np.array(list(slots), dtype=np.int64).reshape(-1, 4),
-        "entry": np.array(entries, dtype=np.int64).reshape(-1, 2),
+        "entry": np.array(entries, dtype=np.int64).reshape(-1, 3),
         "reach": np.array([0, *itertools.accumulate(map(len, lists))], dtype=np.int64),
         "about": np.array([number for each in lists for number in each], dtype=np.int64),
     }

@@ -1,8 +1,15 @@
-/* Platform modes of many designs, several of them in each vector: the same steps in the same order as subspace.py, factor.py, blocks.py and
- * slopes.py, where they are explained. A "lane" is one design; nothing that happens in a lane depends on the others, so results do not
- * depend on which designs are computed together.
+/* Platform modes of many designs, several of them in each vector. A "lane" is one design; nothing that happens in a lane depends on the others, so
+ * results do not depend on which designs are computed together. Blocks, elimination, which modes are the platform's and derivatives are those of
+ * blocks.py, factor.py, subspace.py and slopes.py, where they are explained; the wanted modes are found singly:
  *
- * Matrices are 6x6 blocks by rows; vectors are [body][6][m]; every entry is a vector of WIDTH designs.
+ * 1. Z = (K - sigma M)^-1 F for the inertial forces F of the family's own modes, sigma amid their values; Rayleigh-Ritz on Z.
+ * 2. For each wanted mode x of these, sigma just below its value and T = (K - sigma M)^-1 M: y = T x, twice. Rayleigh-Ritz on the y alone, with
+ *    K y = sigma M y + M x.
+ * 3. T's Rayleigh quotient theta at x and the residual |y - theta x| in M bound what y has of modes whose lambda is `outer` or more, for which T is
+ *    1 / (outer - sigma) at most: its sine is (sine of the angle between x and y) / ((outer - sigma) theta - 1) at most.
+ * 4. As many pivots of K - shift M are negative as values lie below the shift: none is missed.
+ *
+ * Own blocks of bodies are lower triangles by rows, edges 6x6 by rows; vectors are [body][6][m]; every entry is a vector of WIDTH designs.
  */
 #include "lanes.h"
 
@@ -28,7 +35,8 @@ typedef struct {
     const int64_t *slot;    /* slots x (kind, owner or place, row, column) */
     const int64_t *reach;   /* links + 1: where the slots of each link begin in the following */
     const int64_t *about;   /* slots that are about a link or its part */
-    const int64_t *entry;   /* entries x (variable, slot), by variable */
+    const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by slots that are near, then by variable */
+    const int64_t *alike;   /* links, those of one part together */
     const double *force;    /* bodies x 6 x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
     const double *changes;  /* entries x slopes_stride */
@@ -63,7 +71,6 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
 
 /* ---- 6x6 blocks ---- */
 
-/* Own blocks of bodies are symmetric: their lower triangles by rows. Edges are whole. */
 #define OWN 21
 #define LOWER(i, k) ((i) * ((i) + 1) / 2 + (k)) /* k <= i */
 
@@ -171,7 +178,7 @@ typedef struct {
     lanes *other, *other_edge;       /* K - shift M factored */
     lanes *now, *next, *force, *ahead; /* blocks of vectors */
     lanes *shapes;                   /* modes found (6 bodies, count) */
-    lanes *sum;                      /* slots x pairs */
+    lanes *sum, *slope;              /* slots x pairs, variables x pairs */
 } Room;
 
 static void assemble(const Task *t, Room *w)
@@ -303,13 +310,6 @@ static INLINE void backward(const Task *t, const Room *w, lanes *restrict x, int
         UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k];
 }
 
-/* x = (K - shift M)^-1 x, m vectors, by what `eliminate` left. */
-static INLINE void solve(const Task *t, const Room *w, lanes *restrict x, const int m)
-{
-    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, forward(t, w, x + j, v, m, n))
-    for (int64_t v = t->bodies - 1; v >= 0; v--) IN_COLUMNS(m, backward(t, w, x + j, v, m, n))
-}
-
 /* What body v and its edges to later bodies add to n columns of y = M x. */
 static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v, int m, const int n)
 {
@@ -324,11 +324,12 @@ static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const 
         }
 }
 
-/* y = M x, m vectors. */
-static INLINE void product(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, const int m)
+/* x = (K - shift M)^-1 x, m vectors, by what `eliminate` left, and y = M x. */
+static INLINE void solve(const Task *t, const Room *w, lanes *restrict x, lanes *restrict y, const int m)
 {
+    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, forward(t, w, x + j, v, m, n))
     memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, weigh(t, w, y + j, x + j, v, m, n))
+    for (int64_t v = t->bodies - 1; v >= 0; v--) IN_COLUMNS(m, (backward(t, w, x + j, v, m, n), weigh(t, w, y + j, x + j, v, m, n)))
 }
 
 /* ---- Rayleigh-Ritz ---- */
@@ -489,15 +490,14 @@ static void begin(const Task *t, Room *w, Ritz *out)
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
     eliminate(t, w, all(t->shift), 0, 0, 0);
     for (int64_t i = 0; i < n * m; i++) w->next[i] = w->ahead[i] = all(t->force[i]);
-    solve(t, w, w->ahead, m);
+    solve(t, w, w->ahead, w->now, m);
     const Layout at = {m, 1};
     gram(n, m, at, stiff, w->ahead, w->next);
-    product(t, w, w->next, w->ahead, m);
-    gram(n, m, at, mass, w->ahead, w->next);
+    gram(n, m, at, mass, w->ahead, w->now);
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
     for (int c = 0; c < m; c++) out->share[c] = share_of(t, w, w->ahead + (n - 6) * m, q, m, c);
-    blend(n, m, at, w->force, w->next, q, single);
+    blend(n, m, at, w->force, w->now, q, single);
 }
 
 /* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
@@ -515,8 +515,7 @@ static void polish(const Task *t, Room *w, Ritz *known)
         lanes before = all(1.0), between = before, after = before;
         for (int64_t step = 0; step < t->steps; step++) {
             memcpy(x, f, sizeof(lanes) * n);
-            solve(t, w, x, 1);
-            product(t, w, g, x, 1);
+            solve(t, w, x, g, 1);
             between = after = all(0.0);
             for (int64_t i = 0; i < n; i++) between += x[i] * f[i], after += x[i] * g[i];
             if (step + 1 == t->steps) break;
@@ -632,10 +631,16 @@ enum { STIFFNESS, MASS, TURN, FIRST, SECOND, INERTIA };
 
 typedef struct { int i, j; } Pair;
 
-static inline lanes both(const lanes *x, int m, int r, int c, Pair p)
+/* a_i b_j + a_j b_i. */
+static INLINE lanes both(const lanes *a, const lanes *b, Pair at)
 {
-    lanes s = x[r * m + p.i] * x[c * m + p.j];
-    return r == c ? s : s + x[c * m + p.i] * x[r * m + p.j];
+    return at.i == at.j ? 2.0 * (a[at.i] * b[at.j]) : a[at.i] * b[at.j] + a[at.j] * b[at.i];
+}
+
+/* Of entry (row, column) of a symmetric matrix between x and y, both (rows, k): for two entries where it is off the diagonal. */
+static INLINE lanes between(const lanes *x, const lanes *y, int k, int row, int column, Pair at)
+{
+    return row == column ? x[row * k + at.i] * y[row * k + at.j] : both(x + row * k, y + column * k, at);
 }
 
 /* Ends' twists (12, k), forces less lambda times momenta (12, k), the twists in the stage's axes at the link (u: 3, k) of one link. */
@@ -681,10 +686,10 @@ static INLINE void link_motion(
     }
 }
 
-/* Adds a link's or part's share of every slot that is about it. */
-static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *mean, const Pair *pair, const int pairs, const int k)
+/* Adds a link's or part's share of every slot that is about it: of each mode with itself, or of some `pair`s of a cluster beyond these. */
+static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *mean, int pairs, const Pair *pair, const int k)
 {
-    lanes twist[12 * MODES], force[12 * MODES], seen[6 * MODES], strain[6 * MODES], world[6 * MODES];
+    lanes twist[12 * MODES], heavy[12 * MODES], force[12 * MODES], seen[6 * MODES], strain[6 * MODES], world[6 * MODES];
     link_motion(t, w, l, mean, twist, force, seen, k);
     for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
     const lanes *r = w->number + t->start[2] + 9 * l;
@@ -694,31 +699,41 @@ static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *me
                 const lanes *f = force + 6 * side * k;
                 world[(3 * side + i) * k + c] = r[3 * i] * f[c] + r[3 * i + 1] * f[k + c] + r[3 * i + 2] * f[2 * k + c];
             }
+    for (int i = 0; i < 12; i++)
+        for (int c = 0; c < k; c++) heavy[i * k + c] = mean[c] * twist[i * k + c];
     for (int64_t of = t->reach[l]; of < t->reach[l + 1]; of++) {
         const int64_t s = t->about[of];
         const int kind = (int)t->slot[4 * s], row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
-        for (int p = 0; p < pairs; p++) {
-            const Pair at = pairs == k ? (Pair){p, p} : pair[p]; /* no clusters: each mode with itself */
-            lanes *sum = w->sum + s * pairs + p;
-            if (kind == STIFFNESS) *sum += both(strain, k, row, column, at);
-            else if (kind == MASS) *sum -= mean[at.i] * both(twist, k, row, column, at);
-            else if (kind == TURN)
-                for (int side = 0; side < 2; side++) {
-                    const int64_t body = t->link[4 * l + 1 + side];
-                    if (body < 0) continue;
-                    const lanes *o = w->shapes + 6 * k * body + 3 * k, *u = seen + 3 * side * k, *f = force + 6 * side * k;
-                    *sum += f[column * k + at.i] * u[row * k + at.j] + f[(3 + column) * k + at.i] * o[row * k + at.j];
-                    *sum += f[column * k + at.j] * u[row * k + at.i] + f[(3 + column) * k + at.j] * o[row * k + at.i];
-                }
-            else {
-                const int side = kind == SECOND, one = (row + 1) % 3, two = (row + 2) % 3;
+        const int one = (row + 1) % 3, two = (row + 2) % 3;
+        lanes *sum = w->sum + s * pairs;
+#define EACH(what) for (int p = pair ? k : 0; p < (pair ? pairs : k); p++) { const Pair at = pair ? pair[p] : (Pair){p, p}; what; }
+        if (kind == STIFFNESS) EACH(sum[p] += between(strain, strain, k, row, column, at))
+        else if (kind == MASS) EACH(sum[p] -= between(heavy, twist, k, row, column, at))
+        else
+            for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
                 const int64_t body = t->link[4 * l + 1 + side];
                 if (body < 0) continue;
-                const lanes *o = w->shapes + 6 * k * body + 3 * k, *g = world + 3 * side * k;
-                *sum += o[one * k + at.j] * g[two * k + at.i] - o[two * k + at.j] * g[one * k + at.i];
-                *sum += o[one * k + at.i] * g[two * k + at.j] - o[two * k + at.i] * g[one * k + at.j];
+                const lanes *o = w->shapes + 6 * k * body + 3 * k, *u = seen + (3 * side + row) * k, *g = world + 3 * side * k;
+                const lanes *f = force + (6 * side + column) * k;
+                if (kind == TURN) EACH(sum[p] += both(f, u, at) + both(f + 3 * k, o + row * k, at))
+                else EACH(sum[p] += both(o + one * k, g + two * k, at) - both(o + two * k, g + one * k, at))
             }
+    }
+}
+
+/* From slots to variables. */
+static INLINE void contract(const Task *t, Room *w, const int pairs)
+{
+    for (int64_t i = 0; i < t->variables * pairs; i++) w->slope[i] = all(0.0);
+    for (int64_t e = 0; e < t->entries;) {
+        const int64_t variable = t->entry[3 * e];
+        lanes sum[MODES * MODES], *to = w->slope + variable * pairs;
+        for (int p = 0; p < pairs; p++) sum[p] = to[p];
+        for (; e < t->entries && t->entry[3 * e] == variable; e++) {
+            const lanes change = w->change[e], *own = w->sum + t->entry[3 * e + 1] * pairs;
+            for (int p = 0; p < pairs; p++) sum[p] += change * own[p];
         }
+        for (int p = 0; p < pairs; p++) to[p] = sum[p];
     }
 }
 
@@ -741,31 +756,29 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
             mean[i][lane] = sum / size;
         }
     }
+    for (; pairs < k; pairs++) pair[pairs].i = pair[pairs].j = pairs;
     for (int i = 0; i < k; i++)
-        for (int j = i; j < k; j++)
+        for (int j = i + 1; j < k; j++)
             if (any(same[i * k + j])) pair[pairs].i = i, pair[pairs++].j = j;
     for (int64_t i = 0; i < t->slots * pairs; i++) w->sum[i] = all(0.0);
-    if (k == 6 && pairs == 6) /* the usual case, unrolled by the compiler */
-        for (int64_t l = 0; l < t->links; l++) link_slots(t, w, l, mean, pair, 6, 6);
-    else
-        for (int64_t l = 0; l < t->links; l++) link_slots(t, w, l, mean, pair, pairs, k);
+    for (int64_t l = 0; l < t->links; l++) {
+        if (k == 6) link_slots(t, w, t->alike[l], mean, pairs, 0, 6); /* the usual case, unrolled by the compiler */
+        else link_slots(t, w, t->alike[l], mean, pairs, 0, k);
+        if (pairs > k) link_slots(t, w, t->alike[l], mean, pairs, pair, k);
+    }
     for (int64_t s = 0; s < t->slots; s++)
         if (t->slot[4 * s] == INERTIA) {
             const lanes *x = w->shapes + 6 * k * t->slot[4 * s + 1];
             for (int p = 0; p < pairs; p++)
-                w->sum[s * pairs + p] = -mean[pair[p].i] * both(x, k, (int)t->slot[4 * s + 2], (int)t->slot[4 * s + 3], pair[p]);
+                w->sum[s * pairs + p] = -mean[pair[p].i] * between(x, x, k, (int)t->slot[4 * s + 2], (int)t->slot[4 * s + 3], pair[p]);
         }
-    lanes sum[MODES * MODES];
-    for (int64_t e = 0, variable = 0; variable < t->variables; variable++) {
-        for (int p = 0; p < pairs; p++) sum[p] = all(0.0);
-        for (; e < t->entries && t->entry[2 * e] == variable; e++) {
-            const lanes change = w->change[e], *own = w->sum + t->entry[2 * e + 1] * pairs;
-            for (int p = 0; p < pairs; p++) sum[p] += change * own[p];
-        }
+    if (pairs == 6) contract(t, w, 6);
+    else contract(t, w, pairs);
+    for (int64_t variable = 0; variable < t->variables; variable++) {
         double *to = t->slopes + variable * k * k * t->stride + design;
         for (int p = 0; p < pairs; p++) {
             const int i = pair[p].i, j = pair[p].j;
-            const lanes kept = (lanes)(same[i * k + j] & (marks)sum[p]);
+            const lanes kept = (lanes)(same[i * k + j] & (marks)w->slope[variable * pairs + p]);
             store(to + (i * k + j) * t->stride, kept), store(to + (j * k + i) * t->stride, kept);
         }
     }
@@ -833,15 +846,16 @@ static void designs(const Task *t, Room *w, int64_t design)
 
 /* ---- what of the numbers is the same in every design ---- */
 
-/* Rows that are not the same in all designs, and how many; the others go to each of AHEAD vectors here, once. */
-static int64_t vary(lanes *to, const double *from, int64_t rows, int64_t stride, int64_t designs, int64_t *varying)
+/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go to each of AHEAD vectors here, once. */
+static int64_t vary(lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, int64_t *varying)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < rows; i++) {
-        const lanes first = all(from[i * stride]);
+        const double *own = from + (row ? row[3 * i] : i) * stride;
+        const lanes first = all(*own);
         marks other = {0};
         for (int64_t design = 0; design < designs && !any(other); design += 4 * WIDTH)
-            for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(from + i * stride, design + k * WIDTH, designs) != first;
+            for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(own, design + k * WIDTH, designs) != first;
         if (any(other)) varying[count++] = i;
         else
             for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = first;
@@ -851,11 +865,12 @@ static int64_t vary(lanes *to, const double *from, int64_t rows, int64_t stride,
 
 /* The varying rows of AHEAD vectors of designs, vector by vector. */
 static void gather(
-    lanes *to, const double *from, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *varying, int64_t count)
+    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *varying,
+    int64_t count)
 {
     for (int64_t i = 0; i < count; i++)
         for (int64_t k = 0; k < AHEAD && design + k * WIDTH < designs; k++)
-            to[k * rows + varying[i]] = load_at(from + varying[i] * stride, design + k * WIDTH, designs);
+            to[k * rows + varying[i]] = load_at(from + (row ? row[3 * varying[i]] : varying[i]) * stride, design + k * WIDTH, designs);
 }
 
 /* A matrix of a law (`rows` x `rows`), whose entries in all designs are zero where it is not `filled`. */
@@ -888,7 +903,7 @@ int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m, pairs = t->count * (t->count + 1) / 2;
     const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
-                             6 * t->bodies * t->count, t->slots * pairs};
+                             6 * t->bodies * t->count, t->slots * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
     for (int i = 0; i < count; i++) total += sizes[i] + 1;
@@ -896,7 +911,7 @@ int64_t flexstage_modes(const Task *t)
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
     Room w;
     lanes **parts[] = {&w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
-                       &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.sum};
+                       &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
     char *const filled = malloc(t->numbers);
@@ -905,12 +920,12 @@ int64_t flexstage_modes(const Task *t)
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
     const int short_of = !memory || !varying || !filled || !w.law;
     if (!short_of) {
-        const int64_t some = vary(w.numbers, t->numbers_, t->numbers, t->numbers_stride, t->designs, varying);
-        const int64_t other = vary(w.changes, t->changes, t->entries, t->slopes_stride, t->designs, changing);
+        const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, varying);
+        const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, changing);
         outlines(t, w.law, w.numbers, varying, some, filled);
         for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
-            gather(w.numbers, t->numbers_, t->numbers, t->numbers_stride, first, t->designs, varying, some);
-            gather(w.changes, t->changes, t->entries, t->slopes_stride, first, t->designs, changing, other);
+            gather(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, first, t->designs, varying, some);
+            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, changing, other);
             for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
                 w.number = w.numbers + k * t->numbers, w.change = w.changes + k * t->entries;
                 designs(t, &w, first + k * WIDTH);
