@@ -23,7 +23,7 @@ class Accuracy:
 
     error: float = 0.01
     freedoms: int = 200_000
-    orders: tuple[int, int] = (3, 5)
+    orders: tuple[int, int] = (2, 5)
     shrink: float = 0.6
     meshes: int = 3
 

@@ -6,9 +6,10 @@ so that what its roots yield remains with the hinge. An end without a root is he
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import ngsolve
 import numpy as np
@@ -22,9 +23,10 @@ from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
 from flexstage.solid.fea.field import Field, apply_form, factorise, field, rigid, stiffness, times
+from flexstage.solid.fea.fineness import Fineness
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.memory import Counts
-from flexstage.solid.fea.mesh import PieceMesh, generate_mesh
+from flexstage.solid.fea.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
 from flexstage.solid.fea.piece import Medium, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.roots import Roots, own_roots, rises
@@ -37,6 +39,10 @@ _LATTICE, _INSIDE = 6, 0.015
 """Steps of the lattice in an element, and how far inside its faces it ends: as far as the points of the rules that integrate there."""
 _BLUNT = 5e-4
 """What the blunted wedges of arcs at rigid faces change of the compliance at the hinge's end, relatively: twice what was found."""
+_NECK = Fineness().neck
+"""Elements within round necks are as they are in a stage."""
+_TELLING = 3
+"""The order whose change from the one before may tell an error small enough."""
 _COARSER = 1.3
 """By how much larger elements are where the usual ones are too many."""
 _ATTEMPTS = (
@@ -173,7 +179,7 @@ def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accura
         told.report(Stage.MESHING, 0.0)
         mesh = _mesh(part, stubs, asked.shrink**refinement, highest)
         if refinement == 0:
-            if _space(mesh, own, lowest).size > asked.freedoms:
+            if _space(mesh, own, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
                 lowest, mesh = 2, _mesh(part, stubs, _COARSER, highest)
             told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
@@ -215,16 +221,20 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
 def _mesh(part: Shaped, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
     reason = "the mesher was not asked"
     for shrink, grading, curvature in _ATTEMPTS:
-        drawn = specimen(part, stubs, factor * shrink)
-        outcome = _attempt(drawn, grading, curvature / factor, order)
+        sizes = {
+            "mp": restrict_sizes(core_points(part, _NECK * factor * shrink)),
+            "grading": grading,
+            "curvaturesafety": curvature / factor,
+        }
+        outcome = _attempt(specimen(part, stubs, factor * shrink), sizes, order)
         if isinstance(outcome, ngsolve.Mesh):
             return outcome
         reason = outcome
     raise refuse(_label(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
 
 
-def _attempt(drawn: Specimen, grading: float, curvature: float, order: int) -> ngsolve.Mesh | str:
-    mesh = generate_mesh(drawn.solid, {"maxh": drawn.largest, "grading": grading, "curvaturesafety": curvature})
+def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
+    mesh = generate_mesh(drawn.solid, {"maxh": drawn.largest, **sizes})
     if isinstance(mesh, str):
         return mesh
     for degree in range(2, order + 1):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,8 +28,15 @@ _NECK = 0.5
 _THIN, _AROUND = 0.47, 0.7
 """Elements where a hinge is thinnest are this share of those on its faces: about two through the thickness, as bending wants. So far along
 it, on both sides, in geometric means of radius and thickness."""
+_CORE, _AWAY = 1.0 / 6.0, 0.1
+"""Elements within a round neck with an arc, on circles of half its radius about its axis: this share of those on its faces in the middle,
+larger by this share of the distance from it. From its surface alone the mesher fills it with flat ones, twice as wide."""
 _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
+_ROOT = 2.0 / 15.0
+"""Elements around the ends of straight necks are this share of the usual: at the edge there the block they grow on yields most."""
+_HELD = 0.9
+"""Share of its length within which a round neck's inside is graded."""
 _PRINT = 1.0 / 3.0
 """Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
 _MOST = 3e5
@@ -72,7 +79,7 @@ def mesh_component(component: Component, fineness: Fineness, report: Report = si
             drawing,
             fineness.order,
             {
-                "mp": _refine_arcs(component.pieces, shrink * fineness.neck),
+                "mp": _refine_necks(component.pieces, shrink * fineness.neck),
                 "maxh": largest,
                 "grading": grading * fineness.grading,
                 "curvaturesafety": curvature * _curvature(component),
@@ -140,15 +147,37 @@ def _curvature(component: Component) -> float:
     return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
 
 
-def _refine_arcs(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
-    """Smaller elements about the thinnest line of each hinge with an arc."""
+def _refine_necks(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
+    """Smaller elements where the strain of hinges changes most from one to the next."""
+    return restrict_sizes(
+        (points @ piece.frame.rotation.T + piece.frame.position, size)
+        for piece in pieces
+        if isinstance(piece.form, Shaped)
+        for points, size in _fine_points(piece.form, neck)
+    )
+
+
+def restrict_sizes(places: Iterable[tuple[Array, float]]) -> MeshingParameters:
+    """Elements of at most a size at points (n, 3) [m].
+
+    >>> restrict_sizes([(np.zeros((1, 3)), 1e-3)]) is not None
+    True
+    """
     result = MeshingParameters()
-    for piece in pieces:
-        if isinstance(piece.form, Shaped) and piece.form.has_arc:
-            for point in _thin_points(piece.form, _THIN * neck) @ piece.frame.rotation.T + piece.frame.position:
-                x, y, z = (float(value) * MILLIMETRES for value in point)
-                result.RestrictH(x, y, z, h=_THIN * neck * thinnest(piece.form) * MILLIMETRES)
+    for points, size in places:
+        for x, y, z in (points * MILLIMETRES).tolist():
+            result.RestrictH(x, y, z, h=size * MILLIMETRES)
     return result
+
+
+def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
+    """Points (n, 3) of a hinge, in its frame, and the size of elements there [m]."""
+    least = neck * thinnest(form)
+    if form.has_arc:
+        yield _thin_points(form, _THIN * neck), _THIN * least
+    if _is_strut(form):
+        yield _root_points(form, _ROOT * least), _ROOT * least
+    yield from core_points(form, neck)
 
 
 def _thin_points(form: Shaped, share: float) -> Array:
@@ -158,6 +187,42 @@ def _thin_points(form: Shaped, share: float) -> Array:
     reach = _AROUND * np.sqrt(0.5 * span(form) * thickness)
     along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / step))) for half in (reach, 0.5 * width))
     return np.array([(x, y, z) for x in along for y in (-0.5 * thickness, 0.5 * thickness) for z in across])
+
+
+def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
+    """Points (n, 3) within a round neck with an arc, in its frame, and the size of elements there [m]; `neck` thicknesses is that on its faces.
+
+    They lie on its axis and halfway to its surface. None in any other hinge.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
+    []
+    """
+    if not (form.has_arc and form.throat.is_round):
+        return
+    size = _CORE * neck * thinnest(form)
+    stations, sections = zip(*form.silhouette, strict=True)
+    place = 0.0
+    while place < _HELD * stations[-1]:
+        own = size + _AWAY * place
+        radius = 0.25 * float(np.interp(place, stations, [section.height for section in sections]))
+        turns = 2.0 * np.pi * np.linspace(0.0, 1.0, int(np.ceil(2.0 * np.pi * radius / own)), endpoint=False)
+        circle = np.stack([np.full_like(turns, place), radius * np.cos(turns), radius * np.sin(turns)], axis=1)
+        both = np.vstack([circle, [(place, 0.0, 0.0)]])
+        yield np.vstack([both, both * (-1.0, 1.0, 1.0)]), own
+        place += 0.5 * own
+
+
+def _root_points(form: Shaped, size: float) -> Array:
+    """Points (n, 3) along the edges of both end faces of a hinge, in its frame [m]."""
+    half, high, wide = (0.5 * float(np.real(value)) for value in (form.span, form.end.height, form.end.width))
+    along = np.linspace(-1.0, 1.0, 1 + int(np.ceil(2.0 * max(high, wide) / size)))
+    one = np.ones_like(along)
+    edges = [(along, one), (along, -one), (one, along), (-one, along)]
+    if form.end.is_round:
+        edges = [(np.cos(np.pi * along), np.sin(np.pi * along))]
+    across = np.hstack(edges)
+    return np.vstack([np.stack([np.full_like(across[0], end), high * across[0], wide * across[1]], axis=1) for end in (-half, half)])
 
 
 def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
