@@ -190,7 +190,7 @@ def _thin_points(form: Shaped, share: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Points (n, 3) within a round neck with an arc, in its frame, and the size of elements there [m]; `neck` thicknesses is that on its faces.
+    """Points (n, 3) within a round neck with an arc, in its frame, and the size of elements there [m] that are `neck` thicknesses outside.
 
     They lie on its axis and halfway to its surface. None in any other hinge.
 
