@@ -1,6 +1,6 @@
 """How cost grows: with bodies, designs, samples, hinges as solids and workers of a cluster; a process each size, seconds and memory.
 
-    python benchmarks/growth.py [bodies | trees | designs | samples | hinges | workers] [SIZES ...] [--figure FILE]
+    python benchmarks/growth.py [bodies | trees | designs | samples | hinges | workers] [SIZES ...] [--printed FILE] [--figure FILE]
 
 Bodies: models, statics, modes and drift of coiled chains; trees: the same of bodies that branch in two. What bounds each: expanding the
 description and the links' operators grow with the bodies; the factor of the stiffness hardly does in chains and trees; the modes take some
@@ -12,7 +12,7 @@ Hinges: the 6x6 of so many notches by finite elements to 1 %, all of another thi
 Workers: a sweep of 200,000 designs of the shipped stage by a Dask cluster of so many processes on this machine.
 
 Seconds are those of the processor, all processes together, and in the last column but one those that went by; memory is that of the largest
-process.
+process. `--figure` draws them, of what runs and of what `--printed` holds from earlier.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 SIZES = {
     "bodies": (10, 30, 100, 300, 1000, 3000, 10000),
@@ -240,35 +241,47 @@ def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None
     """Seconds and megabytes over size, both logarithmic."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
     for place, (axis, title) in enumerate(zip(figure.subplots(1, 2), ("processor time [s]", "memory [MB]"), strict=True), start=1):
         for what, rows in curves.items():
             axis.loglog([row[0] for row in rows], [row[place] for row in rows], marker="o", label=what)
         axis.set(xlabel="how many", title=title)
         axis.grid(visible=True, which="major", alpha=0.3)
-        axis.legend()
-    figure.savefig(file)
+    figure.legend(*axis.get_legend_handles_labels(), loc="outside right upper")
+    figure.savefig(file, metadata={"Date": None} if file.endswith("svg") else None)
+
+
+def read_printed(lines: Iterable[str]) -> dict[str, list[tuple[float, float, float]]]:
+    """Size, seconds and megabytes of every line that was printed, by what it is about."""
+    curves: dict[str, list[tuple[float, float, float]]] = {}
+    what = ""
+    for words in (line.split() for line in lines):
+        if words and words[0] in SIZES:
+            what = words[0]
+        elif words:
+            seconds, _, memory = words[1 + len(STEPS[what]) :][:3]
+            curves.setdefault(what, []).append((float(words[0].replace(",", "")), float(seconds), float(memory)))
+    return curves
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", help="bodies, trees, designs, samples, hinges or workers; sizes")
+    parser.add_argument("--printed")
     parser.add_argument("--figure")
     asked = parser.parse_args()
     kinds = [word for word in asked.words if word in SIZES]
     sizes = [int(float(word)) for word in asked.words if word not in SIZES]
-    curves: dict[str, list[tuple[float, float, float]]] = {}
-    for what in kinds or (["bodies"] if sizes else SIZES):
-        print(
-            f"{what:>12}" + "".join(f"{each:>10}" for each in STEPS[what]) + f"{'sum [s]':>10}{'elapsed [s]':>12}{'[MB]':>10}", flush=True
-        )
+    printed = Path(asked.printed).read_text().splitlines() if asked.printed else []
+    for what in kinds or ([] if asked.printed else ["bodies"] if sizes else SIZES):
+        printed += [f"{what:>12}" + "".join(f"{each:>10}" for each in STEPS[what]) + f"{'sum [s]':>10}{'elapsed [s]':>12}{'[MB]':>10}"]
+        print(printed[-1], flush=True)
         for count in sizes or SIZES[what]:
             line = subprocess.run([sys.executable, __file__, "--one", what, str(count)], check=True, capture_output=True, text=True).stdout
+            printed += [line]
             print(line, end="", flush=True)
-            seconds, _, memory = line.split()[1 + len(STEPS[what]) :][:3]
-            curves.setdefault(what, []).append((count, float(seconds), float(memory)))
     if asked.figure:
-        draw(curves, asked.figure)
+        draw(read_printed(printed), asked.figure)
 
 
 if __name__ == "__main__":

@@ -127,13 +127,15 @@ def test_what_made_results_is_kept(whole, tmp_path):
 
 
 @pytest.mark.skipif(not FULL, reason="two worker processes: seconds")
-def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole):
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole, workers):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster:
+        doomed = [cluster.workers[0]]
 
         def kill(done, _):
-            if 0 < done < 700 and cluster.workers:
-                cluster.workers[0].process.process.kill()
+            if 0 < done < 700 and doomed:
+                doomed.pop().process.process.kill()
 
         sweep(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
     assert (tmp_path / "r.h5").read_bytes() == whole

@@ -70,7 +70,7 @@ def _compute(client: Any, shared: tuple[Study, Engine], ranges: list[tuple[int, 
 
     with _quiet(), client:
         try:
-            there = client.scatter(shared, broadcast=True, hash=False)
+            there = client.submit(_together, *shared, pure=False)  # not scattered: a worker that dies with it is not asked for it again
             futures = client.map(_piece, [there] * len(ranges), *zip(*ranges, strict=True), pure=False)
             for _, found in as_completed(futures, with_results=True):
                 if not isinstance(found, Piece):
@@ -93,6 +93,10 @@ def _quiet() -> Generator[None]:
         yield
     finally:
         log.setLevel(before)
+
+
+def _together(study: Study, engine: Engine) -> tuple[Study, Engine]:
+    return study, engine
 
 
 def _piece(shared: tuple[Study, Engine], start: int, stop: int) -> Piece:
