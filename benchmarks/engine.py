@@ -4,7 +4,7 @@ The shipped stage has 114 freedoms. With its stacks in pieces (two beams a horiz
 modes of its own) it has 168. Every design has other thicknesses, radii, widths, positions, turns, sizes of bodies, modulus and density:
 30 numbers. "Solving" begins for LAPACK and numpy with K and M (as blocks for numpy), for Exudyn with the assembled system, and for the
 kernel with the features of a design, of which it makes K and M itself; LAPACK finds the six lowest eigenvalues only. "From numbers"
-begins with the 30 numbers; "fitted" has the features as polynomials over the ranges, fitted once before.
+begins with the 30 numbers, others in each round, as what is kept of the designs before must not count; "fitted" has the features as polynomials over the ranges, fitted once before.
 Targets: solving, numpy 4 times LAPACK and 10 times Exudyn, the kernel with all derivatives 60 and 120 times; from numbers, without fitted
 features and with all derivatives, 50 times LAPACK.
 """
@@ -134,8 +134,12 @@ def lapack_from(stage: Mechanism) -> np.ndarray:
 
 def compare(label: str, stage: Mechanism) -> None:
     family_plan = plan(stage, VARIED)
-    shift = np.random.default_rng(0).uniform(-SPREAD, SPREAD, size=(DESIGNS, len(VARIED)))
-    values = family_plan.family.nominal * (1.0 + shift)
+    random = np.random.default_rng(0)
+
+    def drawn() -> np.ndarray:
+        return family_plan.family.nominal * (1.0 + random.uniform(-SPREAD, SPREAD, size=(DESIGNS, len(VARIED))))
+
+    values = drawn()
     numbers = numbers_of(family_plan.family, values)
     plain = Stage(family_plan.scheme, numbers)
     whole = Stage(family_plan.scheme, numbers, len(VARIED), slopes_of(family_plan.family, values))
@@ -154,16 +158,16 @@ def compare(label: str, stage: Mechanism) -> None:
     numbers_on: dict[str, tuple[int, Callable[[], object]]] = {
         "LAPACK": (ALONE, lambda: [lapack_from(each) for each in stages]),
         "Exudyn": (ALONE, lambda: [frequencies(system(each, expand(each))) for each in stages]),
-        "numpy": (DESIGNS, lambda: platform_modes(family_plan, values, method=Method.NUMPY)),
+        "numpy": (DESIGNS, lambda: platform_modes(family_plan, drawn(), method=Method.NUMPY)),
     }
     if kernel() is not None:
         solving["kernel"] = (DESIGNS, lambda: iterate(family_plan, plain))
         solving["kernel, all derivatives"] = (DESIGNS, lambda: iterate(family_plan, whole))
-        numbers_on["kernel"] = (DESIGNS, lambda: platform_modes(family_plan, values))
-        numbers_on["kernel, all derivatives"] = (DESIGNS, lambda: platform_modes(family_plan, values, slopes=True))
+        numbers_on["kernel"] = (DESIGNS, lambda: platform_modes(family_plan, drawn()))
+        numbers_on["kernel, all derivatives"] = (DESIGNS, lambda: platform_modes(family_plan, drawn(), slopes=True))
         if (fitted := in_ranges(family_plan, stage)) is not None:
-            numbers_on["kernel, fitted"] = (DESIGNS, lambda: platform_modes(fitted, values))
-            numbers_on["kernel, fitted, all d."] = (DESIGNS, lambda: platform_modes(fitted, values, slopes=True))
+            numbers_on["kernel, fitted"] = (DESIGNS, lambda: platform_modes(fitted, drawn()))
+            numbers_on["kernel, fitted, all d."] = (DESIGNS, lambda: platform_modes(fitted, drawn(), slopes=True))
     report("solving", seconds(solving))
     report("from numbers", seconds(numbers_on))
 

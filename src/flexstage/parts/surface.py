@@ -52,6 +52,12 @@ class Hull:
             weights = area[..., None] * _SHARES
             yield (PLANE, int(plane)), ((_CORNERS @ corners).reshape(len(corners), -1, 3), weights.reshape(len(corners), -1))
 
+    sides = faces
+
+    def flat_faces(self) -> Iterator[tuple[Face, Array]]:
+        """None that are better known than by points."""
+        yield from ()
+
 
 @dataclass(frozen=True, eq=False)
 class Path:
@@ -65,37 +71,57 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Prism:
-    """The surface of prisms along the x axis of a frame, from `low` to `high` (b,), whose planes are `caps` (b,)."""
+    """The surface of prisms along the x axis of a frame, between `ends` (b,) in the planes `caps` (b,), with the moments of the section."""
 
     designs: Array
     frame: Frame
     ends: tuple[Array, Array]
     caps: tuple[Array, Array]
     paths: tuple[Path, ...]
+    section: tuple[Array, Array, Array]
 
-    def faces(self) -> Iterator[tuple[Face, Points]]:
-        """Each face, by points that are exact for cubics."""
+    def sides(self) -> Iterator[tuple[Face, Points]]:
+        """Each face along the axis, by points that are exact for cubics."""
         low, high = self.ends
         for path in self.paths:
             along = 0.5 * (low + high)[:, None] + (high - low)[:, None] * _HALVES
             places = [self._placed(along[:, [number]], path.places) for number in range(len(_HALVES))]
             weights = (path.lengths * (high - low)[:, None])[:, None] * _HALF_WEIGHTS[:, None]
             yield path.face, (np.concatenate(places, axis=1), weights.reshape(len(low), -1))
+
+    def faces(self) -> Iterator[tuple[Face, Points]]:
+        """Each face, by points that are exact for cubics."""
+        yield from self.sides()
         flat = np.concatenate([path.places for path in self.paths], axis=1)
         turn = np.concatenate([path.turn for path in self.paths], axis=1)
         share = 0.5 + _RAYS
-        weights = (turn[:, None] * (share * _RAY_WEIGHTS)[:, None]).reshape(len(low), -1)
+        weights = (turn[:, None] * (share * _RAY_WEIGHTS)[:, None]).reshape(len(flat), -1)
         for end, caps in zip(self.ends, self.caps, strict=True):
             places = self._placed(end[:, None], (flat[:, None] * share[:, None, None]).reshape(len(flat), -1, 2))
             for cap in np.unique(caps):
                 yield (PLANE, int(cap)), (places, weights * (caps == cap)[:, None])
+
+    def flat_faces(self) -> Iterator[tuple[Face, Array]]:
+        """Integrals of the functions over the planes at its ends (b, 10)."""
+        area, first, second = self.section
+        across = self.frame.rotation[..., 1:]
+        arm = (across @ first[..., None])[..., 0]
+        own = across @ second @ np.swapaxes(across, -1, -2)
+        for end, caps in zip(self.ends, self.caps, strict=True):
+            middle = self.frame.position + end[:, None] * self.frame.rotation[..., 0]
+            cross = middle[:, :, None] * arm[:, None]
+            both = own + cross + np.swapaxes(cross, -1, -2) + area[:, None, None] * middle[:, :, None] * middle[:, None]
+            found = _in_order(area, arm + area[:, None] * middle, both)
+            for cap in np.unique(caps):
+                yield (PLANE, int(cap)), found * (caps == cap)[:, None]
 
     def take(self, designs: Array) -> Prism:
         """That of some designs."""
         frame = Frame(self.frame.rotation[designs], self.frame.position[designs])
         paths = tuple(Path(path.face, path.places[designs], path.turn[designs], path.lengths[designs]) for path in self.paths)
         (low, high), (bottom, top) = self.ends, self.caps
-        return Prism(designs, frame, (low[designs], high[designs]), (bottom[designs], top[designs]), paths)
+        area, first, second = (each[designs] for each in self.section)
+        return Prism(designs, frame, (low[designs], high[designs]), (bottom[designs], top[designs]), paths, (area, first, second))
 
     def _placed(self, along: Array, across: Array) -> Array:
         turn = self.frame.rotation
@@ -136,18 +162,39 @@ def round_motions(places: Array, axis: Array, point: Array) -> Array:
     return np.concatenate([np.ones_like(height), radial, height * radial], axis=-1)
 
 
-def gains(surfaces: Sequence[Surface], rounds: Sequence[tuple[Array, Array]], count: int) -> dict[Face, Array]:
+def gains(surfaces: Sequence[Surface], rounds: Sequence[tuple[Array, Array]], count: int, *, turning: bool) -> dict[Face, Array]:
     """By face: what takes the rates of the numbers that place it to those of the moments (b, 10, 4 or 7).
 
-    `rounds` are axes and points (b, 3) of the cylinders.
+    `rounds` are axes and points (b, 3) of the cylinders. Unless planes are `turning`, those of their offsets alone (b, 10, 1).
     """
     found: dict[Face, Array] = {}
     for surface in surfaces:
-        for face, (places, weights) in surface.faces():
-            kind, number = face
-            own = [each[surface.designs] for each in rounds[number]] if kind == ROUND else []
-            motions = round_motions(places, *own) if kind == ROUND else plane_motions(places)
-            gain = (moment_functions(places) * weights[:, None]) @ motions
+        for face, gain in _face_gains(surface, rounds, turning=turning):
             known = found.setdefault(face, np.zeros((count, *gain.shape[1:])))
             known[surface.designs] += gain
     return found
+
+
+def _face_gains(surface: Surface, rounds: Sequence[tuple[Array, Array]], *, turning: bool) -> Iterator[tuple[Face, Array]]:
+    for face, (places, weights) in surface.faces() if turning else surface.sides():
+        kind, number = face
+        if kind == ROUND:
+            own = (each[surface.designs] for each in rounds[number])
+            yield face, (moment_functions(places) * weights[:, None]) @ round_motions(places, *own)
+        elif turning:
+            yield face, (moment_functions(places) * weights[:, None]) @ plane_motions(places)
+        else:
+            yield face, _moments(places, weights)[..., None]
+    if not turning:
+        yield from ((face, moments[..., None]) for face, moments in surface.flat_faces())
+
+
+def _moments(places: Array, weights: Array) -> Array:
+    """Integrals of the functions over a face (b, 10)."""
+    weighted = places * weights[..., None]
+    return _in_order(np.sum(weights, axis=1), np.sum(weighted, axis=1), np.swapaxes(places, -1, -2) @ weighted)
+
+
+def _in_order(volume: Array, first: Array, second: Array) -> Array:
+    ends = [volume[:, None], first, np.diagonal(second, axis1=-2, axis2=-1)]
+    return np.concatenate([*ends, second[:, [0, 0, 1], [1, 2, 2]]], axis=1)

@@ -109,8 +109,16 @@ class _Region:
     @cached_property
     def gains(self) -> Mapping[Face, Array]:
         """What its moments are to the motion of its faces."""
+        return self._gains(turning=True)
+
+    @cached_property
+    def parallel_gains(self) -> Mapping[Face, Array]:
+        """What they are to planes that stay parallel."""
+        return self._gains(turning=False)
+
+    def _gains(self, *, turning: bool) -> Mapping[Face, Array]:
         flat = _flat_cell(self.cell, self.moments.volume.shape)
-        return gains(self.surfaces, [(item.axis, item.point) for item in flat.rounds], self.moments.volume.size)
+        return gains(self.surfaces, [(item.axis, item.point) for item in flat.rounds], self.moments.volume.size, turning=turning)
 
     def moved(self, cell: _Cell) -> Moments:
         """Its moments with the derivatives by complex step that a cell of the same real numbers has."""
@@ -118,16 +126,16 @@ class _Region:
         numbers = [cell.normals, cell.offsets, *(each for item in cell.rounds for each in (item.axis, item.point, item.radius))]
         if not any(map(np.iscomplexobj, numbers)):
             return self.moments
-        flat, turns = _flat_cell(cell, shape), np.iscomplexobj(cell.normals)
+        flat, turns = _flat_cell(cell, shape), bool(np.any(np.imag(cell.normals)))
         total = np.zeros((self.moments.volume.size, 10))
-        for (kind, number), gain in self.gains.items():
+        for (kind, number), gain in (self.gains if turns else self.parallel_gains).items():
             if kind == PLANE:
                 rates = [np.imag(flat.offsets[:, number, None]), *([np.imag(flat.normals[:, number])] if turns else [])]
             else:
                 item = flat.rounds[number]
                 rates = [np.imag(item.radius)[:, None], np.imag(item.point), np.imag(item.axis)]
             rate = np.concatenate(rates, axis=1)
-            total += (gain[..., : rate.shape[1]] @ rate[..., None])[..., 0]
+            total += (gain @ rate[..., None])[..., 0] if rate.shape[1] > 1 else gain[..., 0] * rate
         second = total[:, _SYMMETRIC].reshape(*shape, 3, 3)
         own = self.moments
         first = total[:, 1:4].reshape(*shape, 3)
@@ -338,6 +346,12 @@ def _near(seen: Sequence[Drawn]) -> dict[tuple[int, int], Array]:
         drawn = Boxes(*(np.array([getattr(box, name) for box in boxes]) for name in ("turns", "centres", "halves")))
         gaps = separations(drawn.pick(first), drawn.pick(second))
     else:
+        sides = [(np.abs(box.turns) @ box.halves[..., None])[..., 0] for box in boxes]
+        pairs = [
+            (one, other)
+            for one, other in pairs
+            if np.any(np.all(np.abs(boxes[one].centres - boxes[other].centres) < sides[one] + sides[other], axis=-1))
+        ]
         gaps = [_gaps(boxes[one], boxes[other]) for one, other in pairs]
     meet = ((pair, gap < -_FLUSH * (reach[pair[0]] + reach[pair[1]])) for pair, gap in zip(pairs, gaps, strict=True))
     return {pair: np.asarray(where) for pair, where in meet if np.any(where)}
@@ -761,7 +775,7 @@ def _prism(cell: _Cell, within: float, alike: _Alike) -> tuple[Prism, _Values] |
         np.flatnonzero(which)[np.argmin(side, axis=1)]
         for which, side in ((downward, -np.real(cuts[:, downward])), (upward, np.real(cuts[:, upward])))
     )
-    return Prism(np.arange(len(low)), frame, (low, high), (caps[0], caps[1]), paths), section[1]
+    return Prism(np.arange(len(low)), frame, (low, high), (caps[0], caps[1]), paths, section[1]), section[1]
 
 
 def _least(values: Array) -> Array:
