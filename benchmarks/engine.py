@@ -4,7 +4,8 @@ The shipped stage has 114 freedoms. With its stacks in pieces (two beams a horiz
 modes of its own) it has 168. Every design has other thicknesses, radii, widths, positions, turns, sizes of bodies, modulus and density:
 30 numbers. "Solving" begins for LAPACK and numpy with K and M (as blocks for numpy), for Exudyn with the assembled system, and for the
 kernel with the features of a design, of which it makes K and M itself; LAPACK finds the six lowest eigenvalues only. "From numbers"
-begins with the 30 numbers, others in each round, as what is kept of the designs before must not count; "fitted" has the features as polynomials over the ranges, fitted once before.
+begins with the 30 numbers, others in each round, lest what is kept of designs counts; "fitted" has the features as polynomials over the
+ranges, fitted once before.
 Targets: solving, numpy 4 times LAPACK and 10 times Exudyn, the kernel with all derivatives 60 and 120 times; from numbers, without fitted
 features and with all derivatives, 50 times LAPACK.
 """
