@@ -48,7 +48,19 @@ class Stations:
 
     def running(self, values: Array) -> Array:
         """Integrals from the centre to each station (..., m) -> (..., m)."""
-        return (self.rule.running @ (values * self.rate)[..., None])[..., 0]  # each design by itself: no bit depends on the batch
+        return through(self.rule.running, (values * self.rate)[..., None])[..., 0]  # each design by itself: no bit depends on the batch
+
+
+def through(rule: Array, values: Array) -> Array:
+    """A real matrix (k, m) times values (..., m, n), of complex ones both parts at once.
+
+    >>> through(np.array([[1.0, 2.0]]), np.array([[1.0], [1.0j]])).tolist()
+    [[(1+2j)]]
+    """
+    if not np.iscomplexobj(values):
+        return rule @ values
+    both = np.ascontiguousarray(values).view(float)
+    return (rule @ both).view(complex)
 
 
 def stations(profile: Profile, thinnest: Number) -> Stations:

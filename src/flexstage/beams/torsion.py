@@ -22,8 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.beams.quadrature import Stations
+from flexstage.beams.quadrature import Stations, through
 from flexstage.beams.section import Section
+
+
+_TOGETHER = 16
+"""Designs solved at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +73,24 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     whole = section.torsion + stiffness * skew * skew
     load = stiffness * skew / whole
     spring = shear * stiffness * section.torsion / whole
-    inner = points.rule.running * points.rate[..., None, :]
-    to_end = (points.rule.weights - points.rule.running) * (points.rate / (young * section.warping))[..., None, :]
-    integral = to_end @ inner
-    system = np.eye(integral.shape[-1]) + integral * spring[..., None, :]
-    theta = np.linalg.solve(system, integral @ np.asarray(load)[..., None])[..., 0]
+    theta = _warping(points, points.rate / (young * section.warping), points.rate * spring, points.rate * load)
     bimoment = -points.running(load - spring * theta)
     return Twisting(1.0 / (shear * whole) + load * theta, bimoment)
+
+
+def _warping(points: Stations, *numbers: Array) -> Array:
+    """theta at the stations (..., m), from 1 / (E C_w), g and f, each times dx/du; a few designs at a time, whose matrices fit the cache."""
+    numbers = np.broadcast_arrays(*numbers)
+    flat = [each.reshape(-1, each.shape[-1]) for each in numbers]
+    if len(flat[0]) <= _TOGETHER:
+        return _theta(points, *numbers)
+    blocks = [slice(start, start + _TOGETHER) for start in range(0, len(flat[0]), _TOGETHER)]
+    found = [_theta(points, *(each[block] for each in flat)) for block in blocks]
+    return np.concatenate(found).reshape(numbers[0].shape)
+
+
+def _theta(points: Stations, softness: Array, spring: Array, load: Array) -> Array:
+    rule = points.rule
+    integral = through(rule.weights - rule.running, softness[..., None] * rule.running)
+    system = np.eye(integral.shape[-1]) + integral * spring[..., None, :]
+    return np.linalg.solve(system, integral @ load[..., None])[..., 0]
