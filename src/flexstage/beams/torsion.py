@@ -25,7 +25,6 @@ from flexstage.base.number import Array
 from flexstage.beams.quadrature import Stations, through
 from flexstage.beams.section import Section
 
-
 _TOGETHER = 16
 """Designs solved at once."""
 
@@ -79,7 +78,7 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
 
 
 def _warping(points: Stations, *numbers: Array) -> Array:
-    """theta at the stations (..., m), from 1 / (E C_w), g and f, each times dx/du; a few designs at a time, whose matrices fit the cache."""
+    """theta at the stations (..., m), of 1 / (E C_w), g and f, each times dx/du; a few designs at a time: their matrices fit the cache."""
     numbers = np.broadcast_arrays(*numbers)
     flat = [each.reshape(-1, each.shape[-1]) for each in numbers]
     if len(flat[0]) <= _TOGETHER:
