@@ -392,7 +392,7 @@ def test_a_start_without_the_right_modes_is_found_out() -> None:
     assert family_plan.start is not None
     block, force = family_plan.start.block.copy(), family_plan.start.force.copy()
     for each in (block, force):
-        each[..., 3] = each[..., 0] + each[..., 8]  # z: alone of its symmetry among the first
+        each[..., 3] = each[..., 0] + each[..., -1]  # z: alone of its symmetry among the first
     blind = replace(family_plan, start=replace(family_plan.start, block=block, force=force, rounds=1), wider=None)
     value = family_plan.family.nominal[None]
     stage = Stage(blind.scheme, numbers_of(blind.family, value))

@@ -21,8 +21,8 @@ from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
 MODES = 12
 """Platform modes that the kernel finds at most."""
 
-_MORE, _ROUNDS = 1, 2
-"""Vectors of a block beyond the wanted modes; how often these are found one by one at most."""
+_ROUNDS = 2
+"""How often modes are found one by one at most."""
 
 _NEAR = 48
 """Slots whose sums of six modes and eight designs the nearest cache holds."""
@@ -121,7 +121,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _rows(stage.numbers)
     change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
-    held = {**tables.arrays, "force": np.ascontiguousarray(start.force[..., : _columns(start)]), "numbers_": number, "changes": change}
+    held = {**tables.arrays, "force": np.ascontiguousarray(start.force), "numbers_": number, "changes": change}
     stride = count + -count % width
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
@@ -149,7 +149,7 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "edges": len(graph.edges),
         "updates": sum(map(len, graph.updates)),
         "numbers": stage.numbers.shape[0],
-        "m": _columns(start),
+        "m": start.force.shape[-1],
         "count": start.choice.count,
         "rounds": _ROUNDS,
         "steps": 1 if np.isinf(start.angle) else 2,
@@ -164,10 +164,6 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
     for name, value in (*sizes.items(), *zip(_SETTINGS, settings, strict=True)):
         setattr(task, name, value)
     return task
-
-
-def _columns(start: Start) -> int:
-    return min(start.needed + _MORE, start.force.shape[-1])
 
 
 def _tables(scheme: Scheme) -> dict[str, Array]:

@@ -166,7 +166,9 @@ def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tu
     most = counts[-3:][np.argmax(values[counts[-3:]] / values[counts[-3:] - 1])]
     both = np.stack([modes.shapes, inertia @ modes.shapes])[:, np.argsort(scheme_.coordinates)]
     first, wider = (_start(values, both[..., : int(count)], choice, needed) for count in (few[np.argmin(cost)], most))
-    wider = replace(wider, needed=int(most) - 1)
+    first = replace(first, force=first.force[..., : needed + 1])
+    inner = np.arange(needed, most - 1)
+    wider = replace(wider, needed=int(inner[np.argmax(values[inner] / values[inner - 1])]))
     return first, wider if most > first.block.shape[-1] else None
 
 

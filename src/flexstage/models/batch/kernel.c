@@ -565,7 +565,7 @@ static double left_over(const Task *t, const double *share, int count)
 
 static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 {
-    const int m = (int)t->m, count = (int)t->count, first = (int)t->single;
+    const int m = (int)t->m, count = (int)t->count, single = (int)t->single;
     double value[MOST], share[MOST], mean[MOST], frequency[MOST], least = INFINITY;
     int group[MOST], order[MOST], taken = 0, needed = 0;
     memset(out, 0, sizeof *out);
@@ -591,6 +591,8 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
         if (mean[order[i]] > -INFINITY && (i < count || group[order[i]] == group[order[count - 1]])) out->mask[order[i]] = 1;
     for (int i = 0; i < m; i++)
         if (out->mask[i]) taken++, needed = i + 1, least = mean[i] < least ? mean[i] : least;
+    int first = single;
+    while (first > needed && apart(value, m, first, t->together) != first) first--;
     if (taken != count || needed > first || apart(value, m, first, t->together) != first) return;
     const double ceiling = 4.0 * 9.86960440108935861883 * t->limit * t->limit;
     int below = first;
@@ -611,15 +613,14 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
     /* What of a single vector is of modes beyond: it has gone through (K - shift M)^-1 M, whose values there are 1 / (outer - shift) at most. */
     const double outer = below == first ? out->shift : value[first];
     double beyond[MOST];
-    for (int k = 0; k < first; k++) {
+    for (int k = 0; k < single; k++) {
         const double far = (outer - known->shift[k][lane]) * fabs(known->quotient[k][lane]) - 1.0;
-        if (!(far > 0.0)) return;
-        beyond[k] = known->sine[k][lane] / far;
+        beyond[k] = k < first && far > known->sine[k][lane] ? known->sine[k][lane] / far : 1.0;
     }
     for (int i = 0; i < first; i++)
         if (out->mask[i]) {
             double angle = 0.0;
-            for (int k = 0; k < first; k++) angle += known->part[i * first + k][lane] * beyond[k];
+            for (int k = 0; k < single; k++) angle += known->part[i * single + k][lane] * beyond[k];
             if (!(angle * angle * outer / value[i] <= t->value) || !(angle <= t->angle)) return;
         }
     out->done = value[0] > BESIDE * value[first - 1];

@@ -44,8 +44,8 @@ class Start:
     """The block to begin with (bodies, 6, m), and how it goes on: `degree` of each polynomial, `rounds` at most, bounds to reach.
 
     `value` bounds the relative error of eigenvalues, `angle` that of vectors. The modes outside the block are expected to begin at `edge`
-    times its highest eigenvalue. Of the first `needed` modes are the platform's. The kernel begins with the inertial forces `force` of the
-    block, and with K - `shift` M.
+    times its highest eigenvalue. Of the first `needed` modes are the platform's. The kernel begins with the inertial forces `force` of
+    these and more, and with K - `shift` M; it finds the first `needed` one by one.
     """
 
     block: Array
