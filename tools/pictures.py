@@ -94,19 +94,18 @@ def stage() -> Any:
     return figure
 
 
-def _side(axes: Any, drawn: Scene, side: Side) -> None:
+def _side(axes: Any, drawn: Scene, side: Side, gap: float = 12.0) -> None:
     seen = view(side)
     facets = order_facets(drawn, seen)
-    _framed(axes, facets, side)
+    _framed(axes, facets, side, gap)
     draw(axes, facets, seen)
     if side in (Side.ISOMETRIC, Side.TOP):
         write(axes, drawn.labels, seen)
     triad(axes, seen)
 
 
-def _framed(axes: Any, facets: list[Facet], side: Side) -> None:
+def _framed(axes: Any, facets: list[Facet], side: Side, gap: float = 12.0) -> None:
     flat = np.concatenate([view(side).project(facet.points) for facet in facets])
-    gap = 12.0
     axes.set_xlim(flat[:, 0].min() - gap, flat[:, 0].max() + gap)
     axes.set_ylim(flat[:, 1].min() - gap, flat[:, 1].max() + gap)
     axes.set_aspect("equal")
@@ -121,10 +120,12 @@ def guide() -> Any:
 def _alone(drawn: Scene, width: float) -> Any:
     """A stage from above its corner."""
     flat = np.concatenate([view(Side.ISOMETRIC).project(facet.points) for facet in drawn.facets])
-    across, up = np.max(flat, axis=0) - np.min(flat, axis=0)
+    extent = np.max(flat, axis=0) - np.min(flat, axis=0)
+    gap = 0.05 * float(np.max(extent))
+    across, up = (extent + 2.0 * gap).tolist()
     with style_context():
         figure = canvas(width, width * min(1.1, up / across))
-        _side(figure.add_axes((0.0, 0.0, 1.0, 1.0)), drawn, Side.ISOMETRIC)
+        _side(figure.add_axes((0.0, 0.0, 1.0, 1.0)), drawn, Side.ISOMETRIC, gap)
     return figure
 
 
