@@ -45,7 +45,7 @@ from flexstage.solid.fea.remote import Limits
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.plan import verification_plan
 from flexstage.solid.read import Solids, solids
-from flexstage.solid.resolution import Converged, Resolution
+from flexstage.solid.resolution import Converged, Resolution, first_reductions
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -290,12 +290,15 @@ def _size(memory: str | None) -> float | None:
     return size
 
 
-def _solids(asked: _Request, shown: ProgressBar) -> Solids:
+def _solids(asked: _Request, shown: ProgressBar, *, static: bool = False) -> Solids:
+    """Reduces with its progress shown, the two orders that are worked in any case in one go; `static`: without modes of components."""
     require_installed()
-    reduce = solids(asked.ways(shown), _notice)
+    lower, upper = together = [replace(way, static=static) for way in first_reductions(asked.resolution)]
+    reduce = solids(asked.ways(shown), _notice, together)
 
     def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        shown.about = f"order {reduction.fineness.order}, "
+        order = reduction.fineness.order
+        shown.about = f"orders {order} and {upper.fineness.order}, " if reduction == lower else f"order {order}, "
         return reduce(mechanism, reduction)
 
     return reduce_with_progress
@@ -324,7 +327,7 @@ def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
 
 
 def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    found = verification.units_solid(mechanism, asked.resolution, _solids(asked, shown))
+    found = verification.units_solid(mechanism, asked.resolution, _solids(asked, shown, static=True))
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
