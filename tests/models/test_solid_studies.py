@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +16,10 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
+from flexstage.solid.fea.cache import Cache, holds
 from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.parts import Parts, content_in_stage, reduce_jobs
+from flexstage.solid.fea.parts import Parts, Ways, content_in_stage, reduce_jobs
 from flexstage.solid.fea.superelement import Skin, Superelement
 from flexstage.solid.read import read_solid, remember, solids
 from flexstage.solid.resolution import Converged, Resolution, converge
@@ -205,6 +207,17 @@ def test_what_is_at_hand_is_put_together_from_two_orders() -> None:
     assert asked == [low, high]
     again(stage, replace(high, raised=frozenset({content_in_stage(lower[0][0])})))
     assert len(asked) == 3
+
+
+def test_orders_together_are_worked_where_the_first_is_asked_for(tmp_path: Path) -> None:
+    cache, stage = Cache(tmp_path), propped(6e-3, 7e-3)
+    low, high = (replace(COARSE, fineness=replace(COARSE.fineness, order=order), modes=0) for order in (1, 2))
+    keys = [job.key for job in reduce_jobs(components(stage), high)]
+    read = solids(Ways(cache), together=(low, high))
+    read(stage, replace(low, modes=1))
+    assert not any(holds(cache, key) for key in keys)
+    read(stage, low)
+    assert all(holds(cache, key) for key in keys)
 
 
 def test_jobs_of_raised_components_are_those_of_the_next_order() -> None:

@@ -30,6 +30,8 @@ from typing import IO, Any, TypeAlias, cast
 from flexstage.base.finding import DesignError
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+_LARGE_PAGES = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1"}
+"""Large matrices in pages of megabytes, where the C library is GNU's: of small ones there are millions to hand out."""
 _MAIN = "from flexstage.base.jobs import main; main()"
 _LENGTH = struct.Struct("<Q")
 _LIVES = 3
@@ -59,14 +61,14 @@ def cores() -> int:
 
 
 def environment() -> dict[str, str]:
-    """The caller's environment for a process of one thread that finds this package where the caller found it.
+    """The caller's environment for a process of one thread that finds this package where the caller found it, with large pages of memory.
 
     >>> environment()["OMP_NUM_THREADS"]
     '1'
     """
     root = str(Path(__file__).resolve().parents[2])
     paths = [root, *map(os.path.abspath, filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep)))]
-    return {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
+    return {**_LARGE_PAGES, **os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
 
 
 class Worker:
