@@ -23,6 +23,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import argparse
 import itertools
+import re
 import resource
 import subprocess
 import sys
@@ -238,17 +239,22 @@ def measure(what: str, count: int) -> None:
 
 
 def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None:
-    """Seconds and megabytes over size, both logarithmic."""
-    from matplotlib.figure import Figure
+    """Seconds and megabytes over size, both logarithmic, as SVG."""
+    from flexstage.show.figures.export import to_svg
+    from flexstage.show.figures.style import canvas, style_context
 
-    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
-    for place, (axis, title) in enumerate(zip(figure.subplots(1, 2), ("processor time [s]", "memory [MB]"), strict=True), start=1):
-        for what, rows in curves.items():
-            axis.loglog([row[0] for row in rows], [row[place] for row in rows], marker="o", label=what)
-        axis.set(xlabel="how many", title=title)
-        axis.grid(visible=True, which="major", alpha=0.3)
-    figure.legend(*axis.get_legend_handles_labels(), loc="outside right upper")
-    figure.savefig(file, metadata={"Date": None} if file.endswith("svg") else None)
+    with style_context():
+        figure = canvas(9.0, 3.6)
+        for place, (axis, title) in enumerate(zip(figure.subplots(1, 2), ("processor time [s]", "memory [MB]"), strict=True), start=1):
+            for what, rows in curves.items():
+                axis.loglog([row[0] for row in rows], [row[place] for row in rows], marker="o", markersize=3, label=what)
+            axis.set(xlabel="how many", title=title)
+            for each in (axis.xaxis, axis.yaxis):
+                each.set_major_formatter("{x:g}")
+                each.set_minor_formatter("")
+        figure.legend(*axis.get_legend_handles_labels(), loc="outside right upper")
+    svg = to_svg(figure, "growth", "processor time and memory over the number of bodies, designs, samples, hinges and workers")
+    Path(file).write_text(re.sub(r"var\([^,]*, *([^)]*)\)", r"\1", svg).replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
 
 
 def read_printed(lines: Iterable[str]) -> dict[str, list[tuple[float, float, float]]]:
