@@ -6,7 +6,7 @@ A check returns findings (ask); `require` raises them together as one `DesignErr
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 
@@ -64,6 +64,15 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
         groups.setdefault((place, finding.what, finding.advice), []).append(name)
     wheres = [f"{place}: {', '.join(names)}" if place else ", ".join(names) for (place, _, _), names in groups.items()]
     return tuple(Finding(where, what, advice) for where, (_, what, advice) in zip(wheres, groups, strict=True))
+
+
+def name_first(names: Sequence[str], most: int = 8) -> str:
+    """The first of some names, and how many more there are.
+
+    >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
+    ('b2', 'b2, b3 and 2 more')
+    """
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def suggest_nearest(name: str, names: Iterable[str]) -> str:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, name_first
 from flexstage.mechanism.expand import copy_names, joined, placed_bodies
 from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import imposes_stroke
+
+_Neighbours: TypeAlias = Mapping[str, set[str]]
+"""By body, the bodies that links join it to."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +33,9 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
     platform: no chain of links leads from it to the ground. Join it by a link, or remove it.
     """
     bodies, edges = _graph(mechanism)
-    reached = _reach(edges)
-    for body in bodies:
-        if body not in reached:
-            yield Finding(body, "no chain of links leads from it to the ground", "Join it by a link, or remove it")
+    neighbours = _neighbours(edges)
+    reached = _reach(neighbours, GROUND)
+    yield from _loose_findings([body for body in bodies if body not in reached], neighbours)
     used = _on_a_path(edges) if PLATFORM in reached else {edge.name for edge in edges}
     for edge in edges:
         if imposes_stroke(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
@@ -58,14 +61,30 @@ def _edges(name: str, part: str, joins: tuple[str, ...]) -> Iterator[_Edge]:
     yield from (_Edge(name if len(others) == 1 else f"{name}.{other}", (first, other), part) for other in others)
 
 
-def _reach(edges: Iterable[_Edge]) -> set[str]:
-    """Bodies that hang together with the ground."""
+def _loose_findings(loose: Iterable[str], neighbours: _Neighbours) -> Iterator[Finding]:
+    """One finding for bodies that hang together, however many: one link may be what is missing."""
+    rest = dict.fromkeys(loose)
+    while rest:
+        first = next(iter(rest))
+        group = _reach(neighbours, first)
+        others = [body for body in rest if body in group and body != first]
+        also, them = (f", {name_first(others)}", "one of them by a link, or remove them") if others else ("", "it by a link, or remove it")
+        yield Finding(first, f"no chain of links leads from it{also} to the ground", f"Join {them}")
+        rest = {body: None for body in rest if body not in group}
+
+
+def _neighbours(edges: Iterable[_Edge]) -> _Neighbours:
     neighbours: dict[str, set[str]] = {}
     for edge in edges:
         first, second = edge.joins
         neighbours.setdefault(first, set()).add(second)
         neighbours.setdefault(second, set()).add(first)
-    reached, front = {GROUND}, [GROUND]
+    return neighbours
+
+
+def _reach(neighbours: _Neighbours, start: str) -> set[str]:
+    """The bodies that hang together with one."""
+    reached, front = {start}, [start]
     while front:
         new = neighbours.get(front.pop(), set()) - reached
         reached |= new

@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import Modes
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, name_first
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -45,7 +45,6 @@ FORMAT = 1
 _Found = TypeVar("_Found")
 _STEPS = 12
 _MODES = 12
-_NAMED = 8
 _LOADED = ", small motions about the loaded stage"
 
 
@@ -172,7 +171,7 @@ def _simplifications(assembly: Assembly) -> Iterator[str]:
     found = {name: simplification(placed.solid) for name, placed in solids.items()}
     for said in dict.fromkeys(filter(None, found.values())):
         names = [name for name, each in found.items() if each == said]
-        yield f"drawn {said}: {', '.join(names[:_NAMED])}{f' and {len(names) - _NAMED} more' if len(names) > _NAMED else ''}"
+        yield f"drawn {said}: {name_first(names)}"
 
 
 def _size(seen: Scene, low: Array, high: Array) -> float:
