@@ -111,7 +111,10 @@ def strid_subspace(data: Data) -> tuple[Modes, ...]:
 
     inputs, outputs = decimated(data)
     found = strid.CombinedDeterministicStochasticSID(inputs.T, outputs.T, data.rate / 2.0)
-    return (_of_strid(strid.Mode.find_modes_from_ss(*found.perform(24, 20), data.rate / 2.0)),)
+    system = found.perform(24, 20)
+    for method in [each for kind in type(found).__mro__ for each in vars(kind).values() if hasattr(each, "cache_clear")]:
+        method.cache_clear()  # they keep what they return for good: gigabytes after some twenty records
+    return (_of_strid(strid.Mode.find_modes_from_ss(*system, data.rate / 2.0)),)
 
 
 def strid_lscf(data: Data) -> tuple[Modes, ...]:
