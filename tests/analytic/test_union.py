@@ -290,8 +290,9 @@ _PLACES = np.array([0.0, 0.004, 0.009, 0.014, 0.02, 0.024, 0.03, 0.0041, 0.0201,
         lambda x: [_tilted(x)],
         lambda x: [Cylinder("steel", 0.02, 0.01, (x, 0.0, 0.0))],
         lambda x: [Cylinder("steel", 0.02, 0.01, (0.006, x, 0.0)), Cylinder("steel", 0.015, 0.03, (x, 0.002, 0.003), bore=0.004)],
+        lambda x: [Extrusion("steel", ((-0.005, -0.005), (0.005, -0.005), (0.005, 0.005), (0.0, 0.008 - 0.4 * x), (-0.005, 0.005)), 0.02)],
     ],
-    ids=["tilted block", "disc", "two discs, one of them bored"],
+    ids=["tilted block", "disc", "two discs, one of them bored", "polygon that is notched or roofed"],
 )
 def test_a_batch_weighs_as_its_designs_do(drawn: Callable[[Any], list[Solid]]) -> None:
     base = block((-0.015, -0.005, -0.005), (0.015, 0.005, 0.005))

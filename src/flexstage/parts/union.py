@@ -101,7 +101,7 @@ _SYMMETRIC: Array = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])
 class _Region:
     """A convex region with its sign, its moments, and its surfaces as far as they are known."""
 
-    sign: float
+    sign: Number
     cell: _Cell
     moments: Moments
     surfaces: tuple[Surface, ...] = ()
@@ -181,7 +181,7 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     if any(isinstance(drawn.solid, Sphere) for drawn in seen):
         yield from ((seen[number].density, _weighed(weight, region.moments)) for number, weight, region in _regions(seen))
         return
-    cells: dict[int, list[tuple[float, _Cell]]] = {}
+    cells: dict[int, list[tuple[Number, _Cell]]] = {}
     for number, weight, region in _known(_Key(tuple(_real(drawn) for drawn in seen))):
         for member, _ in region.cell.made:
             if member not in cells:
@@ -190,8 +190,9 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         yield seen[number].density, _weighed(weight, region.moved(cell))
 
 
-def _weighed(weight: float, moments: Moments) -> Moments:
-    return Moments(weight * moments.volume, weight * moments.first, weight * moments.second)
+def _weighed(weight: Number, moments: Moments) -> Moments:
+    weight = np.asarray(weight)
+    return Moments(weight * moments.volume, weight[..., None] * moments.first, weight[..., None, None] * moments.second)
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +213,7 @@ class _Key:
         return isinstance(other, _Key) and self.content == other.content
 
 
-_Weighed: TypeAlias = tuple[int, float, _Region]
+_Weighed: TypeAlias = tuple[int, Number, _Region]
 """A region that would weigh more than once: a solid whose density it has, and how often it is to be added."""
 
 
@@ -269,13 +270,13 @@ def _regions(seen: Sequence[Drawn]) -> Iterator[_Weighed]:
     yield from _alternating(seen, cells, groups, scale)
 
 
-def _numbered(number: int, cells: list[tuple[float, _Cell]]) -> list[tuple[float, _Cell]]:
+def _numbered(number: int, cells: list[tuple[Number, _Cell]]) -> list[tuple[Number, _Cell]]:
     return [(sign, replace(cell, made=((number, place),))) for place, (sign, cell) in enumerate(cells)]
 
 
 def _beside(
-    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], pair: tuple[int, int]
-) -> tuple[list[tuple[float, _Cell]], list[tuple[float, _Cell]]]:
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], pair: tuple[int, int]
+) -> tuple[list[tuple[Number, _Cell]], list[tuple[Number, _Cell]]]:
     """The regions of two solids; a ball that keeps clear of the sides of an extrusion sees the planes of its height alone."""
     for ball, other in (pair, pair[::-1]):
         solid = seen[other].solid
@@ -301,7 +302,7 @@ def _is_clear(centre: Array, diameter: Array, corners: Array) -> bool:
 
 
 def _alternating(
-    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], groups: list[_Group], scale: float
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], groups: list[_Group], scale: float
 ) -> Iterator[_Weighed]:
     """Inclusion and exclusion: pairs count -1, triples +1, and so on."""
     pairs = {group for group, _ in groups}
@@ -378,7 +379,7 @@ def _spread(centres: Array) -> float:
     return 0.0 if centres.ndim == 1 else float(np.max(np.linalg.norm(centres - _first(centres, 1), axis=-1)))
 
 
-def _cells(drawn: Drawn) -> list[tuple[float, _Cell]]:
+def _cells(drawn: Drawn) -> list[tuple[Number, _Cell]]:
     """A solid as a sum of convex regions: its outer form, less its hole."""
     solid, frame = drawn.solid, drawn.solid.frame.within(drawn.frame)
     if isinstance(solid, Cylinder):
@@ -392,8 +393,8 @@ def _cells(drawn: Drawn) -> list[tuple[float, _Cell]]:
         return [(1.0, _Cell(np.zeros((0, 3)), np.zeros(0), balls=(_Ball(frame.position, np.asarray(0.5 * solid.diameter)),)))]
     if isinstance(solid, Extrusion):
         corners = solid.corners
-        filled = triangles(_first(corners, 2))
-        return [(1.0, _wedge(frame, corners[..., trio, :], np.asarray(solid.height))) for trio in filled]
+        trios = (corners[..., trio, :] for trio in triangles(_first(corners, 2)))
+        return [(sign, _wedge(frame, sign, trio, np.asarray(solid.height))) for trio in trios for sign in [_turn(trio)]]
     outer = _box(frame, solid.sides)
     if not isinstance(solid, Block) or solid.hole is None:
         return [(1.0, outer)]
@@ -409,10 +410,18 @@ def _box(frame: Frame, size: Array) -> _Cell:
     return _Cell(np.concatenate([normals, -normals], axis=-2), offsets)
 
 
-def _wedge(frame: Frame, trio: Array, height: Array) -> _Cell:
-    """The prism over a triangle (..., 3, 2) in x and y of a frame, half of its height on either side."""
+def _turn(trio: Array) -> Number:
+    """How triangles (..., 3, 2) count: those of the first design fill the outlines of all, some of which turn them round."""
+    first, second = (np.real(trio[..., corner, :] - trio[..., 0, :]) for corner in (1, 2))
+    backward = first[..., 0] * second[..., 1] < first[..., 1] * second[..., 0]
+    return np.where(backward, -1.0, 1.0) if np.any(backward) else 1.0
+
+
+def _wedge(frame: Frame, sign: Number, trio: Array, height: Array) -> _Cell:
+    """The prism over a triangle (..., 3, 2) in x and y of a frame, half of its height on either side; `sign` as its corners turn."""
     run = np.roll(trio, -1, axis=-2) - trio
     outward = np.stack([run[..., 1], -run[..., 0]], axis=-1) / np.sqrt(np.sum(run * run, axis=-1, keepdims=True))
+    outward = outward * np.asarray(sign)[..., None, None]
     turn = np.swapaxes(frame.rotation, -1, -2)
     sides = outward @ turn[..., :2, :]
     caps = turn[..., [2, 2], :] * np.array([[1.0], [-1.0]])
@@ -446,7 +455,7 @@ def polygon_moments(corners: Array, height: Array) -> Moments:
     return Moments(np.asarray(area * height), first, second)
 
 
-def _product(first: Sequence[tuple[float, _Cell]], second: Sequence[tuple[float, _Cell]], where: Array, scale: float) -> list[_Region]:
+def _product(first: Sequence[tuple[Number, _Cell]], second: Sequence[tuple[Number, _Cell]], where: Array, scale: float) -> list[_Region]:
     """The common regions of two sums in the designs `where` they may meet, without those that are empty in every design."""
     found: list[_Region] = []
     for (sign, one), (other_sign, other) in ((a, b) for a in first for b in second):
@@ -463,7 +472,7 @@ def _volume_of(regions: Sequence[_Region]) -> float:
 
 
 def _removed(
-    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[float, _Cell]]], pair: tuple[int, int], found: Sequence[_Region], scale: float
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], pair: tuple[int, int], found: Sequence[_Region], scale: float
 ) -> Iterator[list[_Region]]:
     """What holes in one of two solids take away of the regions that both have in common."""
     materials = {seen[number].solid.material for number in pair}
