@@ -24,12 +24,14 @@ from flexstage.models import ideal as ideals
 from flexstage.models import lumped as lumpeds
 from flexstage.models.linear import eigen
 from flexstage.models.linear.block_elimination import eliminate_blocks
+from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular
 from flexstage.parts.rod import Rod
-from flexstage.spatial.frame import Frame, axes, twist_transform
+from flexstage.spatial.frame import COMPONENTS, Frame, axes, twist_transform
 from tests.conftest import FULL
 from tests.laws.shared import ideal, lumped
 from tests.laws.strategies import mechanisms
@@ -224,6 +226,20 @@ def test_a_long_chain_grows_about_its_foot_without_turning():
     np.testing.assert_allclose(grown[:3], STEEL.expansion * (places[0] - foot), rtol=1e-12)
     assert np.max(np.abs(grown[3:])) <= 1e-12 * STEEL.expansion
     assert np.max(np.abs(drifted.forces.values[:, 0])) <= 1e-12 * STEEL.expansion * STEEL.young * 0.004**2
+
+
+def test_strokes_in_a_long_chain_push_what_is_beyond_by_as_much():
+    """Nothing strains: the platform follows a stroke along its axis, and only that."""
+    count = 400
+    stage = stage_of([*range(1, count), -1], helix(count)[::-1])
+    driven = tuple(f"r{number}" for number in (3, count // 2, count - 2))
+    links = {name: replace(link, part="stack") if name in driven else link for name, link in stage.links.items()}
+    stack = Piezo(stroke=20e-6, stiffness=5e7, length=STEP, diameter=0.01)
+    stage = replace(stage, parts={**stage.parts, "stack": stack}, links=links)
+    moved = static_gain(lumpeds.lumped(stage), tuple(f"platform.{name}" for name in COMPONENTS), driven).values
+    along = np.array([links[name].along for name in driven]).T
+    assert np.max(np.abs(moved[:3] - along)) <= 1e-12
+    assert np.max(np.abs(moved[3:])) <= 1e-12
 
 
 def test_modes_of_a_large_stage_are_its_lowest_and_say_so():

@@ -94,6 +94,16 @@ def test_a_symmetric_change_keeps_clusters_and_a_single_one_splits_them() -> Non
     assert abs(pairs[1][1, 0] - pairs[1][1, 1]) > 1e-3 * abs(pairs[1][1, 1])
 
 
+def test_a_cluster_at_the_end_is_whole() -> None:
+    """Half a pair has no derivative: its shape is any of the plane that both span."""
+    names = ("B2/front.thickness",)
+    whole = fs.sensitivities(double_triangle(), names, modes=6)
+    pair = next(group for group in whole.clusters if len(group) == 2)
+    cut = fs.sensitivities(double_triangle(), names, modes=pair[0] + 1)
+    assert cut.clusters[-1] == pair
+    np.testing.assert_allclose(cut.frequency, whole.frequency[:, : pair[-1] + 1])
+
+
 def test_copies_add_up_to_the_shared_part() -> None:
     stage = double_triangle(SM_REF_A)
     copies = fs.sensitivities(stage, tuple(f"B{number}/front.thickness" for number in (1, 2, 3)), modes=MODES)

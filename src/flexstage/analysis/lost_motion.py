@@ -16,7 +16,7 @@ from flexstage.base.record import INNER, VIEW
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement, part_deformation, static_gain
+from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.freedom import ALL
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -180,7 +180,7 @@ def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains:
 def _energy(kinematics: Kinematics, model: LinearModel) -> Matrix:
     """Strain energy in each part when one actuator strokes by a unit and nothing else acts [J/m^2]."""
     columns = model.input_index(kinematics.actuators)
-    motion = displacement(model, model.input_matrix[..., columns])
+    motion = input_motion(model, columns)
     selector = np.zeros((len(model.inputs), len(columns)))
     selector[columns, range(len(columns))] = 1.0
     strains = part_deformation(model, motion, selector)

@@ -100,7 +100,8 @@ def sensitivities(
 ) -> Sensitivities:
     """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
 
-    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth. Where the strokes do not
+    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth, and the last of them are
+    listed, too. Where the strokes do not
     determine the platform there are no gains: `missing` says so. Raises `DesignError` for unknown addresses and for those of anything
     but a single number that the description states.
 
@@ -112,8 +113,9 @@ def sensitivities(
     names = addresses(mechanism) if parameters is None else parameters
     require(not_numbers(mechanism, names))
     solved = eigen(standing(mechanism))
-    solved = Eigen(solved.values[:modes], solved.shapes[:, :modes])
-    groups = clusters(solved.values, cluster)
+    groups = [group for group in clusters(solved.values, cluster) if group[0] < modes]
+    count = groups[-1][-1] + 1 if groups else 0
+    solved = Eigen(solved.values[:count], solved.shapes[:, :count])
     attempt = Attempts()
     actuators = attempt.of("lost_motion", lambda: ideal(mechanism).mapping.rows) or ()
     chunks = list(steppable(mechanism, names))

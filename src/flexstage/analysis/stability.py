@@ -31,7 +31,7 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.models.linear.large import Quadratic, Solver, least_ratios
 from flexstage.models.linear.model import Contribution, LinearModel
-from flexstage.models.linear.static import displacement
+from flexstage.models.linear.static import displacement, input_motion
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
@@ -404,7 +404,7 @@ def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[
     """Wrenches of the links per metre of a stroke."""
     model = pieces.model
     column = model.input_index((actuator,))
-    motion = displacement(model, model.input_matrix[..., column])
+    motion = input_motion(model, column)
     return _whole(mechanism, _seen_forces(pieces, motion, column), {}), {}
 
 

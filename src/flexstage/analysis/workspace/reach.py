@@ -24,7 +24,7 @@ from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement, static_gain
+from flexstage.models.linear.static import displacement, input_motion, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, Frame, twist_transform
@@ -174,7 +174,7 @@ def _over(limit: Array, slope: Array) -> Array:
 def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
     """Half the magnetic travel of every coil against how far the motion opens it."""
     columns = model.input_index(inputs)
-    moved = displacement(model, model.input_matrix[..., columns] @ per_motion)
+    moved = input_motion(model, columns, per_motion)
     for name, link in assembly.thrusts.items():
         part = assembly.actuator(name)
         if isinstance(part, ThrustActuator) and part.travel is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.models.linear.model import LinearModel, label
@@ -21,6 +23,30 @@ def displacement(model: LinearModel, load: Array) -> Array:
     return model.solve(load)
 
 
+def input_motion(model: LinearModel, columns: list[int], amounts: Array | None = None) -> Array:
+    """Coordinates q = K^-1 B u (..., n, k) of the inputs in some columns, of one unit each or of `amounts` (..., columns, k).
+
+    What strokes impose on a large stage enters as strains: a long chain would lose by rounding that the forces of a stroke fit together.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> model = mapped(double_triangle())
+    >>> round(input_motion(model, model.input_index(("B4",)))[2].item(), 9)
+    1.0
+    """
+
+    def of_inputs(values: Array) -> Array:
+        return values[..., columns] if amounts is None else values[..., columns] @ amounts
+
+    if not model.is_sparse:
+        return displacement(model, of_inputs(model.input_matrix))
+    force = of_inputs(model.force)
+    strains = {name: np.zeros((item.law.shape[-1], force.shape[-1])) for name, item in model.stiffness.items()}
+    imposed = {name: -of_inputs(values) for name, values in model.imposed.items()}
+    moved = model.follow(strains | imposed) if any(map(np.any, imposed.values())) else np.zeros_like(force)
+    return moved + displacement(model, force) if np.any(force) else moved
+
+
 def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str, ...]) -> Matrix:
     """Static response C K^-1 B + D of named outputs to named inputs.
 
@@ -33,7 +59,7 @@ def static_gain(model: LinearModel, outputs: tuple[str, ...], inputs: tuple[str,
     require_known(model, outputs)
     require_still(model, outputs)
     require_unmoved(model, inputs)
-    motion = displacement(model, model.input_matrix[..., columns])
+    motion = input_motion(model, columns)
     values = model.seen(rows, motion) + model.feedthrough[..., rows, :][..., columns]
     return label(model, values, outputs, inputs)
 

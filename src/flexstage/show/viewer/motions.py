@@ -19,7 +19,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement, part_deformation
+from flexstage.models.linear.static import displacement, input_motion, part_deformation
 from flexstage.show.display import format_value, number, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
@@ -229,7 +229,7 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
     """
     names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)
-    moved = first_design(displacement(model, model.input_matrix[..., columns]), 2)
+    moved = first_design(input_motion(model, columns), 2)
     units = [model.inputs[column].unit for column in columns]
     amounts = np.array([_UNIT_STROKES.get(unit, 1.0) for unit in units])
     driven = np.zeros((len(model.inputs), len(names)))
