@@ -195,6 +195,28 @@ def test_only_facets_that_face_the_viewer_are_drawn(side: Side) -> None:
     assert all(len(facet.points) == 2 or facet.normal @ seen.axes[2] > 0.0 for facet in facets)
 
 
+@pytest.mark.parametrize("side", [Side.TOP, Side.ISOMETRIC])
+def test_stages_of_very_many_parts_show_the_outline_of_each(side: Side, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It covers all facets of its solid in the picture, its corners are corners of those, and the farthest come first."""
+    seen, drawn = view(side), scene(double_triangle())
+    assert not drawn.is_large
+    monkeypatch.setattr("flexstage.show.scene.stage._ORDERED", 100)
+    areas = [facet for facet in order_facets(drawn, seen) if len(facet.points) > 2]
+    solids: dict[str, list[Array]] = {}
+    for facet in drawn.facets:
+        if len(facet.points) > 2:
+            solids.setdefault(facet.paint.name, []).append(facet.points)
+    assert sorted(facet.paint.name for facet in areas) == sorted(solids)
+    for facet in areas:
+        points, corners = (seen.project(each) for each in (np.concatenate(solids[facet.paint.name]), facet.points))
+        sides = np.roll(corners, -1, axis=0) - corners
+        beside = sides[:, :1] * (points[None, :, 1] - corners[:, 1:]) - sides[:, 1:] * (points[None, :, 0] - corners[:, :1])
+        assert np.all(beside >= -1e-5 * np.sqrt(np.sum(sides**2, axis=1))[:, None])
+        assert all(np.min(np.sum((points - corner) ** 2, axis=1)) < 1e-20 for corner in corners)
+    depths = [facet.points.mean(axis=0) @ seen.axes[2] for facet in areas if facet.paint.kind is not Kind.PLATFORM]
+    assert depths == sorted(depths)
+
+
 def test_the_plan_carries_its_dimensions() -> None:
     mechanism = double_triangle()
     texts = {text.get_text() for axes in plan_figure(mechanism, scene(mechanism)).axes for text in axes.texts}

@@ -18,6 +18,7 @@ from flexstage.show.display import number
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context
 from flexstage.show.scene.facet import Kind
 from flexstage.show.scene.primitives import first_value
+from flexstage.show.scene.silhouette import hull
 from flexstage.show.scene.stage import Scene
 from flexstage.show.scene.view import Side, view, write
 from flexstage.spatial.frame import Frame
@@ -113,31 +114,6 @@ def _plans(scene: Scene, kind: Kind) -> Iterator[Array]:
         if facet.paint.kind is kind and len(facet.points) > 2:
             by_name.setdefault(facet.paint.name, []).append(1e3 * facet.points[:, :2])
     return (np.concatenate(points) for points in by_name.values())
-
-
-def hull(points: Array) -> Array:
-    """Convex outline (k, 2) of points (n, 2), counter-clockwise (Andrew's monotone chain).
-
-    >>> hull(np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]])).tolist()
-    [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
-    """
-    ordered = sorted({(round(float(x), 6), round(float(y), 6)) for x, y in points})
-    if len(ordered) < 3:
-        return np.array(ordered)
-    return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1])
-
-
-def _chain(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    chain: list[tuple[float, float]] = []
-    for x, y in points:
-        while len(chain) > 1 and _cross_product(chain[-2], chain[-1], (x, y)) <= 0.0:
-            chain.pop()
-        chain.append((x, y))
-    return chain
-
-
-def _cross_product(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> float:
-    return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 
 def _platform(axes: Any, mechanism: Mechanism, scene: Scene) -> None:

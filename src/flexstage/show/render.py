@@ -13,7 +13,7 @@ from rich.cells import cell_len
 from flexstage.base.lazy import Late
 from flexstage.base.text import printable
 from flexstage.show.display import to_typography
-from flexstage.show.table import Column, Mark, Table
+from flexstage.show.table import PAGE_ROWS, Column, Mark, Table, first_rows
 
 if TYPE_CHECKING:
     import jinja2
@@ -73,11 +73,21 @@ def _is_wordy(table: Table) -> bool:
     return any(len(cell.text) > _WORDY for row in table.rows for cell in row[1:])
 
 
+def _beginning(table: Table) -> Table:
+    return first_rows(table, PAGE_ROWS)
+
+
 def _kind(block: object) -> str:
     return type(block).__name__.lower()
 
 
-_FILTERS: dict[str, Callable[..., Any]] = {"anchor": _anchor, "kind": _kind, "wordy": _is_wordy, "named": _has_long_names}
+_FILTERS: dict[str, Callable[..., Any]] = {
+    "anchor": _anchor,
+    "kind": _kind,
+    "wordy": _is_wordy,
+    "named": _has_long_names,
+    "beginning": _beginning,
+}
 
 _GAP = 3
 _NARROWEST = 40

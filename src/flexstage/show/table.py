@@ -66,6 +66,8 @@ class Column:
 
 
 _MANY = 60
+PAGE_ROWS = 300
+"""Rows of a table that a page shows: the freedoms of a thousand bodies were a megabyte that nobody reads."""
 
 Content: TypeAlias = str | Cell
 
@@ -174,14 +176,28 @@ def result_tables(result: Any) -> Iterator[Table]:
         if isinstance(part, Matrix):
             yield matrix_table(title, part)
         elif part.names:
-            yield _first_rows(sheet_table(title, part))
+            yield first_rows(sheet_table(title, part), _MANY)
         else:
             yield _vertical_table(title, part)
 
 
-def _first_rows(table: Table) -> Table:
-    rest = len(table.rows) - _MANY
-    return table if rest <= 0 else replace(table, rows=table.rows[:_MANY], notes=(*table.notes, f"{rest} further rows."))
+def first_rows(table: Table, most: int) -> Table:
+    """A table without the rows beyond so many, which a note counts.
+
+    >>> first_rows(make_table("", ["body"], [("b1",), ("b2",), ("b3",)]), 1).notes
+    ('2 further rows.',)
+    """
+    rest = len(table.rows) - most
+    return table if rest <= 0 else replace(table, rows=table.rows[:most], notes=(*table.notes, further(rest)))
+
+
+def further(rest: int) -> str:
+    """How many rows are not shown, in words.
+
+    >>> further(12)
+    '12 further rows.'
+    """
+    return f"{rest} further rows."
 
 
 def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:

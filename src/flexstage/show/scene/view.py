@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.hidden import are_visible
 from flexstage.show.scene.order import sort_by_depth
+from flexstage.show.scene.silhouette import silhouettes
 from flexstage.show.scene.stage import Label, Scene
 
 if TYPE_CHECKING:
@@ -78,13 +79,15 @@ def view(side: Side) -> View:
 
 @lru_cache(maxsize=len(Side))
 def order_facets(scene: Scene, seen: View) -> list[Facet]:
-    """The facets that face the viewer, from the farthest to the nearest.
+    """The facets that face the viewer, from the farthest to the nearest; of a large scene its silhouettes.
 
     >>> from flexstage.mechanism.mechanism import Mechanism
     >>> from flexstage.show.scene.stage import scene
     >>> order_facets(scene(Mechanism("")), view(Side.TOP))
     []
     """
+    if scene.is_large:
+        return rejoin(silhouettes(scene.facets, seen.axes), seen)
     return rejoin([facet for facet in sort_by_depth(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
 
 
@@ -144,13 +147,14 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
 
 
 def _strokes(facet: Facet, flat: Array, seen: View) -> Iterator[Stroke]:
-    """A facet's area and its drawn edges."""
+    """A facet's area and its drawn edges; where all of an opaque one are drawn they are the area's own."""
     from flexstage.show.figures.scenery import Stroke
 
-    if len(flat) > 2:
-        yield Stroke(flat, _fill_style(facet.paint.kind, _tone(facet, seen)))
     ends = _edges(facet, seen)
-    if ends:
+    closed = len(ends) == len(flat) > 2 and not _is_translucent(facet)
+    if len(flat) > 2:
+        yield Stroke(flat, _fill_style(facet.paint.kind, _tone(facet, seen), edged=closed))
+    if ends and not closed:
         yield Stroke(flat, _line_style(), ends)
 
 
@@ -165,12 +169,14 @@ def _tone(facet: Facet, seen: View) -> int:
 
 
 @cache
-def _fill_style(kind: Kind, tone: int) -> Style:
-    """The kind's colour in a tone; opaque areas have an edge of their own colour, or seams show."""
+def _fill_style(kind: Kind, tone: int, *, edged: bool) -> Style:
+    """The kind's colour in a tone; opaque areas whose edges are not drawn have an edge of their own colour, or seams show."""
     from flexstage.show.figures.scenery import Style, channels
 
     colour, alpha = _COLOURS[kind]
     fill = (*(round(channel * tone / _SHADES, 3) for channel in channels(colour)[:3]), alpha)
+    if edged:
+        return replace(_line_style(), fill=fill)
     return Style(fill, fill, 0.45) if alpha == 1.0 else Style(fill)
 
 

@@ -11,7 +11,7 @@ from flexstage.parts.notch import Notch
 from flexstage.show.display import NO_VALUE, percent
 from flexstage.show.page import Block, Folded, Prose, Section, fold, section
 from flexstage.show.scene.primitives import first_value
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, make_table
 from flexstage.show.tables.description import provenance_table, requirement_lines, source_table, value_tables
 from flexstage.spatial.frame import COMPONENTS
 
@@ -46,7 +46,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
     'Description and provenance'
     """
     text = "Stated: printed in a source. Derived: follows from stated values. Assumed: chosen, or not tagged."
-    values: tuple[Block, ...] = value_tables(mechanism)
+    values: tuple[Block, ...] = value_tables(mechanism, PAGE_ROWS)
     return section(
         "Description and provenance",
         [

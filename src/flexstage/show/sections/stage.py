@@ -16,6 +16,7 @@ from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import PLATFORM_MODE, Group, Motion
 
 _WIDTH = 4.4
+_LARGE = "So many parts are drawn by their convex outlines as seen, each before those whose middles lie farther away."
 _SIDES = (
     (Side.TOP, "top", "From above."),
     (Side.FRONT, "front", "From the front, along +y."),
@@ -35,7 +36,7 @@ def stage_section(seen: Scene, *, motion: str = "", ghost: str = "", said: str =
     """
     corner = stage_picture(seen).svg("corner", "The stage from above its front corner")
     caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
-    viewer = Viewer("stage", (Picture(corner, caption),), motion, ghost)
+    viewer = Viewer("stage", (Picture(corner, f"{caption} {_LARGE}" if seen.is_large else caption),), motion, ghost)
     return section("The stage", [viewer, Legend(legend(seen)), Prose(said) if said else None])
 
 
@@ -95,7 +96,7 @@ def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
     """
     sides = tuple(_side(seen, *each) for each in _SIDES)
     plan = to_svg(plan_figure(mechanism, seen), "plan", "Dimensioned plan of the stage")
-    plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])
+    plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism), *([_LARGE] if seen.is_large else [])])
     return section(
         "Drawings and composition",
         [

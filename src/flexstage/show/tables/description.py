@@ -12,7 +12,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.show.display import field_unit, number
 from flexstage.show.scene.primitives import first_value
-from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.show.table import Cell, Column, Mark, Table, further, make_table
 from flexstage.spatial.frame import COMPONENTS
 
 TITLES = {
@@ -86,19 +86,30 @@ def link_table(mechanism: Mechanism) -> Table:
     return make_table("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
 
 
-def value_tables(mechanism: Mechanism) -> tuple[Table, ...]:
+def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
     """Every number of the description with unit, tag (stated, derived, assumed) and source; one table a kind of thing.
+
+    With `most` tables have so many rows, and a note counts the rest.
 
     >>> value_tables(Mechanism(""))[0].texts()[1]
     ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']
     """
     tags = provenance(mechanism)
-    rows: dict[str, list[tuple[Cell, ...]]] = {}
+    groups: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
     for addresses in _join_components(tuple(tags)):
         group, name = _group_of(mechanism, addresses)
-        rows.setdefault(group, []).append(_row(mechanism, name, addresses, tags[addresses[0]]))
+        groups.setdefault(group, []).append((name, addresses))
     heads = ["value", Column("", numeric=True), "unit", "tag", "source"]
-    return tuple(make_table(title, heads, rows[group]) for group, title in TITLES.items() if group in rows)
+    return tuple(
+        make_table(
+            title,
+            heads,
+            [_row(mechanism, name, addresses, tags[addresses[0]]) for name, addresses in groups[group][:most]],
+            notes=[] if most is None or len(groups[group]) <= most else [further(len(groups[group]) - most)],
+        )
+        for group, title in TITLES.items()
+        if group in groups
+    )
 
 
 def provenance_table(mechanism: Mechanism) -> Table:

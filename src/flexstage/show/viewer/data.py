@@ -43,7 +43,8 @@ from flexstage.show.viewer.parts import Describer, Thing
 
 FORMAT = 1
 _Found = TypeVar("_Found")
-_STEPS = 12
+_STEPS, _PIECES = 12, 1800
+"""Pieces that a link bends in, and how many there are in all where links are many."""
 _MODES = 12
 _LOADED = ", small motions about the loaded stage"
 
@@ -153,7 +154,9 @@ def stage_data(
 
 def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     """The same without motions: no model is asked."""
-    seen, assembly = scene(mechanism, steps=_STEPS), expand(mechanism)
+    assembly = expand(mechanism)
+    steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
+    seen = scene(mechanism, steps=steps)
     bodies, kinds = body_names(assembly.bodies), thing_kinds(seen.facets)
     describer = Describer(mechanism, assembly, line_numbers(text))
     numbers = {name: number for number, name in enumerate(bodies)}
@@ -161,7 +164,8 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     mesh = mesh_of(seen.facets, bodies, tuple(kinds), _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
     size, middle = _size(seen, low, high), 0.5 * (low + high)
-    notes = tuple(_simplifications(assembly))
+    coarse = f"{len(assembly.links)} links are drawn as bent in {steps} piece{'s' if steps > 1 else ''} each"
+    notes = (*([coarse] if steps < _STEPS else []), *_simplifications(assembly))
     return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), notes)
 
 
