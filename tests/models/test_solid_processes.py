@@ -91,12 +91,12 @@ def code(text: str) -> Bomb:
 
 FIRST_TIME = """
 import time, os, flexstage.solid.fea.mesh as mesh
-plain = mesh._attempt_mesh
-def attempted(drawing, order, sizes):
+plain = mesh.generate_mesh
+def attempted(shape, sizes):
     if sizes["grading"] == 0.6:  # the first attempt: the second grades more slowly
         {what}
-    return plain(drawing, order, sizes)
-mesh._attempt_mesh = attempted
+    return plain(shape, sizes)
+mesh.generate_mesh = attempted
 """
 
 
@@ -137,7 +137,7 @@ tries = []
 def attempted(*_):
     tries.append(1)
     return "no" if len(tries) < 7 else os.abort()
-mesh._attempt_mesh = attempted
+mesh.generate_mesh = attempted
 """
     (finding,) = told(mined("lever", code(text)))
     assert finding.what == "its process crashed while meshing (SIGABRT)"
@@ -205,7 +205,7 @@ def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
 def test_more_memory_than_allowed_is_not_given(folder: Path) -> None:
     text = """
 import flexstage.solid.fea.mesh as mesh
-mesh._attempt_mesh = lambda *_: bytearray(int(4e9))
+mesh.generate_mesh = lambda *_: bytearray(int(4e9))
 """
     (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
     assert finding == Finding("lever", "it took more memory while meshing than it may", finding.advice)
@@ -245,7 +245,7 @@ def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.Mon
         return SimpleNamespace(granted=granted, worker=SimpleNamespace(resident=lambda: resident))
 
     monkeypatch.setattr(remote, "available", lambda: 10.0)
-    run: Any = remote._Run((), print, Limits(), print)
+    run: Any = remote._Run((), print, Limits(), print, remote.Pool())
     assert run._room(child(None, 1.0), [child(6.0, has)]) == room
 
 

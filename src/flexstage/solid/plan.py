@@ -4,44 +4,52 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from flexstage.analysis.units import driven_units
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.memory import gigabytes
 from flexstage.base.progress import duration, time_left
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.fea.cache import HINGES, SUPERELEMENTS, Kind, holds
+from flexstage.solid.fea.cache import holds
 from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge_cache import hinge_jobs
 from flexstage.solid.fea.memory import freedoms
-from flexstage.solid.fea.parts import Ways, reduce_jobs
+from flexstage.solid.fea.parts import Ways, obtain, reduce_jobs
 from flexstage.solid.fea.reducing import Reduce, StoredJob
 from flexstage.solid.fea.remote import workers
-from flexstage.solid.fea.sound import sound_components
+from flexstage.solid.fea.sound import check_together, sound_components
 from flexstage.solid.hinges import accuracy_of, distinct_hinges, turned_forms
+from flexstage.solid.read import Notice
 from flexstage.solid.resolution import Resolution, first_reductions, orders_of
 
 
 @dataclass(frozen=True)
 class Phase:
-    """Jobs that are done side by side: seconds by key, the most unknowns of one of them and the memory [bytes] it needs (0: not known)."""
+    """Jobs of one sort: seconds by key, the most unknowns of one of them and the memory [bytes] it needs (0: not known); the jobs."""
 
     name: str
     seconds: Mapping[str, float]
     freedoms: float = 0.0
     memory: float = 0.0
+    todo: tuple[StoredJob, ...] = ()
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The phases of a computation, how many jobs are done at once, how many are in the cache already; what may come on top."""
+    """The phases of a computation, how many jobs are done at once, how many are in the cache already; what may come on top.
+
+    Without the jobs of `needed` (keys) nothing can be told.
+    """
 
     phases: tuple[Phase, ...]
     lanes: int
     cached: int = 0
     further: str = ""
+    needed: frozenset[str] = frozenset()
 
     @property
     def jobs(self) -> int:
@@ -49,9 +57,14 @@ class Plan:
         return sum(len(phase.seconds) for phase in self.phases)
 
     @property
+    def together(self) -> dict[str, float]:
+        """What each usually takes [s], by key."""
+        return {key: seconds for phase in self.phases for key, seconds in phase.seconds.items()}
+
+    @property
     def seconds(self) -> float:
-        """What they usually take [s]."""
-        return time_left([phase.seconds for phase in self.phases], {}, lanes=self.lanes)
+        """What they usually take in one queue [s]."""
+        return time_left([self.together], {}, lanes=self.lanes)
 
     def __str__(self) -> str:
         """The plan in a line or two.
@@ -70,51 +83,71 @@ class Plan:
         return f"to do: {work} ({sizes}{self.lanes} at once); usually {duration(self.seconds)}.{known}{self.further}"
 
 
-def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways) -> Plan:
-    """What `verify` has to do: hinges, then the stage and its units alone, order by order.
+def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hinges: Accuracy | None = None) -> Plan:
+    """What `verify` has to do in any case: hinges, the stage and its units alone at two orders.
 
-    Outlines are checked against each other. Unknowns and seconds are those of usual meshes of such parts, right within a factor of two or
-    three; time left is told by what the first jobs took. Raises `DesignError` where the stage cannot be read as a solid.
+    The accuracy of hinges is what is asked for, unless it is told. Outlines are checked against each other. Unknowns and seconds are those
+    of usual meshes of such parts, right within a factor of two or three; time left is told by what the first jobs took. Raises
+    `DesignError` where the stage cannot be read as a solid.
     """
-    shape = with_drawn_parts(mechanism)
+    shape, alone = with_drawn_parts(mechanism), _units_alone(mechanism)
+    check_together([shape, *alone], ways.cache, ways.pool)
     parts = [sound_components(shape, ways.cache)]
-    alone = _units_alone(mechanism, ways)
-    stages, parts = [shape, *(stage for stage, _ in alone)], [*parts, *(components for _, components in alone)]
-    hinges = [job for stage in stages for job in hinge_jobs(turned_forms(distinct_hinges(stage)), accuracy_of(asked.accuracy, asked.order))]
-    _, *rest = orders_of(asked)
-    taken: set[str] = set()
-    phases = [
-        _phase("hinges", hinges, HINGES, ways, taken),
-        *(
-            _phase(f"order {way.fineness.order}", reduce_jobs(components, way), SUPERELEMENTS, ways, taken)
-            for components in parts
-            for way in first_reductions(asked)
-        ),
-    ]
-    missing = sum(len(phase.seconds) for phase in phases)
-    more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
-    return Plan(tuple(phases), workers(ways.limits), len(taken) - missing, more)
-
-
-def _units_alone(mechanism: Mechanism, ways: Ways) -> list[tuple[Mechanism, Sequence[Component]]]:
-    """Every distinct unit alone, and its components; none where one cannot be read as a solid, which is told when its turn comes."""
     try:
-        stages = [with_drawn_parts(isolate(mechanism, copy)) for copy, _ in driven_units(mechanism).values()]
-        return [(stage, sound_components(stage, ways.cache)) for stage in stages]
+        parts += [sound_components(stage, ways.cache) for stage in alone]
+    except DesignError:  # told when its turn comes
+        alone = []
+    exact = accuracy_of(asked.accuracy, asked.order) if of_hinges is None else of_hinges
+    lower, upper = first_reductions(asked)
+    _, *rest = orders_of(asked)
+
+    def jobs(stage: Mechanism, components: Sequence[Component]) -> list[Sequence[StoredJob]]:
+        return [hinge_jobs(turned_forms(distinct_hinges(stage)), exact), reduce_jobs(components, lower), reduce_jobs(components, upper)]
+
+    each = [jobs(stage, components) for stage, components in zip((shape, *alone), parts, strict=True)]
+    names = "hinges", f"order {lower.fineness.order}", f"order {upper.fineness.order}"
+    whole = [{job.key: job for job in reversed([*chain.from_iterable(same)])} for same in zip(*each, strict=True)]
+    phases = tuple(_phase(name, of_all.values(), ways) for name, of_all in zip(names, whole, strict=True))
+    more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
+    known = sum(map(len, whole)) - sum(len(phase.todo) for phase in phases)
+    return Plan(phases, workers(ways.limits), known, more, frozenset(job.key for job in chain.from_iterable(each[0])))
+
+
+def work_ahead(plan: Plan, ways: Ways, notice: Notice | None = None) -> None:
+    """Work what is planned in one queue: hinges, stage and units wait for nobody, and find it at hand in the pool of `ways`.
+
+    Raises `DesignError` where what is needed in any case cannot be had; what only a unit alone lacks is told when its turn comes.
+    """
+    todo = [job for phase in plan.phases for job in phase.todo]
+    try:
+        _, notices = obtain(todo, ways)
+    except DesignError:
+        known = {} if ways.pool is None else ways.pool.results
+        if any(job.key in plan.needed and job.key not in known for job in todo):
+            raise
+    else:
+        for each in notices:
+            (notice or _ignore)(each)
+
+
+def _units_alone(mechanism: Mechanism) -> list[Mechanism]:
+    """Every distinct unit alone; none where strokes leave motions of the platform open, which is told when its turn comes."""
+    try:
+        return [with_drawn_parts(isolate(mechanism, copy)) for copy, _ in driven_units(mechanism).values()]
     except DesignError:
         return []
 
 
-def _phase(name: str, jobs: Iterable[StoredJob], kind: Kind, ways: Ways, taken: set[str]) -> Phase:
-    """The jobs of a phase that no earlier one does, without those in the cache."""
-    todo: dict[str, StoredJob] = {}
-    for job in jobs:
-        if job.key not in taken and (ways.cache is None or not holds(ways.cache, job.key, kind)):
-            todo[job.key] = job
-        taken.add(job.key)
-    reductions = [job for job in todo.values() if isinstance(job, Reduce)]
+def _phase(name: str, jobs: Iterable[StoredJob], ways: Ways) -> Phase:
+    """Those of the jobs that are not in the cache."""
+    todo = tuple(job for job in jobs if ways.cache is None or not holds(ways.cache, job.key, job.stored))
+    reductions = [job for job in todo if isinstance(job, Reduce)]
     sizes = [
         (job.needed(job.expected(way)), freedoms(job.expected(way), way.order)) for job in reductions for way in [job.reduction.fineness]
     ]
     memory, unknowns = max(sizes, default=(0.0, 0.0))
-    return Phase(name, {key: job.seconds() for key, job in todo.items()}, unknowns, memory)
+    return Phase(name, {job.key: job.seconds() for job in todo}, unknowns, memory, todo)
+
+
+def _ignore(_finding: Finding) -> None:
+    """Nobody is told."""

@@ -65,7 +65,7 @@ def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None, together: S
 
     def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
         ahead = together[1:] if reduction in together[:1] else ()
-        found = reduce_parts(sound_components(mechanism, ways.cache), reduction, ways, ahead=ahead)
+        found = reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways, ahead=ahead)
         for finding in found.notices:
             (notice or _ignore)(finding)
         return found.parts

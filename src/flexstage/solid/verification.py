@@ -26,9 +26,12 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import substitute_parts
+from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.remote import Pool
 from flexstage.solid.fea.ties import stated_links
-from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
-from flexstage.solid.read import STANDARD_SOLIDS, Solids, remember
+from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, hinges, solid_hinges
+from flexstage.solid.plan import verification_plan, work_ahead
+from flexstage.solid.read import STANDARD_SOLIDS, STANDARD_WAYS, Solids, remember, solids
 from flexstage.solid.resolution import DEFAULT, Converged, Resolution, converge
 from flexstage.solid.stage import SolidStage, solid_stage, stage_figures, stiffness_figures
 from flexstage.solid.units import SolidUnit, solid_units
@@ -146,8 +149,14 @@ def verify(
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
     Theory is the description as it stands; FEA the shapes it draws. Hinges come first, as they are soon done; `tell` is told of the rows of
-    hinges, stage and units as they are known. Raises `DesignError` where the stage cannot be read as a solid.
+    hinges, stage and units as they are known. Unless it is told how to `reduce` and `compute`, all that is needed in any case is worked in
+    one queue. Raises `DesignError` where the stage cannot be read as a solid.
     """
+    if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
+        with Pool() as pool:
+            ways = replace(STANDARD_WAYS, pool=pool)
+            work_ahead(verification_plan(mechanism, asked, ways, Accuracy()), ways)
+            return verify(mechanism, asked, solids(ways), hinges(ways=ways), tell)
     missing = dict[str, str]()
     told = tell or _nobody
     found = solid_hinges(mechanism, compute)

@@ -41,9 +41,9 @@ from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.install import require_installed
 from flexstage.solid.fea.parts import Parts, Ways
-from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.remote import Limits, Pool
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.solid.plan import verification_plan
+from flexstage.solid.plan import verification_plan, work_ahead
 from flexstage.solid.read import Solids, solids
 from flexstage.solid.resolution import Converged, Resolution, first_reductions
 from flexstage.solid.tables import (
@@ -89,14 +89,15 @@ _DEFAULT_ACCURACY = "1 %"
 
 @dataclass(frozen=True)
 class _Request:
-    """The resolution asked for, and the memory to plan with [bytes] (absent: what the machine has left)."""
+    """The resolution asked for, the memory to plan with [bytes] (absent: what the machine has left), the processes that stay."""
 
     resolution: Resolution
     memory: float | None
+    pool: Pool | None = None
 
     def ways(self, shown: ProgressBar) -> Ways:
         """By the cache of the user, with the progress shown."""
-        return Ways(Cache(), shown.step, Limits(memory=self.memory))
+        return Ways(Cache(), shown.step, Limits(memory=self.memory), self.pool)
 
 
 @dataclass(frozen=True)
@@ -134,8 +135,8 @@ def solid(  # noqa: PLR0913 (its options)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     if what is What.STAGE:
         require_standing(mechanism)
-    with progress_bar() as shown:
-        found = _STUDIES[what](mechanism, asked, shown)
+    with progress_bar() as shown, Pool() as pool:
+        found = _STUDIES[what](mechanism, replace(asked, pool=pool), shown)
     if report is not None:
         save(report, reports.solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
     answer(
@@ -173,8 +174,8 @@ def verify(  # noqa: PLR0913 (its options)
     known = recall(mechanism, asked.resolution, Cache()) if report is None and asked.memory is None else None
     if known is None:
         require_standing(mechanism)
-        with progress_bar() as shown:
-            found = _verify(mechanism, asked, shown)
+        with progress_bar() as shown, Pool() as pool:
+            found = _verify(mechanism, replace(asked, pool=pool), shown)
         cautions = _verification_cautions(found, asked)
         _retain(found, cautions, asked)
     else:
@@ -234,7 +235,8 @@ def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verifi
     reduce, compute = _solids(asked, shown), _hinges(asked, shown)
     todo = verification_plan(mechanism, asked.resolution, asked.ways(shown))
     print_note(str(todo))
-    shown.follow([phase.seconds for phase in todo.phases], todo.lanes)
+    shown.follow([todo.together], todo.lanes)
+    work_ahead(todo, asked.ways(shown), _notice)
     return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
 
 

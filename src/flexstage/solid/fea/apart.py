@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.progress import Stage
-from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.remote import Limits, Pool, work_all
 from flexstage.solid.fea.worker import Call, Job
 
 _LIMITS = Limits(seconds=600.0)
@@ -50,16 +51,24 @@ class _Checking(_Drawing):
 
 def contact_apart(mechanism: Mechanism, clearance: float = 0.0, limits: Limits = _LIMITS) -> tuple[Finding, ...]:
     """What `contact_findings` finds, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
-    return tuple(Finding(**item) for item in json.loads(_result_of(_Checking(mechanism, clearance), limits)))
+    return contacts_apart([mechanism], clearance, limits)[0]
+
+
+def contacts_apart(
+    mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
+) -> list[tuple[Finding, ...]]:
+    """The same of several stages, side by side, by the processes of a `pool` where one is given."""
+    found = _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
+    return [tuple(Finding(**item) for item in json.loads(data)) for data in found]
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
     """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
-    return _result_of(_Drawing(mechanism), limits)
+    return _results_of([_Drawing(mechanism)], limits)[0]
 
 
-def _result_of(job: Job, limits: Limits) -> bytes:
+def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[bytes]:
     require_solver()
-    results: list[bytes] = []
-    work_all([job], lambda _job, data: results.append(data), limits)
-    return results[0]
+    results: dict[_Drawing, bytes] = {}
+    work_all(jobs, results.__setitem__, limits, pool=pool)
+    return [results[job] for job in jobs]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from netgen import occ
@@ -12,6 +13,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.parts.body import Imported
 from flexstage.solid.fea.component import Component, Interface, Joint
+from flexstage.solid.fea.content import KEPT
 from flexstage.solid.fea.draw import draw_form, move_solid
 from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece
 
@@ -131,8 +133,9 @@ def region(piece: Piece, points: Array) -> Array:
     return np.max(np.maximum(np.abs(local) - half_extents(piece), 0.0), axis=1)
 
 
+@lru_cache(maxsize=KEPT)
 def half_extents(piece: Piece) -> Array:
-    """Half sizes (3,) of a piece's bounding box in its own frame [m].
+    """Half sizes (3,) of a piece's bounding box in its own frame [m], drawn once.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> half_extents(bar().pieces[0]).round(9).tolist()

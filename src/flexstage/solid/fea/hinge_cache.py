@@ -28,6 +28,8 @@ class HingeJob(StoredJob):
     form: HingeForm
     asked: Accuracy
 
+    stored = HINGES
+
     @property
     def name(self) -> str:
         """The hinge's name."""
@@ -78,7 +80,7 @@ def hinges_from_cache(
     {}
     """
     jobs = hinge_jobs(forms, asked)
-    found, notices = obtain(jobs, HINGES, ways)
+    found, notices = obtain(jobs, ways)
     for each in notices:
         (notice or _ignore)(each)
     return {job.name: found[job.key] for job in jobs}

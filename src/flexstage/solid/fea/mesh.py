@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import ngsolve
@@ -16,6 +17,7 @@ from flexstage.base.number import Array
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cad import Cad, cad, half_extents, region
 from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
 from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece, bends_both_ways, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
@@ -43,6 +45,8 @@ _MOST = 3e5
 """Elements that may cover one link."""
 _WITHIN = 1e-6
 """A face belongs to a piece when its centre is this near its bounding box [m]."""
+_AT_HAND = 8
+"""Drawings and meshes that are kept for the next order."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,8 @@ def mesh_component(component: Component, fineness: Fineness, report: Report = si
 
     Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
     turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
-    earlier one took the process down. Raises `DesignError` when none of that helps.
+    earlier one took the process down. What is drawn and meshed is kept at hand: at another order it is only curved anew. Raises
+    `DesignError` when none of that helps.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
@@ -70,22 +75,13 @@ def mesh_component(component: Component, fineness: Fineness, report: Report = si
     """
     require(_thin_findings(component, fineness))
     report(Stage.DRAWING, 0.0)
-    drawing = cad(component)
+    subject = _Subject.of(component)
+    drawing = _drawing(subject)
     failure = "the mesher was not asked"
-    for number, (shrink, grading, curvature) in enumerate(ATTEMPTS[first:], start=first):
+    for number in range(first, len(ATTEMPTS)):
         report(Stage.MESHING, number / len(ATTEMPTS))
-        largest = _set_sizes(component, drawing, fineness, shrink)
-        outcome = _attempt_mesh(
-            drawing,
-            fineness.order,
-            {
-                "mp": _refine_necks(component.pieces, shrink * fineness.neck),
-                "maxh": largest,
-                "grading": grading * fineness.grading,
-                "curvaturesafety": curvature * _curvature(component),
-            },
-        )
-        result = outcome if isinstance(outcome, str) else _finish(component.pieces, drawing, outcome)
+        outcome = _straight_mesh(subject, replace(fineness, order=1), number)
+        result = outcome if isinstance(outcome, str) else _finish(component.pieces, drawing, _curve(outcome, fineness.order))
         if isinstance(result, PieceMesh):
             return result
         failure = result
@@ -105,11 +101,43 @@ def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding
             yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
 
 
-def _attempt_mesh(drawing: Cad, order: int, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
-    """One attempt, curved to the drawing; else what went wrong."""
-    mesh = generate_mesh(drawing.shape, sizes)
-    if isinstance(mesh, ngsolve.Mesh):
-        mesh.Curve(order)
+@dataclass(frozen=True)
+class _Subject:
+    """A component, told apart by what its mesh depends on: its content and what its faces are called."""
+
+    content: str
+    faces: tuple[str, ...]
+    component: Component = field(compare=False)
+
+    @staticmethod
+    def of(component: Component) -> _Subject:
+        joints = [*(item.joint for item in component.interfaces), *component.fixed]
+        return _Subject(content(component), tuple(joint.name for joint in joints), component)
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _drawing(subject: _Subject) -> Cad:
+    return cad(subject.component)
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolve.Mesh | str:
+    """An attempt at a mesh, not curved yet; else what went wrong."""
+    component, drawing = subject.component, _drawing(subject)
+    shrink, grading, curvature = ATTEMPTS[number]
+    sizes = {
+        "mp": _refine_necks(component.pieces, shrink * fineness.neck),
+        "maxh": _set_sizes(component, drawing, fineness, shrink),
+        "grading": grading * fineness.grading,
+        "curvaturesafety": curvature * _curvature(component),
+    }
+    return generate_mesh(drawing.shape, sizes)
+
+
+def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
+    """A copy of a mesh, curved to its drawing."""
+    mesh = ngsolve.Mesh(straight.ngmesh.Copy())
+    mesh.Curve(order)
     return mesh
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -11,13 +11,13 @@ from typing import Any, TypeAlias
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array
 from flexstage.base.progress import Progress
-from flexstage.solid.fea.cache import SUPERELEMENTS, Cache, Kind, find, keep, key_of
+from flexstage.solid.fea.cache import Cache, find, keep, key_of
 from flexstage.solid.fea.component import Component, with_yielding_ends
 from flexstage.solid.fea.content import KEPT, content
 from flexstage.solid.fea.fineness import Hold, Reduction
 from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.reducing import Reduce, StoredJob
-from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.remote import Limits, Pool, work_all
 from flexstage.solid.fea.store import from_bytes, versions
 from flexstage.solid.fea.superelement import Superelement, hold_faces
 
@@ -29,11 +29,15 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Ways:
-    """How components are come by: the `cache` (`None`: none is used), who is told of the `progress`, and the `limits`."""
+    """How components are come by: the `cache` (`None`: none is used), who is told of the `progress`, and the `limits`.
+
+    With a `pool` processes stay, and results at hand, for what is asked next.
+    """
 
     cache: Cache | None = Cache()
     progress: Progress | None = None
     limits: Limits = Limits()
+    pool: Pool | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +67,7 @@ def reduce_parts(
     """
     jobs = reduce_jobs(parts, reduction, springs)
     later = [] if ways.cache is None else [job for way in ahead for job in reduce_jobs(parts, way)]
-    elements, notices = obtain([*jobs, *later], SUPERELEMENTS, ways)
+    elements, notices = obtain([*jobs, *later], ways)
     return ReducedParts(as_joined(parts, [(job.component, elements[job.key]) for job in jobs]), notices)
 
 
@@ -110,13 +114,13 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
     return tuple(found)
 
 
-def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str, Any], tuple[Finding, ...]]:
+def obtain(jobs: Sequence[StoredJob], ways: Ways) -> tuple[dict[str, Any], tuple[Finding, ...]]:
     """Results of jobs by key, from the cache, else computed, each once and kept as soon as it is done; what is to be said of the cache.
 
-    >>> obtain((), SUPERELEMENTS, Ways())
+    >>> obtain((), Ways())
     ({}, ())
     """
-    store = _Store(ways.cache, kind)
+    store = _Store(ways.cache, {} if ways.pool is None else ways.pool.results)
     first: dict[str, StoredJob] = {}
     for job in jobs:
         first.setdefault(job.key, job)
@@ -124,23 +128,22 @@ def obtain(jobs: Sequence[StoredJob], kind: Kind, ways: Ways) -> tuple[dict[str,
     if missing:
         require_solver()
         missing.sort(key=lambda job: -job.seconds())  # the longest first: the others fill the time beside it
-        work_all(missing, store.take, ways.limits, ways.progress)
-    return store.results, tuple(store.notices)
+        work_all(missing, store.take, ways.limits, ways.progress, ways.pool)
+    return {key: store.results[key] for key in first}, tuple(store.notices)
 
 
 class _Store:
     """Results at hand, by key, on top of a cache."""
 
-    def __init__(self, cache: Cache | None, kind: Kind) -> None:
-        self.cache, self.kind = cache, kind
-        self.results: dict[str, Any] = {}
+    def __init__(self, cache: Cache | None, results: dict[str, Any]) -> None:
+        self.cache, self.results = cache, results
         self.notices: list[Finding] = []
 
     def holds(self, job: StoredJob) -> bool:
-        """Whether a result is in the cache; it is at hand then."""
-        if self.cache is None:
-            return False
-        found = find(self.cache, job.key, job.name, self.kind)
+        """Whether a result is at hand, or in the cache; it is at hand then."""
+        if job.key in self.results or self.cache is None:
+            return job.key in self.results
+        found = find(self.cache, job.key, job.name, job.stored)
         self.notices += found.notices
         if found.element is not None:
             self.results[job.key] = found.element
@@ -148,10 +151,10 @@ class _Store:
 
     def take(self, job: StoredJob, data: bytes) -> None:
         """Take a result as a worker wrote it, and keep it."""
-        result = from_bytes(data, job.key, versions(self.kind.method))
+        result = from_bytes(data, job.key, versions(job.stored.method))
         if isinstance(result, str):
             advice = "See that the folder for temporary files (environment variable TMPDIR) keeps what is written to it, and run it again"
             raise refuse(job.name, f"what its process wrote cannot be used: {result}", advice)
         self.results[job.key] = result
         if self.cache is not None:
-            self.notices += keep(self.cache, job.key, job.name, data, self.kind)
+            self.notices += keep(self.cache, job.key, job.name, data, job.stored)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.component import Component
+from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Reduction
 from flexstage.solid.fea.memory import Counts, needed, reduction_seconds, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
@@ -45,9 +48,11 @@ def _surface(form: Form) -> float:
 
 @dataclass(frozen=True, eq=False)
 class StoredJob(Job):
-    """A job whose result is stored for `key`."""
+    """A job whose result is stored for `key`, in a file of a kind."""
 
     key: str
+
+    stored: ClassVar[Kind]
 
     @property
     def mark(self) -> str:
@@ -62,11 +67,17 @@ class ComponentJob(StoredJob):
     component: Component
 
     attempts = len(ATTEMPTS)
+    stored = SUPERELEMENTS
 
     @property
     def name(self) -> str:
         """The component's name."""
         return self.component.name
+
+    @property
+    def kin(self) -> str:
+        """Its content: at whatever order, its mesh is the same."""
+        return content(self.component)
 
     def expected(self, fineness: Fineness) -> Counts:
         """What its mesh usually consists of."""

@@ -10,10 +10,10 @@ import queue
 import signal
 import tempfile
 import time
-from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.jobs import Heard, Word, Worker, cores
@@ -47,20 +47,74 @@ class Limits:
 AnyJob = TypeVar("AnyJob", bound=Job)
 
 
-def work_all(jobs: Iterable[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress | None = None) -> None:
+class Pool:
+    """Processes that stay from one run of jobs to the next, as loading the solver takes longer than a small job; results at hand by key.
+
+    They end where its context is left.
+
+    >>> with Pool() as pool:
+    ...     work_all([], print, Limits(), pool=pool)
+    """
+
+    def __init__(self) -> None:
+        self.results: dict[str, Any] = {}
+        self.heard: Heard = queue.SimpleQueue()
+        self.idle: list[Worker] = []
+        self._latest: dict[str, Worker] = {}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        for worker in tuple(self.idle):
+            self.end(worker)
+
+    def choose(self, jobs: Iterable[Job]) -> int:
+        """Which of the jobs waiting is next: the first, but for those whose likes a busy process has done last, where there are others."""
+        owners = [self._latest.get(job.kin) for job in jobs]
+        return next((number for number, owner in enumerate(owners) if owner is None or owner in self.idle), 0)
+
+    def worker(self, job: Job) -> Worker:
+        """A process for a job: one that waits, best that which did the like last, else a new one. Raises `OSError` where none starts."""
+        for each in self.idle:
+            if each.process.poll() is not None:
+                self.end(each)
+        found = self._latest.get(job.kin)
+        if found is None or found not in self.idle:
+            found = self.idle[-1] if self.idle else Worker(work, self.heard)
+        self.idle = [each for each in self.idle if each is not found]
+        if job.kin:
+            self._latest[job.kin] = found
+        return found
+
+    def end(self, worker: Worker) -> None:
+        """End a process, or forget one that has ended."""
+        self.idle = [each for each in self.idle if each is not worker]
+        self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
+        worker.end()
+
+
+def work_all(
+    jobs: Iterable[AnyJob],
+    done: Callable[[AnyJob, bytes], None],
+    limits: Limits,
+    progress: Progress | None = None,
+    pool: Pool | None = None,
+) -> None:
     """Do jobs in processes of their own; `done` is told of each as it is finished, with its result.
 
-    Raises `DesignError` with the findings of all that failed, after the others are done: refused by themselves, crashed, out of time,
-    without room. Raising from `progress` or an interruption ends all.
+    The processes stay where a `pool` is given. Raises `DesignError` with the findings of all that failed, after the others are done:
+    refused by themselves, crashed, out of time, without room. Raising from `progress` or an interruption ends all.
 
     >>> work_all([], print, Limits())
     """
-    run = _Run(tuple(jobs), done, limits, progress or _nobody)
-    try:
-        run.finish()
-    finally:
-        run.end()
-    require(run.findings)
+    with nullcontext(pool) if pool is not None else Pool() as used:
+        run = _Run(tuple(jobs), done, limits, progress or _nobody, used)
+        try:
+            run.finish()
+        finally:
+            run.end()
+    require(dict.fromkeys(run.findings))
 
 
 def _nobody(_step: Step) -> None:
@@ -116,12 +170,12 @@ class _Child(Generic[AnyJob]):
 class _Run(Generic[AnyJob]):
     """The jobs of one call: those to come, those running, those done."""
 
-    def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress) -> None:
-        self.done, self.limits, self.progress = done, limits, progress
-        self.waiting = deque((job, 0, time.monotonic()) for job in jobs)
+    def __init__(
+        self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress, pool: Pool
+    ) -> None:
+        self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
+        self.waiting = [(job, 0, time.monotonic()) for job in jobs]
         self.children: list[_Child[AnyJob]] = []
-        self.idle: list[Worker] = []  # processes whose job is done, for the next
-        self.heard: Heard = queue.SimpleQueue()
         self.findings: list[Finding] = []
         self.planned = {job.mark: job.seconds() for job in jobs}
         self.spent: dict[str, float] = {}
@@ -131,7 +185,8 @@ class _Run(Generic[AnyJob]):
         """Go on until nothing waits and nothing runs."""
         while self.waiting or self.children:
             while self.waiting and len(self.children) < workers(self.limits):
-                self._start(*self.waiting.popleft())
+                number = self.pool.choose(job for job, *_ in self.waiting)
+                self._start(*self.waiting.pop(number))
             self._hear()
             for child in tuple(self.children):
                 self._check_time(child)
@@ -139,15 +194,15 @@ class _Run(Generic[AnyJob]):
             self._tell()
 
     def end(self) -> None:
-        """Leave no process behind."""
-        for worker in [*self.idle, *(child.worker for child in self.children)]:
-            worker.end()
+        """Leave no process at work."""
+        for child in self.children:
+            self.pool.end(child.worker)
 
     def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
         memory = available() if self.limits.memory is None else self.limits.memory
         task = Task(job, attempt, memory, self.limits.seconds, versions())
         try:
-            worker = self.idle.pop() if self.idle else Worker(work, self.heard)
+            worker = self.pool.worker(job)
         except OSError as error:
             raise _refuse_start(job.name, error) from error
         self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
@@ -156,14 +211,15 @@ class _Run(Generic[AnyJob]):
     def _hear(self) -> None:
         """Take in what the workers said, waiting a moment for it."""
         try:
-            worker, word, value = self.heard.get(timeout=_PAUSE)
+            worker, word, value = self.pool.heard.get(timeout=_PAUSE)
         except queue.Empty:
             return
         for child in self.children:
             if child.worker is worker:
                 self._take(child, word, value)
                 return
-        self.idle = [each for each in self.idle if each is not worker]  # it has ended
+        if word is Word.ENDED:
+            self.pool.end(worker)
 
     def _take(self, child: _Child[AnyJob], word: Word, value: Any) -> None:
         match word:
@@ -172,10 +228,7 @@ class _Run(Generic[AnyJob]):
             case Word.DONE:
                 self.done(child.job, value)
                 self._leave(child)
-                if self.waiting:
-                    self.idle.append(child.worker)
-                else:
-                    child.worker.end()
+                self.pool.idle.append(child.worker)
             case Word.FAILED:
                 self._close(child, *_failure_findings(child, value))
             case Word.ENDED:
@@ -196,14 +249,14 @@ class _Run(Generic[AnyJob]):
         if child.stage is not Stage.MESHING or attempt >= child.job.attempts:
             return False
         self.children.remove(child)
-        child.worker.end()
-        self.waiting.appendleft((child.job, attempt, child.begun))
+        self.pool.end(child.worker)
+        self.waiting.insert(0, (child.job, attempt, child.begun))
         return True
 
     def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
         self.findings += findings
         self._leave(child)
-        child.worker.end()
+        self.pool.end(child.worker)
 
     def _leave(self, child: _Child[AnyJob]) -> None:
         self.spent[child.job.mark] = time.monotonic() - child.begun

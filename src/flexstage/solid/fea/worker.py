@@ -50,6 +50,11 @@ class Job(ABC):
         """What it is told apart by from all others."""
         return self.name
 
+    @property
+    def kin(self) -> str:
+        """What it shares with jobs that a process does sooner when it did the like before; nothing where that does not matter."""
+        return ""
+
     def seconds(self, _counts: Counts | None = None) -> float:
         """What it usually takes on one core [s], before or after its mesh is known."""
         return USUAL_SECONDS
@@ -90,4 +95,7 @@ def work(line: Line, task: Task) -> bytes:
 
     limit_memory(_SHARE * task.memory + _SLACK)
     faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
-    return task.job.work(Call(report, ask, task.attempt, task.made))
+    try:
+        return task.job.work(Call(report, ask, task.attempt, task.made))
+    finally:
+        faulthandler.cancel_dump_traceback_later()
