@@ -259,11 +259,12 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
     monkeypatch.setattr("flexstage.solid.verification.verify", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways, _notice: asked.append(ways.limits.memory))
     monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways, *_: asked.append(ways.limits.memory))
     monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))
     with pytest.raises(pytest.fail.Exception):
         command("verify", "stage.toml", "--memory", "3 GB")
-    assert asked == [3e9, 3e9]
+    assert asked == [3e9, 3e9, 3e9]
 
 
 def test_outlines_that_do_not_meet_are_named(command: Command, tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ from flexstage.solid.fea.cad import cad
 from flexstage.solid.fea.memory import Counts, entries, freedoms, needed
 from flexstage.solid.fea.progress import Stage
 from flexstage.solid.fea.reducing import Reduce, fewest_elements
-from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.remote import Limits, Pool, work_all
 from flexstage.solid.fea.store import from_bytes
 from flexstage.solid.fea.superelement import Superelement
 from flexstage.spatial.frame import Frame
@@ -160,10 +160,55 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     plain = remote.Worker
     monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
     jobs = [job(rod()), job(replace(rod(), name="again"))]
-    work_all(jobs, lambda _job, data: outcomes.append(data), Limits(workers=workers))
+    with Pool() as pool:
+        for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run
+            work_all(part, lambda _job, data: outcomes.append(data), Limits(workers=workers), pool=pool)
+        assert len(pool.idle) == workers
     assert outcomes[0] == outcomes[1]
     assert len(started) == workers
     assert all(each.process.poll() is not None for each in started)
+
+
+def test_the_like_of_what_a_process_does_waits_for_it_beside_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "Worker", lambda *_: SimpleNamespace(process=SimpleNamespace(poll=lambda: None), end=lambda: None))
+    lever, again, foot = (job(rod(size * mm)) for size in (6.0, 6.0, 7.0))
+    pool: Any = Pool()
+    busy = pool.worker(lever)
+    assert pool.choose([again, foot]) == 1
+    assert pool.choose([again]) == 0  # rather than that nobody works
+    other = pool.worker(foot)
+    pool.idle = [other, busy]
+    assert pool.choose([again, foot]) == 0
+    assert pool.worker(again) is busy
+    assert pool.worker(foot) is other
+
+
+def test_a_process_that_has_ended_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    codes: Iterator[int | None] = iter([-9, None])
+    monkeypatch.setattr(remote, "Worker", lambda *_: SimpleNamespace(process=SimpleNamespace(poll=lambda: next(codes)), end=lambda: None))
+    with Pool() as pool:
+        first = pool.worker(job(rod()))
+        pool.idle = [first]
+        assert pool.worker(job(rod())) is not first
+        assert not pool.idle
+
+
+def test_orders_that_share_a_mesh_repeat_bit_by_bit() -> None:
+    from flexstage.solid.fea import mesh
+    from flexstage.solid.fea.reduce import reduce_mesh
+    from flexstage.solid.fea.store import to_bytes, versions
+
+    def reduced(order: int) -> bytes:
+        way = replace(COARSE, fineness=replace(COARSE.fineness, order=order))
+        return to_bytes(reduce_mesh(rod(), mesh.mesh_component(rod(), way.fineness), way), "key", versions())
+
+    made = mesh._straight_mesh.cache_info().misses
+    together = [reduced(order) for order in (2, 1, 2)]
+    assert mesh._straight_mesh.cache_info().misses <= made + 1
+    for order, found in zip((2, 1), together, strict=False):
+        mesh._straight_mesh.cache_clear()
+        mesh._drawing.cache_clear()
+        assert reduced(order) == found
 
 
 @linux
@@ -245,7 +290,7 @@ def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.Mon
         return SimpleNamespace(granted=granted, worker=SimpleNamespace(resident=lambda: resident))
 
     monkeypatch.setattr(remote, "available", lambda: 10.0)
-    run: Any = remote._Run((), print, Limits(), print, remote.Pool())
+    run: Any = remote._Run((), print, Limits(), print, Pool())
     assert run._room(child(None, 1.0), [child(6.0, has)]) == room
 
 

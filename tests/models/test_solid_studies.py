@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,8 +20,14 @@ from flexstage.models.linear.static import displacement
 from flexstage.solid.fea.cache import Cache, holds
 from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
+from flexstage.solid.fea.hinge_cache import HingeJob
 from flexstage.solid.fea.parts import Parts, Ways, content_in_stage, reduce_jobs
+from flexstage.solid.fea.reducing import Reduce
+from flexstage.solid.fea.remote import Pool
+from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.superelement import Skin, Superelement
+from flexstage.solid.fea.worker import Job
+from flexstage.solid.plan import Phase, Plan, verification_plan, work_ahead
 from flexstage.solid.read import read_solid, remember, solids
 from flexstage.solid.resolution import Converged, Resolution, converge
 from flexstage.solid.stage import solid_stage
@@ -218,6 +225,53 @@ def test_orders_together_are_worked_where_the_first_is_asked_for(tmp_path: Path)
     assert not any(holds(cache, key) for key in keys)
     read(stage, low)
     assert all(holds(cache, key) for key in keys)
+
+
+def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Outlines of the stage and its units together, then hinges and both orders together, the longest first."""
+    checked: list[int] = []
+    worked: list[list[Job]] = []
+
+    def sound(stages: Sequence[Mechanism], **_: object) -> list[tuple[Finding, ...]]:
+        checked.append(len(stages))
+        return [()] * len(stages)
+
+    def work_all(jobs: list[Job], *_: object) -> None:
+        worked.append(jobs)
+        raise DesignError((Finding("left", "was not worked", "Work it"),))
+
+    monkeypatch.setattr("flexstage.solid.fea.sound.contacts_apart", sound)
+    monkeypatch.setattr("flexstage.solid.fea.parts.work_all", work_all)
+    ways = Ways(Cache(tmp_path))
+    plan = verification_plan(small(), Resolution(), ways)
+    with pytest.raises(DesignError, match="was not worked"):
+        work_ahead(plan, ways)
+    assert checked == [2]
+    ((jobs),) = worked
+    reductions = [job for job in jobs if isinstance(job, Reduce)]
+    assert {job.reduction.fineness.order for job in reductions} == {2, 3}
+    assert {job.name for job in jobs if isinstance(job, HingeJob)} == {"leaf", "neck-back"}
+    assert [job.seconds() for job in jobs] == sorted((job.seconds() for job in jobs), reverse=True)
+
+
+def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = (replace(job, key=key) for key, job in zip(("stage", "unit"), reduce_jobs(components(small()), OF_SMALL), strict=False))
+    plan = Plan((Phase("order 3", {}, todo=(first, second)),), lanes=1, needed=frozenset({"stage"}))
+
+    def work_all(jobs: list[Reduce], done: Callable[[Reduce, bytes], None], *_: object) -> None:
+        for job in jobs:
+            if job.key in able:
+                done(job, to_bytes(EMPTY, job.key, versions()))
+        raise DesignError((Finding("one", "failed", "Mend it"),))
+
+    monkeypatch.setattr("flexstage.solid.fea.parts.work_all", work_all)
+    able = {"unit"}
+    with pytest.raises(DesignError, match="failed"), Pool() as pool:
+        work_ahead(plan, Ways(Cache(tmp_path), pool=pool))
+    able = {"stage"}
+    with Pool() as pool:
+        work_ahead(plan, Ways(Cache(tmp_path), pool=pool))
+        assert set(pool.results) == {"stage", "unit"}  # the unit's was kept before
 
 
 def test_jobs_of_raised_components_are_those_of_the_next_order() -> None:

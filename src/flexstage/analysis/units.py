@@ -43,16 +43,20 @@ class UnitResult(UnitOutput):
     omitted: Omitted | None
 
 
-def units(mechanism: Mechanism) -> dict[str, UnitResult]:
+def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
     """Analyse the first copy of every placed unit that drives its output by exactly one actuator, alone. One design.
 
-    A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out.
+    A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out. `omissions`: also work out what the
+    theory of levers omits, most of the work.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
     10.3
     """
-    return {unit: unit_alone(mechanism, copy, unit, direction) for unit, (copy, direction) in driven_units(mechanism).items()}
+    return {
+        unit: unit_alone(mechanism, copy, unit, direction, omissions=omissions)
+        for unit, (copy, direction) in driven_units(mechanism).items()
+    }
 
 
 def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
@@ -90,8 +94,8 @@ def as_vector(direction: Array) -> Vector:
     return (float(direction[0]), float(direction[1]), float(direction[2]))
 
 
-def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> UnitResult:
-    """Analyse one copy of a unit alone, whose output moves along a direction (3,). One design.
+def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
+    """Analyse one copy of a unit alone, whose output moves along a direction (3,), with what the theory of levers omits. One design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)
@@ -115,7 +119,7 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array) -> 
         load_compliance=float(load),
         series=_series(mechanism, copy),
         lever=lever,
-        omitted=None if lever is None else _omitted(guided, unit, channel),
+        omitted=None if lever is None or not omissions else _omitted(guided, unit, channel),
     )
 
 

@@ -183,10 +183,21 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
     flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
     """
     found = distinct_hinges(mechanism)
-    if not found:
-        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
+    require_hinges(found)
     solved = compute(turned_forms(found))
     return {name: as_drawn(each, solved[name]) for name, each in found.items()}
+
+
+def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
+    """Raise a `DesignError` where a stage has no hinge that is drawn.
+
+    >>> require_hinges({})
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    """
+    if not found:
+        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:

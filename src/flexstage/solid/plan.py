@@ -22,7 +22,7 @@ from flexstage.solid.fea.parts import Ways, obtain, reduce_jobs
 from flexstage.solid.fea.reducing import Reduce, StoredJob
 from flexstage.solid.fea.remote import workers
 from flexstage.solid.fea.sound import check_together, sound_components
-from flexstage.solid.hinges import accuracy_of, distinct_hinges, turned_forms
+from flexstage.solid.hinges import accuracy_of, distinct_hinges, require_hinges, turned_forms
 from flexstage.solid.read import Notice
 from flexstage.solid.resolution import Resolution, first_reductions, orders_of
 
@@ -88,7 +88,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
     The accuracy of hinges is what is asked for, unless it is told. Outlines are checked against each other. Unknowns and seconds are those
     of usual meshes of such parts, right within a factor of two or three; time left is told by what the first jobs took. Raises
-    `DesignError` where the stage cannot be read as a solid.
+    `DesignError` where the stage cannot be read as a solid, or has no hinge.
     """
     shape, alone = with_drawn_parts(mechanism), _units_alone(mechanism)
     check_together([shape, *alone], ways.cache, ways.pool)
@@ -97,6 +97,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
         parts += [sound_components(stage, ways.cache) for stage in alone]
     except DesignError:  # told when its turn comes
         alone = []
+    require_hinges(distinct_hinges(shape))
     exact = accuracy_of(asked.accuracy, asked.order) if of_hinges is None else of_hinges
     lower, upper = first_reductions(asked)
     _, *rest = orders_of(asked)
@@ -106,8 +107,8 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
     each = [jobs(stage, components) for stage, components in zip((shape, *alone), parts, strict=True)]
     names = "hinges", f"order {lower.fineness.order}", f"order {upper.fineness.order}"
-    whole = [{job.key: job for job in reversed([*chain.from_iterable(same)])} for same in zip(*each, strict=True)]
-    phases = tuple(_phase(name, of_all.values(), ways) for name, of_all in zip(names, whole, strict=True))
+    whole = [_distinct(chain.from_iterable(same)) for same in zip(*each, strict=True)]
+    phases = tuple(_phase(name, of_all, ways) for name, of_all in zip(names, whole, strict=True))
     more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
     known = sum(map(len, whole)) - sum(len(phase.todo) for phase in phases)
     return Plan(phases, workers(ways.limits), known, more, frozenset(job.key for job in chain.from_iterable(each[0])))
@@ -136,6 +137,13 @@ def _units_alone(mechanism: Mechanism) -> list[Mechanism]:
         return [with_drawn_parts(isolate(mechanism, copy)) for copy, _ in driven_units(mechanism).values()]
     except DesignError:
         return []
+
+
+def _distinct(jobs: Iterable[StoredJob]) -> tuple[StoredJob, ...]:
+    first: dict[str, StoredJob] = {}
+    for job in jobs:
+        first.setdefault(job.key, job)
+    return tuple(first.values())
 
 
 def _phase(name: str, jobs: Iterable[StoredJob], ways: Ways) -> Phase:

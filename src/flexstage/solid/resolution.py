@@ -73,7 +73,7 @@ def converge(
     """
     figured = measure or (lambda way: figures(work(way)))
     orders = orders_of(asked)
-    before = figures(work(first_reductions(asked)[0]))
+    before = figured(first_reductions(asked)[0])
     found: Converged[_Result] | None = None
     for order in orders:
         try:

@@ -233,7 +233,7 @@ def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDAR
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
-        found[unit] = unit_alone(substitute_parts(alone, solid_hinges(alone, compute)), copy, unit, direction)
+        found[unit] = unit_alone(substitute_parts(alone, solid_hinges(alone, compute)), copy, unit, direction, omissions=False)
     return found
 
 
@@ -244,7 +244,7 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Con
     >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
     []
     """
-    theory = units(mechanism)
+    theory = units(mechanism, omissions=False)
     for name, unit in found.result.items():
         touched = _calibrated_parts(mechanism, name)
         first, second = theory[name].figures, better[name].figures
