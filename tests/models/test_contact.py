@@ -17,7 +17,7 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Circular
-from flexstage.solid.fea.apart import contact_apart
+from flexstage.solid.fea.apart import contacts_apart
 from flexstage.solid.fea.contact import contact_findings
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -157,5 +157,6 @@ def test_a_part_without_shape_is_named() -> None:
 
 def test_a_process_of_its_own_finds_the_same() -> None:
     bad = stage({"block": moved(BLOCK, 5e-6)}, other=Body(solids={"block": moved(BLOCK, 0.0, 0.018)}))
-    assert contact_apart(bad) == contact_findings(bad)
-    assert len(contact_apart(bad)) == 2
+    (found,) = contacts_apart([bad])
+    assert found == contact_findings(bad)
+    assert len(found) == 2

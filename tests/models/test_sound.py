@@ -58,7 +58,7 @@ def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pyt
 def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cache = Cache(tmp_path / "cache")
     assert stage_findings(propped(6 * mm), cache) == ()
-    monkeypatch.setattr(sound, "contact_apart", lambda _: pytest.fail("checked again"))
+    monkeypatch.setattr(sound, "contacts_apart", lambda *_, **__: pytest.fail("checked again"))
     assert stage_findings(propped(6 * mm), cache) == ()
     assert stage_findings(replace(propped(6 * mm), name="renamed"), cache) == ()
     with pytest.raises(pytest.fail.Exception):
@@ -69,7 +69,7 @@ def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_findings_are_never_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     found = (Finding("leaf", "its end face is 20 um away from platform", "Move it"),)
-    monkeypatch.setattr(sound, "contact_apart", lambda _: found)
+    monkeypatch.setattr(sound, "contacts_apart", lambda *_, **__: [found])
     for _ in range(2):
         assert stage_findings(propped(6 * mm), Cache(tmp_path)) == found
     assert not list(tmp_path.iterdir())
@@ -77,14 +77,14 @@ def test_findings_are_never_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_a_cache_that_cannot_be_written_is_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(sound, "contact_apart", lambda _: ())
+    monkeypatch.setattr(sound, "contacts_apart", lambda *_, **__: [()])
     assert stage_findings(propped(6 * mm), Cache(tmp_path / "file")) == ()
 
 
 def test_stages_with_imported_solids_are_checked_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Their files may have changed meanwhile."""
     calls: list[Mechanism] = []
-    monkeypatch.setattr(sound, "contact_apart", lambda stage: calls.append(stage) or ())
+    monkeypatch.setattr(sound, "contacts_apart", lambda stages, **_: calls.extend(stages) or [()])
     size, inertia = (10 * mm, 10 * mm, 10 * mm), fs.Inertia(1e-6, 1e-6, 1e-6)
     part = fs.Imported("steel", file="part.step", sha256="0" * 64, size=size, mass=0.1, centre=(0.0, 0.0, 0.0), inertia=inertia)
     stage = propped(6 * mm)

@@ -49,15 +49,13 @@ class _Checking(_Drawing):
         return json.dumps([asdict(finding) for finding in contact_findings(self.mechanism, self.clearance)]).encode()
 
 
-def contact_apart(mechanism: Mechanism, clearance: float = 0.0, limits: Limits = _LIMITS) -> tuple[Finding, ...]:
-    """What `contact_findings` finds, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
-    return contacts_apart([mechanism], clearance, limits)[0]
-
-
 def contacts_apart(
     mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
 ) -> list[tuple[Finding, ...]]:
-    """The same of several stages, side by side, by the processes of a `pool` where one is given."""
+    """What `contact_findings` finds of stages, side by side in processes of their own, or those of a `pool`.
+
+    Raises `DesignError` where that crashes or takes too long.
+    """
     found = _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
     return [tuple(Finding(**item) for item in json.loads(data)) for data in found]
 
