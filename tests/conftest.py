@@ -17,7 +17,6 @@ import pytest
 from _pytest.assertion import rewrite
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.internal.conjecture import providers
-from threadpoolctl import threadpool_limits
 
 # Else Hypothesis also tries numbers it finds in the code of whatever modules are loaded by then, but for those of a path with "test" in it:
 # what a law is tried on would depend on which tests ran before it in this process, and on where the tree lies.
@@ -54,21 +53,9 @@ def examples(quick: int, full: int) -> settings:
     return settings(max_examples=full if FULL else min(quick, _FEW) if QUICK else quick)
 
 
-@pytest.fixture(scope="session", autouse=True)
-def _one_blas_thread():
-    with threadpool_limits(limits=1):
-        yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _own_cache(tmp_path_factory: pytest.TempPathFactory):
-    """Tests begin with an empty cache of superelements, one for all processes of a run, and leave the user's alone."""
-    own = tmp_path_factory.getbasetemp()
-    run = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("FLEXSTAGE_CACHE", str(run / "cache"))
-        patch.setattr(os, "fsync", lambda _: None)  # what tests write need not outlive a power cut
-        yield
+def pytest_configure(config: pytest.Config) -> None:
+    """Fixtures of this file would be those of `tests` alone; examples in docstrings stand in `src`."""
+    config.pluginmanager.import_plugin("tests.session")
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

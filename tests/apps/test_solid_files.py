@@ -24,11 +24,6 @@ from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
 
 
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
-
-
 def apart_stage() -> Mechanism:
     """The stage of two leaves, its block 5 um away from them."""
     stage = leaf_stage()

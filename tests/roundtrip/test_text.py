@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from flexstage.base.text import printable
 from flexstage.control.export.code.text import comment, identifier
 
-EVERY = [chr(number) for number in range(0x110000)]
 DIRECTIONS = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 
 
 def test_every_character_that_steers_is_escaped_and_no_other() -> None:
-    escaped = {letter for letter in EVERY if printable(letter) != letter}
-    steering = {letter for letter in EVERY if unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") or ord(letter) & 0xFFFE == 0xFFFE}
-    steering |= {letter for letter in EVERY if unicodedata.bidirectional(letter) in DIRECTIONS}
+    every = [chr(number) for number in range(0x110000)]
+    escaped = {letter for letter in every if printable(letter) != letter}
+    steering = {letter for letter in every if unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") or ord(letter) & 0xFFFE == 0xFFFE}
+    steering |= {letter for letter in every if unicodedata.bidirectional(letter) in DIRECTIONS}
     assert steering <= escaped
     assert {unicodedata.category(letter) for letter in escaped - steering} <= {"Cf", "Cn"}
     assert all(printable(letter).isascii() and printable(letter).isprintable() for letter in escaped)

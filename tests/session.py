@@ -1,0 +1,38 @@
+"""What is set up once a process for all tests and examples: threads, the cache, processes that wait."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from threadpoolctl import threadpool_limits
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _one_blas_thread():
+    with threadpool_limits(limits=1):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _kept_processes():
+    """Processes that reduce solids are kept from test to test."""
+    from flexstage.solid.fea import remote
+    from tests.kept import Workers
+
+    workers = Workers()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(remote, "Worker", workers)
+        yield
+    workers.end()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory):
+    """Tests begin with an empty cache of superelements, one for all processes of a run, and leave the user's alone."""
+    own = tmp_path_factory.getbasetemp()
+    run = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FLEXSTAGE_CACHE", str(run / "cache"))
+        patch.setattr(os, "fsync", lambda _: None)  # what tests write need not outlive a power cut
+        yield
