@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from types import FunctionType
 
 import pytest
 from threadpoolctl import threadpool_limits
@@ -16,15 +17,22 @@ def _one_blas_thread():
 
 @pytest.fixture(scope="session", autouse=True)
 def _kept_processes():
-    """Processes that reduce solids are kept from test to test."""
+    """Processes for jobs are kept from test to test: those that reduce solids, to which limits of memory are set, and the others."""
+    from flexstage.base import jobs
+    from flexstage.control.study import compare
     from flexstage.solid.fea import remote
+    from flexstage.studies.sweeps import work
     from tests.kept import Workers
 
-    workers = Workers()
+    solids, others = Workers(), Workers()
+    results = FunctionType(jobs.results.__code__, vars(jobs) | {"Worker": others})
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(remote, "Worker", workers)
+        patch.setattr(remote, "Worker", solids)
+        patch.setattr(work, "results", results)
+        patch.setattr(compare, "results", results)
         yield
-    workers.end()
+    solids.end()
+    others.end()
 
 
 @pytest.fixture(scope="session", autouse=True)
