@@ -54,12 +54,24 @@ directions = st.tuples(_STEPS, _STEPS, _STEPS).filter(any).map(lambda steps: tup
 """Directions of small whole components: every octant, and the axes as the simplest."""
 
 
+@cache
+def _across(along):
+    """Directions that are not parallel to one."""
+    return directions.filter(lambda other: any(_cross(along, other)))
+
+
+def _cross(one, other):
+    """Their product, of numbers that floats hold exactly: numpy takes thirty times as long for three of them."""
+    (a, b, c), (x, y, z) = one, other
+    return (b * z - c * y, c * x - a * z, a * y - b * x)
+
+
+@cache
 @st.composite
 def orientations(draw):
     """(along, bends): two directions exactly perpendicular to one another."""
     along = draw(directions)
-    helper = draw(directions.filter(lambda other: any(np.cross(along, other))))
-    return along, tuple(float(part) for part in np.cross(along, helper))
+    return along, _cross(along, draw(_across(along)))
 
 
 materials = st.builds(
@@ -83,14 +95,17 @@ leaves = st.builds(Leaf, st.just("metal"), _length(10, 40), _length(0.3, 1), _le
 rods = st.builds(Rod, st.just("metal"), _length(10, 50), _length(0.8, 2))
 
 
+_of_any_kind = st.sampled_from((notches, necks, leaves, rods)).flatmap(lambda part: part)
+
+
 @st.composite
 def givens(draw):
     """A stated 6x6: any positive definite matrix with stiffnesses like those of hinges, coupled by up to a third."""
     translation, rotation = draw(_number(-8.5, -6.0)), draw(_number(-4.5, -2.0))
     root = 10.0 ** (0.5 * np.array([translation] * 3 + [rotation] * 3))
-    lower = np.eye(6) + np.tril(np.array([[draw(st.integers(-3, 3)) for _ in range(6)] for _ in range(6)]) / 9.0, -1)
+    lower = np.eye(6) + np.tril(np.array([[draw(_STEPS) for _ in range(6)] for _ in range(6)]) / 9.0, -1)
     matrix = root[:, None] * (lower @ lower.T) * root
-    freedoms = draw(st.sampled_from((notches, necks, leaves, rods)).flatmap(lambda part: part)).intended
+    freedoms = draw(_of_any_kind).intended
     return Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), freedoms, draw(_number(0.0, 0.05)))
 
 
@@ -106,15 +121,26 @@ piezos = st.builds(
 passive_parts = st.one_of(notches, necks, leaves, rods, givens())
 
 
+_signs = st.sampled_from((0.0, 1.0, -1.0))
+_sides = st.sampled_from(Positive)
+
+
+@cache
+def _perhaps(value):
+    """It, or none."""
+    return st.none() | value
+
+
+@cache
 @st.composite
 def bodies(draw, *, massless=False, centre=places):
     """A body of stated mass; its inertia is that of a cuboid, turned by up to a few degrees in one plane."""
     if massless and draw(st.booleans()):
-        return Body(reference=draw(st.none() | places))
+        return Body(reference=draw(_perhaps(places)))
     mass, (a, b, c) = draw(_number(0.05, 5.0)), (draw(_length(20, 100)) for _ in range(3))
     xx, yy, zz = (mass / 12.0 * (first**2 + second**2) for first, second in ((b, c), (a, c), (a, b)))
-    product = 0.1 * min(xx, yy, zz) * draw(st.sampled_from((0.0, 1.0, -1.0)))
-    return Body(mass=mass, centre=draw(centre), inertia=Inertia(xx, yy, zz, xy=product), reference=draw(st.none() | centre))
+    product = 0.1 * min(xx, yy, zz) * draw(_signs)
+    return Body(mass=mass, centre=draw(centre), inertia=Inertia(xx, yy, zz, xy=product), reference=draw(_perhaps(centre)))
 
 
 @st.composite
@@ -125,7 +151,7 @@ def probes(draw, names):
         body = draw(st.sampled_from(names))
         base = draw(st.sampled_from([name for name in (None, *names) if name != body]))
         along, up = draw(orientations())
-        result[f"S{number + 1}"] = Probe("gauge", body, Pose(draw(places), along, up), draw(st.sampled_from(Positive)), base or GROUND)
+        result[f"S{number + 1}"] = Probe("gauge", body, Pose(draw(places), along, up), draw(_sides), base or GROUND)
     return result
 
 
