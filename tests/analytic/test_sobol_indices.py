@@ -37,3 +37,8 @@ def test_correlation_ratios_of_other_plans(sampling):
     np.testing.assert_allclose(found.first[:, 0], ALONE / VARIANCE, atol=0.03)
     np.testing.assert_allclose(found.mean, [A / 2.0, 1.0], atol=0.05)
     np.testing.assert_allclose(found.deviation[0] ** 2, VARIANCE, rtol=4.0 * np.sqrt(2.5 / 8192))  # four standard errors, kurtosis 3.5
+
+
+def test_a_handful_of_designs_tells_no_shares():
+    found = ishigami(Sampling.LATIN_HYPERCUBE, 6)
+    assert np.all(np.isnan(found.first))

@@ -283,6 +283,7 @@ def test_designs_that_fail_stop_no_other() -> None:
         assert names[4] == "NOT_FINITE"
         assert np.isnan(found.frequencies[1:5]).all()
         np.testing.assert_allclose(found.frequencies[0], fs.modes(lumped(double_triangle())).platform_frequencies, rtol=1e-6)
+    assert platform_modes(family_plan, values[:0], slopes=True).slopes.shape == (0, 2, 6, 6)
 
 
 def test_a_limit_leaves_modes_out_as_for_one_design() -> None:

@@ -82,19 +82,23 @@ push = { joins = ["ground", "platform"], part = "stack", at = ["-60 mm", "0 mm",
 """
 
 
-def upright(tmp_path: Path, responses: str) -> Study:
+HEAVIER = 'variables.mass = { of = "bodies.platform.mass", from = "1 kg", to = "14 kg", levels = 6 }'
+FALLING = 'variables.gravity = { of = "gravity.z", from = "-9 m/s^2", to = "3 m/s^2", levels = 3 }'
+
+
+def upright(tmp_path: Path, responses: str, variable: str = HEAVIER) -> Study:
     """Upright leaves under 1 to 14 kg: four of six designs hold, as the leaves' critical load and the stack's stiffness bear 97.1 N."""
     (tmp_path / "stage.toml").write_text(MASS)
-    variable = 'variables.mass = { of = "bodies.platform.mass", from = "1 kg", to = "14 kg", levels = 6 }'
     head = f'format = "flexstage study 1"\ndesign = "stage.toml"\n{variable}\nsweep = {{ sampling = "grid" }}\n'
     (tmp_path / "study.toml").write_text(head + responses)
     return load_study(tmp_path / "study.toml")
 
 
-def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: Path):
+@pytest.mark.parametrize(("variable", "count"), [(HEAVIER, 4), (FALLING, 3)], ids=["mass", "gravity"])
+def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: Path, variable: str, count: int):
     """The stiffness is that of one design then, stresses, loads and load factors are those of many."""
-    study = upright(tmp_path, 'responses = { b = "buckling", s = "safety", z = "deflection.z", f = "frequency.1" }')
-    found = piece(study, 0, 4)
+    study = upright(tmp_path, 'responses = { b = "buckling", s = "safety", z = "deflection.z", f = "frequency.1" }', variable)
+    found = piece(study, 0, count)
     for values, responses in zip(found.variables, found.responses, strict=True):
         alone = measure_all(apply(study.design, study.variables, values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-9)

@@ -171,7 +171,8 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
     """
     require_balanced(model, "gravity", stack((*mechanism.gravity, 0.0, 0.0, 0.0)))
     carried = {name: applied_forces(mechanism, model, _weight(mechanism, name)) for name in mechanism.payloads}
-    everything = model.base_inertia[..., :3] @ stack(mechanism.gravity)
+    gravity, falling = stack(mechanism.gravity), model.base_inertia[..., :3]
+    everything = falling @ gravity if gravity.ndim == 1 else (falling @ gravity[..., None])[..., 0]
     own = everything - sum(carried.values(), np.zeros(len(model.coordinates)))
     forces = {name: applied_forces(mechanism, model, force) for name, force in mechanism.forces.items()}
     return {OWN_WEIGHT: own, **{f"payload {name}": load for name, load in carried.items()}, **forces, **_preloads(mechanism, model)}

@@ -209,9 +209,11 @@ def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: 
 
 def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method, wide: bool = False) -> PlatformModes:
     """The designs of one chunk; with `wide` by all that can change of bodies."""
+    result = _nothing(plan_, len(values), slopes=slopes)
+    if not len(values):
+        return result
     finite: Array = np.asarray(np.isfinite(values).all(axis=1))
     safe = np.where(finite[:, None], values, plan_.family.nominal)
-    result = _nothing(plan_, len(values), slopes=slopes)
     with np.errstate(all="ignore"):  # designs far from any sense: told by their status
         if plan_.family.topology.locked:
             result.status[~finite] = Status.NOT_FINITE

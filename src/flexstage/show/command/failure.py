@@ -63,7 +63,7 @@ def _code_of_exit(end: SystemExit) -> int:
     if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
-        print_note("Ended by a signal; nothing was written. Finished parts are kept: the same command resumes from there.")
+        print_note("Ended by a signal. Finished parts are kept: the same command resumes from there, that of a study with --resume.")
     return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
 
 

@@ -119,7 +119,7 @@ def _bins(column: Array, plan: Plan) -> Array:
 
 
 def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
-    """Correlation ratios (d, r); of random designs less what bins of pure chance would explain, (b - 1)/(n - 1)."""
+    """Correlation ratios (d, r); of random designs less what bins of pure chance would explain, (b - 1)/(n - 1); NaN of one bin."""
     result = np.full((len(bins), values.shape[1]), np.nan)
     if not len(values):
         return result
@@ -130,7 +130,7 @@ def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
         between = np.sum(counts[:, None] * (sums / counts[:, None] - values.mean(axis=0)) ** 2, axis=0) / max(len(values), 1)
         share = between / spread
         chance = 0.0 if grid or len(values) < 2 else (len(counts) - 1) / (len(values) - 1)
-        result[number] = np.maximum((share - chance) / (1.0 - chance), 0.0) if chance < 1.0 else np.nan
+        result[number] = np.maximum((share - chance) / (1.0 - chance), 0.0) if chance < 1.0 and (grid or len(counts) > 1) else np.nan
     return result
 
 
