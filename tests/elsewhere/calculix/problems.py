@@ -119,7 +119,7 @@ def read_mesh(path: Path, problem: Problem) -> PieceMesh:
     """A problem's mesh, before `shape`, from a file that holds its drawing too; which piece owns an element is left out."""
     media = tuple(dict.fromkeys(piece.medium for piece in problem.component.pieces))
     mesh = ngsolve.Mesh(str(path))
-    return PieceMesh(mesh, media, (problem.held, problem.loaded), np.zeros(mesh.ne, dtype=int))
+    return PieceMesh(mesh, media, (problem.held, problem.loaded), np.zeros(mesh.ne, dtype=int), np.zeros(mesh.ne, dtype=bool))
 
 
 def _named(stage: Mechanism, name: str) -> Component:

@@ -67,7 +67,7 @@ def grid(mesh: PieceMesh) -> Grid:
     >>> from netgen import occ
     >>> from flexstage.solid.fea.mesh import PieceMesh
     >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
-    >>> drawn = grid(PieceMesh(cube, (), (), np.zeros(cube.ne, dtype=int)))
+    >>> drawn = grid(PieceMesh(cube, (), (), np.zeros(cube.ne, dtype=int), np.zeros(cube.ne, dtype=bool)))
     >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
     (True, 0.001)
     """

@@ -29,7 +29,7 @@ class Field:
     """The displacement space of a mesh, held on `held` faces, and the coefficients of its media."""
 
     meshed: PieceMesh
-    space: ngsolve.VectorH1
+    space: ngsolve.FESpace
     lame: ngsolve.CoefficientFunction
     shear: ngsolve.CoefficientFunction
     density: ngsolve.CoefficientFunction
@@ -63,7 +63,7 @@ class Field:
 
 
 def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
-    """The displacement space of `order` on a mesh with named faces held.
+    """The displacement space of `order`, and of one more in elements that are `finer`, on a mesh with named faces held.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
@@ -74,7 +74,13 @@ def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
     """
     mesh = meshed.mesh
     pattern = "|".join(_escape(name) for name in held)
-    space = ngsolve.VectorH1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.VectorH1(mesh, order=order)
+    scalar = ngsolve.H1(mesh, order=order, dirichlet=pattern) if pattern else ngsolve.H1(mesh, order=order)
+    if meshed.finer.any():
+        for number in np.flatnonzero(meshed.finer).tolist():
+            element = mesh[ngsolve.ElementId(ngsolve.VOL, number)]
+            for node in (*element.edges, *element.faces, ngsolve.NodeId(ngsolve.CELL, number)):
+                scalar.SetOrder(node, order + 1)
+        scalar.UpdateDofTables()
 
     def coefficient(values: list[float]) -> ngsolve.CoefficientFunction:
         return mesh.MaterialCF({f"medium {number}": value for number, value in enumerate(values)})
@@ -82,7 +88,7 @@ def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
     media = meshed.media
     return Field(
         meshed,
-        space,
+        ngsolve.VectorValued(scalar),
         coefficient([medium.lame for medium in media]),
         coefficient([medium.shear for medium in media]),
         coefficient([medium.density for medium in media]),

@@ -15,7 +15,7 @@ WARPS = 12
 
 @dataclass(frozen=True)
 class Fineness:
-    """How fine to mesh and of which polynomial `order`, that of the curved geometry included.
+    """How fine to mesh and of which polynomial `order`, that of the curved geometry included; notches take one order more within.
 
     Elements are `neck` times a link's least thickness on its faces, `block` times a body's least dimension elsewhere, and grow by
     `grading` (0.1 slow to 0.9 fast).

@@ -192,7 +192,7 @@ def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accura
 
 def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
     mesh.Curve(order)
-    return field(PieceMesh(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int)), [START, END], order)
+    return field(PieceMesh(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int), np.zeros(mesh.ne, dtype=bool)), [START, END], order)
 
 
 def _law(part: Shaped, space: Field) -> Array:

@@ -53,7 +53,18 @@ class Counts:
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
         """
-        return Counts(*(value / factor**2 for value in (self.vertices, self.edges, self.faces, self.elements)))
+        return self._times(1.0 / factor**2)
+
+    def enriched(self, share: float, order: int) -> Counts:
+        """Of a mesh all of whose elements are of an order, the counts that have as many freedoms as this one with a share of one more.
+
+        >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
+        10.0
+        """
+        return self._times(1.0 + share * (freedoms(self, order + 1) / freedoms(self, order) - 1.0))
+
+    def _times(self, factor: float) -> Counts:
+        return Counts(*(value * factor for value in (self.vertices, self.edges, self.faces, self.elements)))
 
 
 def freedoms(counts: Counts, order: int) -> float:

@@ -19,20 +19,24 @@ from flexstage.solid.fea.cad import Cad, cad, half_extents, region
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
-from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece, bends_both_ways, span, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, bends_both_ways, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.straighten import straighten
 
-_HINGE_CURVATURE = 2.0
-_ROUND_CURVATURE = 1.5
+_CURVATURE = 1.5
+"""Segments per radius of curved faces."""
 _NECK = 0.5
 """Share of a link's length, about its middle, whose elements follow the drawing."""
-_THIN, _AROUND = 0.47, 0.7
-"""Elements where a hinge is thinnest are this share of those on its faces: about two through the thickness, as bending wants. So far along
-it, on both sides, in geometric means of radius and thickness."""
 _CORE, _AWAY = 1.0 / 6.0, 0.1
 """Elements within a round neck with an arc, on circles of half its radius about its axis: this share of those on its faces in the middle,
 larger by this share of the distance from it. From its surface alone the mesher fills it with flat ones, twice as wide."""
+_ROUND = 0.85
+"""Elements within round necks are this share of those of the same neck alone, as its faces are coarser."""
+_NOTCH = 5.0 / 3.0
+"""Elements of notches, which are of one order more, are as much larger than those on the faces of other hinges."""
+_AMID, _REACH = 0.7, 1.6
+"""Elements in the middle plane of a notch are this share of those on the faces of other hinges, so far along it on both sides, in geometric
+means of radius and thickness: there strain changes most."""
 _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
 _ROOT = 2.0 / 15.0
@@ -51,12 +55,16 @@ _AT_HAND = 8
 
 @dataclass(frozen=True)
 class PieceMesh:
-    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to."""
+    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to.
+
+    Elements that are `finer` (mask) take one order more than the others: those of notches.
+    """
 
     mesh: ngsolve.Mesh
     media: tuple[Medium, ...]
     faces: tuple[str, ...]
     owner: Array
+    finer: Array
 
 
 def mesh_component(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> PieceMesh:
@@ -129,7 +137,7 @@ def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolv
         "mp": _refine_necks(component.pieces, shrink * fineness.neck),
         "maxh": _set_sizes(component, drawing, fineness, shrink),
         "grading": grading * fineness.grading,
-        "curvaturesafety": curvature * _curvature(component),
+        "curvaturesafety": curvature * _CURVATURE,
     }
     return generate_mesh(drawing.shape, sizes)
 
@@ -166,13 +174,13 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
         if piece.body is None:
             within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
             necks |= within & (owner == number)
-    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner)
+    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if _is_notch(piece.form)])
+    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer)
 
 
-def _curvature(component: Component) -> float:
-    """Segments per radius: the arcs of hinges fold elements that are too coarse; stacks and discs do not."""
-    hinged = any(isinstance(piece.form, Shaped) and not piece.form.is_prismatic for piece in component.pieces)
-    return _HINGE_CURVATURE if hinged else _ROUND_CURVATURE
+def _is_notch(form: Form) -> bool:
+    """Whether it is a hinge with arcs across a width: its strain changes from face to face and along it, but smoothly."""
+    return isinstance(form, Shaped) and form.has_arc and not (form.throat.is_round or form.slender)
 
 
 def _refine_necks(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
@@ -200,21 +208,21 @@ def restrict_sizes(places: Iterable[tuple[Array, float]]) -> MeshingParameters:
 
 def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
     """Points (n, 3) of a hinge, in its frame, and the size of elements there [m]."""
-    least = neck * thinnest(form)
-    if form.has_arc:
-        yield _thin_points(form, _THIN * neck), _THIN * least
     if _is_strut(form):
-        yield _root_points(form, _ROOT * least), _ROOT * least
-    yield from core_points(form, neck)
+        size = _ROOT * neck * thinnest(form)
+        yield _root_points(form, size), size
+    if _is_notch(form):
+        size = _AMID * neck * thinnest(form)
+        yield _middle_points(form, size), size
+    yield from core_points(form, _ROUND * neck)
 
 
-def _thin_points(form: Shaped, share: float) -> Array:
-    """Points (n, 3) on both faces of a hinge around its thinnest line, in its frame [m]."""
+def _middle_points(form: Shaped, size: float) -> Array:
+    """Points (n, 3) in the middle plane of a notch around its thinnest line, in its frame [m]."""
     thickness, width = (float(np.real(value)) for value in (form.throat.height, form.throat.width))
-    step = share * thinnest(form)
-    reach = _AROUND * np.sqrt(0.5 * span(form) * thickness)
-    along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / step))) for half in (reach, 0.5 * width))
-    return np.array([(x, y, z) for x in along for y in (-0.5 * thickness, 0.5 * thickness) for z in across])
+    reach = _REACH * np.sqrt(0.5 * span(form) * thickness)
+    along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / size))) for half in (reach, 0.5 * width))
+    return np.array([(x, 0.0, z) for x in along for z in across])
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
@@ -288,9 +296,11 @@ def _thicker(piece: Piece, centre: Array) -> float:
 
 
 def _size(piece: Piece, fineness: Fineness) -> float:
+    if piece.body is not None:
+        return fineness.block * thinnest(piece.form) * MILLIMETRES
     slender = isinstance(piece.form, Shaped) and _is_strut(piece.form)
-    factor = fineness.block if piece.body is not None else fineness.neck * (_SLENDER if slender else 1.0)
-    return factor * thinnest(piece.form) * MILLIMETRES
+    factor = _SLENDER if slender else _NOTCH if _is_notch(piece.form) else 1.0
+    return factor * fineness.neck * thinnest(piece.form) * MILLIMETRES
 
 
 def _is_strut(form: Shaped) -> bool:

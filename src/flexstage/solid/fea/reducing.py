@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
@@ -123,6 +125,7 @@ class Reduce(ComponentJob):
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness)))
         mesh = mesh_component(self.component, self.reduction.fineness, call.report, call.attempt)
         size = mesh.mesh
-        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne))
+        share = float(np.mean(mesh.finer))
+        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne).enriched(share, self.reduction.fineness.order))
         element = reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
         return to_bytes(element, self.key, call.made)
