@@ -21,8 +21,9 @@ from flexstage.cases.registry import case
 from flexstage.show.command.progress import ProgressBar
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.parts import Ways
+from flexstage.solid.fea.remote import Pool
 from flexstage.solid.hinges import hinges
-from flexstage.solid.plan import verification_plan
+from flexstage.solid.plan import verification_plan, work_ahead
 from flexstage.solid.read import solids
 from flexstage.solid.resolution import Resolution
 from flexstage.solid.verification import verify
@@ -40,14 +41,17 @@ def told(name: str, order: int, folder: Path) -> tuple[float, float, list[tuple[
         if shown.left is not None:
             said.append((time.monotonic() - begun, shown.left))
 
-    stage, asked, ways = case(name), Resolution(0.01, order), Ways(Cache(folder), step)
+    stage, asked = case(name), Resolution(0.01, order)
     begun = time.monotonic()
-    plan = verification_plan(stage, asked, ways)
-    print(plan)
-    shown.follow([phase.seconds for phase in plan.phases], plan.lanes)
-    begun, said[:] = time.monotonic(), []
-    verify(stage, asked, solids(ways), hinges(0.01, order, ways))
-    return plan.seconds, time.monotonic() - begun, said
+    with Pool() as pool:
+        ways = Ways(Cache(folder), step, pool=pool)
+        plan = verification_plan(stage, asked, ways)
+        print(plan)
+        shown.follow([plan.together], plan.lanes)
+        begun, said[:] = time.monotonic(), []
+        work_ahead(plan, ways)
+        verify(stage, asked, solids(ways), hinges(0.01, order, ways))
+        return plan.seconds, time.monotonic() - begun, said
 
 
 def main(name: str = "parallelogram", order: str = "2") -> int:

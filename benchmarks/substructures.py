@@ -56,6 +56,18 @@ def tree_memory(process: int) -> float:
     return sum(_memory(each) for each in _tree(process))
 
 
+def tree_at_work(process: int) -> int:
+    """How many processes, of one and all it started, compute or wait for a core."""
+    return sum(_state(each) == "R" for each in _tree(process))
+
+
+def _state(process: int) -> str:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return ""
+
+
 def _tree(process: int) -> Iterator[int]:
     yield process
     for path in Path(f"/proc/{process}/task").glob("*/children"):

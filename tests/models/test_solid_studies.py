@@ -254,6 +254,23 @@ def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pyte
     assert [job.seconds() for job in jobs] == sorted((job.seconds() for job in jobs), reverse=True)
 
 
+def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) -> None:
+    pools: list[Pool | None] = []
+
+    def work_ahead(_plan: Plan, ways: Ways) -> None:
+        pools.append(ways.pool)
+        raise DesignError((Finding("left", "was not worked", "Work it"),))
+
+    monkeypatch.setattr("flexstage.solid.verification.verification_plan", lambda *_: Plan((), lanes=1))
+    monkeypatch.setattr("flexstage.solid.verification.work_ahead", work_ahead)
+    with pytest.raises(DesignError, match="was not worked"):
+        fs.solid.verify(small())
+    assert pools[0] is not None
+    with pytest.raises(DesignError, match="links: none of them is a hinge"):
+        fs.solid.verify(Mechanism("bare"), reduce=solids(Ways(None)))
+    assert len(pools) == 1
+
+
 def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = (replace(job, key=key) for key, job in zip(("stage", "unit"), reduce_jobs(components(small()), OF_SMALL), strict=False))
     plan = Plan((Phase("order 3", {}, todo=(first, second)),), lanes=1, needed=frozenset({"stage"}))
