@@ -28,12 +28,14 @@ class Partition:
 def partition(facets: Sequence[Facet], size: float) -> Partition | None:
     """Divide facets by their own planes, splitting those that cross one; `size` [m] is the scene's, for the tolerance.
 
+    Faces of one convex solid stay together: of those that face a viewer none hides another.
+
     >>> partition((), 1.0) is None
     True
     """
     if not facets:
         return None
-    if len(facets) == 1 or all(len(facet.points) < 3 for facet in facets):
+    if len(facets) == 1 or all(len(facet.points) < 3 for facet in facets) or _are_of_convex(facets, _TOLERANCE * size):
         return Partition(facets[0].normal, tuple(facets), None, None)
     normal, sides, distances = _best(facets, _TOLERANCE * size)
     here: list[Facet] = []
@@ -49,6 +51,16 @@ def partition(facets: Sequence[Facet], size: float) -> Partition | None:
         else:
             (before if side == 1 else behind).append(facet)
     return Partition(normal, tuple(here), partition(before, size), partition(behind, size))
+
+
+def _are_of_convex(facets: Sequence[Facet], tolerance: float) -> bool:
+    """Whether facets are of one solid, all of it that is here behind the plane of each."""
+    paint = facets[0].paint
+    if not all(facet.paint is paint and len(facet.points) > 2 for facet in facets):
+        return False
+    normals = np.array([facet.normal for facet in facets])
+    heights = np.concatenate([facet.points for facet in facets]) @ normals.T
+    return bool(np.all(heights <= np.sum([facet.points[0] for facet in facets] * normals, axis=1) + tolerance))
 
 
 def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], list[Array]]:
@@ -106,7 +118,7 @@ def _clip(facet: Facet, distance: Array) -> Facet:
 
 
 def sort_by_depth(tree: Partition | None, eye: Array) -> Iterator[Facet]:
-    """Facets from the farthest to the nearest, seen from the direction `eye` (3,), towards the viewer.
+    """Facets from the farthest to the nearest, seen from the direction `eye` (3,), towards the viewer; right among those that face it.
 
     >>> list(sort_by_depth(None, np.array([0.0, 0.0, 1.0])))
     []
