@@ -406,6 +406,27 @@ def test_a_start_without_the_right_modes_is_found_out() -> None:
         np.testing.assert_allclose(found.frequencies[0], fs.modes(lumped(double_triangle())).platform_frequencies, rtol=1e-9)
 
 
+def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> None:
+    """With a pivot beside the plane its body alone is whole, and what elimination couples with it; designs without the plane wholly are."""
+    names = ("parts.neck.thickness", "place.B4-B6.pattern.turn", "units.vertical.links.pivot.at.y")
+    flat = plan(double_triangle(), names)
+    tilted = plan(set_value(double_triangle(), names[2], 1e-3), names)
+    platform = len(flat.scheme.graph.order) - 1
+    assert (flat.planes.flat[:platform] == 1).all()
+    assert tilted.planes.flat.sum(axis=0).tolist() == [platform - 3, platform - 6]
+    if kernel() is None:
+        pytest.skip("no compiler")
+    numbers = designs(tilted, 9, 0.05)
+    numbers[::2, 2] = 0.0
+    for family_plan in (flat, tilted):
+        stage = stage_of(family_plan, numbers)
+        found, known = iterate(family_plan, stage), wholly(stage, family_plan.choice)
+        assert found.good.all()
+        np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-12)
+        scale = np.max(np.abs(found.slopes), axis=(0, 2, 3))[:, None, None]
+        assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
+
+
 @given(st.integers(2, 9).flatmap(lambda count: st.tuples(st.just(count), st.sets(st.tuples(st.integers(0, 8), st.integers(0, 8))))))
 @examples(50, 1000)
 def test_elimination_orders_any_graph(drawn) -> None:

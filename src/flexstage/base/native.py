@@ -176,12 +176,12 @@ def kernel_lanes() -> Lanes:
 
 
 def kernel_recipe(what: str, source: Path, lanes: Lanes | None = None) -> Recipe:
-    """How a kernel of the package is built: one file of C and the vectors that all kernels share (lanes.h), for this processor's lanes.
+    """How a kernel of the package is built: a file of C, headers beside it and the vectors all kernels share, for this processor's lanes.
 
     >>> sorted(kernel_recipe("none", Path(__file__)).sources)
     ['lanes.h', 'native.py']
     """
-    files = (source, Path(__file__).with_name("lanes.h"))
+    files = (source, *sorted({*source.parent.glob("*.h"), Path(__file__).with_name("lanes.h")}))
     flags = (kernel_lanes() if lanes is None else lanes).flags
     return Recipe(what, {each.name: each.read_text(encoding="utf-8") for each in files}, (*_KERNEL, *flags))
 

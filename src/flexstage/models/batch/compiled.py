@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +15,7 @@ from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme
 from flexstage.models.batch.features import GROUNDED, Feature
 from flexstage.models.batch.numbers import Change
+from flexstage.models.batch.planes import SKEW, Planes, no_planes
 from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
 from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
 
@@ -46,9 +47,10 @@ _SIZES = (
     "single",
     "parts",
 )
-_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "alike")
+_PLANES = ("plane", "normal", "flat", "thin")
+_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "changes")
-_SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot")
+_SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
 _RESULTS = ("values", "share", "good", "slopes")
 
 
@@ -65,15 +67,21 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """What the kernel is told of a topology and of its derivatives (the `changes`), by name: arrays of whole numbers."""
+    """What the kernel is told of a topology, of derivatives (the `changes`) and of planes of legs, by name: arrays of whole numbers."""
 
     scheme: Scheme
     changes: tuple[Change, ...]
+    planes: Planes
+
+    @cached_property
+    def whole(self) -> Tables:
+        """The same in the stage's axes, for designs whose legs have not these planes."""
+        return Tables(self.scheme, self.changes, no_planes(self.scheme))
 
     @cached_property
     def arrays(self) -> Mapping[str, Array]:
         """Every table."""
-        return _tables(self.scheme) | _slots(self.scheme, self.changes)
+        return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **{name: getattr(self.planes, name) for name in _PLANES}}
 
 
 def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) -> Solution:
@@ -86,7 +94,7 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
     >>> library = kernel()
-    >>> tables = Tables(stage.scheme, ())
+    >>> tables = Tables(stage.scheme, (), stage.planes)
     >>> library is None or by_kernel(library, Stage(stage.scheme, numbers), stage.start, tables).good.tolist() == [True]
     True
     """
@@ -95,7 +103,13 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
         job.results["good"][:] = 0
     count = stage.numbers.shape[1]
     values, share, slopes = (np.moveaxis(job.results[name][..., :count], -1, 0) for name in ("values", "share", "slopes"))
-    return Solution(values, share, job.results["good"][:count] != 0, slopes)
+    good = job.results["good"][:count]
+    found, other = Solution(values, share, good > 0, slopes), np.flatnonzero(good < 0)
+    if len(other):
+        whole = by_kernel(library, stage.take(other), start, tables.whole)
+        for field in fields(Solution):
+            getattr(found, field.name)[other] = getattr(whole, field.name)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,13 +129,14 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     >>> from flexstage.models.batch.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((3, 0)))
-    >>> kernel_job(8, Stage(stage.scheme, numbers), stage.start, Tables(stage.scheme, ())).results["values"].shape  # whole vectors
+    >>> tables = Tables(stage.scheme, (), stage.planes)
+    >>> kernel_job(8, Stage(stage.scheme, numbers), stage.start, tables).results["values"].shape  # whole vectors
     (6, 8)
     """
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _rows(stage.numbers)
     change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
-    held = {**tables.arrays, "force": np.ascontiguousarray(start.force), "numbers_": number, "changes": change}
+    held = {**tables.arrays, "force": np.ascontiguousarray(tables.planes.inside(start.force)), "numbers_": number, "changes": change}
     stride = count + -count % width
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
@@ -159,7 +174,8 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "single": start.needed,
         "parts": stage.scheme.topology.parts,
     }
-    settings = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster, TOGETHER, SHARES, MARGIN, LEAST_PIVOT)
+    bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
+    settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
     task: Any = _Task()
     for name, value in (*sizes.items(), *zip(_SETTINGS, settings, strict=True)):
         setattr(task, name, value)

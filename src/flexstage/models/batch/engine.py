@@ -24,6 +24,7 @@ from flexstage.models.batch.dense import Whole
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
 from flexstage.models.batch.numbers import Family, Slopes, family, numbers_of, slopes_of
+from flexstage.models.batch.planes import Planes, no_planes, planes
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
@@ -74,13 +75,14 @@ class Method(Enum):
 class Plan:
     """What is found once for a family of designs.
 
-    Topology, order of elimination and the block to begin with (none: all are solved whole); a `wider` one for designs where that is not
-    enough, as modes cross; the `surface` of their features over stated ranges.
+    Topology, order of elimination, `planes` of symmetry of its legs and the block to begin with (none: all are solved whole); a `wider` one
+    for designs where that is not enough, as modes cross; the `surface` of their features over stated ranges.
     """
 
     family: Family
     scheme: Scheme
     choice: Choice
+    planes: Planes
     start: Start | None
     wider: Start | None = None
     surface: Surface | None = None
@@ -88,12 +90,12 @@ class Plan:
     @cached_property
     def tables(self) -> Mapping[bool, Tables]:
         """What the kernel is told of the topology, without and with derivatives."""
-        return {False: Tables(self.scheme, ()), True: Tables(self.scheme, self.family.changes)}
+        return {False: Tables(self.scheme, (), self.planes), True: Tables(self.scheme, self.family.changes, self.planes)}
 
     @cached_property
     def wide_tables(self) -> Tables:
         """What it is told where designs change more than those near the nominal one."""
-        return Tables(self.scheme, self.family.wide)
+        return Tables(self.scheme, self.family.wide, self.planes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,14 +143,15 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Arr
     choice = choice or Choice()
     if family_.topology.locked:
         lumped(family_.mechanism)  # says which bodies can move freely
-        return Plan(family_, scheme_, choice, None)
+        return Plan(family_, scheme_, choice, no_planes(scheme_), None)
     numbers = numbers_of(family_, family_.nominal[None])
     modes = every_mode(scheme_, numbers)
     if not len(modes.values):
         lumped(family_.mechanism)  # says which bodies can move freely
-        return Plan(family_, scheme_, choice, None)
+        return Plan(family_, scheme_, choice, no_planes(scheme_), None)
     fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
-    return Plan(family_, scheme_, choice, *_starts(scheme_, dense(scheme_, blocks(scheme_, numbers)[1])[0], modes, choice), fitted)
+    starts = _starts(scheme_, dense(scheme_, blocks(scheme_, numbers)[1])[0], modes, choice)
+    return Plan(family_, scheme_, choice, planes(scheme_, numbers), *starts, fitted)
 
 
 def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:

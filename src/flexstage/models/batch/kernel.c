@@ -37,14 +37,18 @@ typedef struct {
     const int64_t *about;   /* slots that are about a link or its part */
     const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by slots that are near, then by variable */
     const int64_t *alike;   /* links, those of one part together */
+    const int64_t *plane;   /* bodies x (link, axis): whose axes the body has, the axis normal to the plane of symmetry; -1: the stage's */
+    const int64_t *normal;  /* links: the axis of each that is normal to its leg's plane; -1: it is not symmetric about it */
+    const int64_t *flat;    /* bodies x 2: whether own blocks of K and M are split, and as elimination leaves them */
+    const int64_t *thin;    /* edges x 2: so for edges */
     const double *force;    /* bodies x 6 x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
     const double *changes;  /* entries x slopes_stride */
     /* settings */
-    double shift, value, angle, limit, cluster, together, shares, margin, pivot;
+    double shift, value, angle, limit, cluster, together, shares, margin, pivot, skew, span;
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
-    int64_t *good;          /* designs */
+    int64_t *good;          /* designs: 1, 0 for what is not proved, -1 where legs have not these planes */
     double *slopes;         /* variables x count x count x stride, zero */
 } Task;
 
@@ -74,6 +78,10 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
 #define OWN 21
 #define LOWER(i, k) ((i) * ((i) + 1) / 2 + (k)) /* k <= i */
 
+/* Bodies that are symmetric about a plane have axes of their own: entries are x, y, rz, z, rx, ry there, and those of either half have nothing
+ * in common with the others. */
+#define BOTH(split, i, k) (!(split) || (i) / 3 == (k) / 3)
+
 enum { PLAIN, TURNED, SYMMETRIC };
 
 static INLINE lanes entry(const lanes *a, int r, int c, const int kind)
@@ -88,19 +96,14 @@ static INLINE void pick_columns(lanes *x, const lanes *v, int m, const int n)
         UNROLL for (int k = 0; k < n; k++) x[c * n + k] = v[c * m + k];
 }
 
-/* n columns of y (6, m) += a x or -= a x: each entry of a is used n times. */
-static INLINE void multiply(lanes *restrict y, const lanes *restrict a, const lanes *x, int m, const int kind, const int negative, const int n)
-{
-    UNROLL for (int r = 0; r < 6; r++) {
-        lanes s[4];
-        UNROLL for (int k = 0; k < n; k++) s[k] = y[r * m + k];
-        UNROLL for (int c = 0; c < 6; c++) {
-            const lanes e = entry(a, r, c, kind);
-            UNROLL for (int k = 0; k < n; k++) s[k] = negative ? s[k] - e * x[c * n + k] : s[k] + e * x[c * n + k];
-        }
-        UNROLL for (int k = 0; k < n; k++) y[r * m + k] = s[k];
-    }
-}
+#define SIZE 6
+#define SIZED(name) name##_whole
+#include "blocks.h"
+#undef SIZE
+#undef SIZED
+#define SIZE 3
+#define SIZED(name) name##_split
+#include "blocks.h"
 
 /* `what` with four columns from j on at once, then with what is left of m. */
 #define IN_COLUMNS(m, what)                                            \
@@ -148,21 +151,15 @@ static INLINE void carried(lanes *p, const lanes *n, const lanes *b)
 }
 
 /* out += sign T(a)^T p, out of a kind. */
-static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign, const int kind)
+static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign, const int kind, const int *row, const int *column)
 {
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < (kind == SYMMETRIC ? i + 1 : 6); k++) {
             lanes x = p[6 * i + k];
             if (i > 2) x += p[6 * ((i + 1) % 3) + k] * a[(i + 2) % 3] - p[6 * ((i + 2) % 3) + k] * a[(i + 1) % 3];
-            out[kind == SYMMETRIC ? LOWER(i, k) : kind == TURNED ? 6 * k + i : 6 * i + k] += sign * x;
+            const int r = row[i], c = column[k];
+            out[kind == SYMMETRIC ? r > c ? LOWER(r, c) : LOWER(c, r) : kind == TURNED ? 6 * c + r : 6 * r + c] += sign * x;
         }
-}
-
-/* A link's edge -= or += T(a)^T p. */
-static void join_edge(lanes *out, const lanes *p, const lanes *a, double sign, int turned)
-{
-    if (turned) join(out, p, a, sign, TURNED);
-    else join(out, p, a, sign, PLAIN);
 }
 
 /* What of a part's law and mass is not zero in every design: 3x3 blocks (4 and 16) that are; columns by row (6 and 12). */
@@ -170,6 +167,7 @@ typedef struct { int zero[20], start[19], column[180]; } Law;
 
 typedef struct {
     Law *law;
+    int64_t *crossing, crossings;    /* entries of laws that are zero where the plane is one of symmetry, and are not in every design */
     int fills;                       /* whether elimination makes edges */
     lanes *number, *change;          /* the numbers of these designs, and their derivatives */
     lanes *numbers, *changes;        /* those of AHEAD vectors of designs */
@@ -181,99 +179,305 @@ typedef struct {
     lanes *sum, *slope;              /* slots x pairs, variables x pairs */
 } Room;
 
-static void assemble(const Task *t, Room *w)
+/* ---- assembly in axes of a plane ---- */
+
+/* Whether an edge of a body with axes of its own leads to another with the same ones: to every one but the platform. */
+static INLINE int inner(const Task *t, int64_t e) { return t->later[e] < t->bodies - 1; }
+
+static const int SPOT[6] = {0, 1, 5, 2, 3, 4}; /* x, y, rz, z, rx, ry among x, y, z, rx, ry, rz */
+
+/* The axes q (columns) of a body with axes of its own: those of a link, the normal last. */
+static INLINE void axes_of(lanes *q, const Task *t, const Room *w, int64_t body)
 {
+    const lanes *r = w->number + t->start[2] + 9 * t->plane[2 * body];
+    const int normal = (int)t->plane[2 * body + 1];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) q[3 * i + k] = r[3 * i + (normal + 1 + k) % 3];
+}
+
+/* A link's axes in those of its leg: the two in the plane (2x2) and the normal; arms in the leg's axes. */
+typedef struct { lanes p[4], s, arm[2][2]; int spot[6]; } Side;
+
+static INLINE lanes along(const lanes *q, int i, const lanes *v, int step) { return q[i] * v[0] + q[3 + i] * v[step] + q[6 + i] * v[2 * step]; }
+
+/* Says in which lanes the link is not of that plane. */
+static INLINE marks lay(const Task *t, const Room *w, int64_t l, const lanes *q, Side *out)
+{
+    const lanes *r = w->number + t->start[2] + 9 * l;
+    const int normal = (int)t->normal[l], one = (normal + 1) % 3, two = (normal + 2) % 3;
+    const int spot[6] = {one, two, 3 + normal, normal, 3 + one, 3 + two};
+    memcpy(out->spot, spot, sizeof spot);
+    out->p[0] = along(q, 0, r + one, 3), out->p[1] = along(q, 0, r + two, 3);
+    out->p[2] = along(q, 1, r + one, 3), out->p[3] = along(q, 1, r + two, 3);
+    out->s = along(q, 2, r + normal, 3);
+    marks bad = ~(size_of(along(q, 2, r + one, 3)) + size_of(along(q, 2, r + two, 3)) <= t->skew);
+    for (int side = 0; side < 2; side++) {
+        const int64_t body = t->link[4 * l + 1 + side];
+        if (body < 0 || t->plane[2 * body] < 0) continue;
+        const lanes *arm = w->number + t->start[3 + side] + 3 * l;
+        out->arm[side][0] = along(q, 0, arm, 1), out->arm[side][1] = along(q, 1, arm, 1);
+        bad |= ~(size_of(along(q, 2, arm, 1)) <= t->skew * t->span);
+    }
+    return bad;
+}
+
+/* out (6x6, split) = a law's block, `stride` wide, in the axes of the leg. */
+static INLINE void lie(lanes *out, const lanes *from, const int stride, const Side *at, const int turned)
+{
+    const lanes *p = at->p;
+#define OF(i, k) (turned ? from[stride * at->spot[k] + at->spot[i]] : from[stride * at->spot[i] + at->spot[k]])
+    UNROLL for (int half = 0; half < 2; half++) {
+        const int u = 4 * half, n = 2 + half; /* two in the plane, the other one */
+        lanes g[4], h[2];
+        UNROLL for (int i = 0; i < 2; i++) {
+            UNROLL for (int k = 0; k < 2; k++) g[2 * i + k] = p[2 * i] * OF(u, u + k) + p[2 * i + 1] * OF(u + 1, u + k);
+            h[i] = p[2 * i] * OF(u, n) + p[2 * i + 1] * OF(u + 1, n);
+        }
+        UNROLL for (int i = 0; i < 2; i++) {
+            UNROLL for (int k = 0; k < 2; k++) out[6 * (u + i) + u + k] = g[2 * i] * p[2 * k] + g[2 * i + 1] * p[2 * k + 1];
+            out[6 * (u + i) + n] = at->s * h[i];
+            out[6 * n + u + i] = at->s * (p[2 * i] * OF(n, u) + p[2 * i + 1] * OF(n, u + 1));
+        }
+        out[7 * n] = at->s * at->s * OF(n, n);
+    }
+#undef OF
+}
+
+/* p = n T(b) and out += sign T(a)^T p as `carried` and `join`, in the plane. */
+static INLINE void carried_plane(lanes *p, const lanes *n, const lanes *b)
+{
+    UNROLL for (int i = 0; i < 36; i++)
+        if (BOTH(1, i / 6, i % 6)) p[i] = n[i];
+    UNROLL for (int i = 0; i < 18; i += 6) {
+        p[i + 2] += n[i] * b[1] - n[i + 1] * b[0];
+        p[i + 22] -= n[i + 21] * b[1];
+        p[i + 23] += n[i + 21] * b[0];
+    }
+}
+
+static INLINE void join_plane(lanes *out, const lanes *p, const lanes *a, double sign, const int kind, const int narrow)
+{
+    UNROLL for (int i = 0; i < 6; i++)
+        UNROLL for (int k = 0; k < 6; k++) {
+            if (!BOTH(narrow, i, k) || (kind == SYMMETRIC && k > i)) continue;
+            lanes x = p[6 * i + k];
+            if (i == 2) x += p[k] * a[1] - p[6 + k] * a[0];
+            if (i == 4) x -= p[18 + k] * a[1];
+            if (i == 5) x += p[18 + k] * a[0];
+            out[kind == SYMMETRIC ? LOWER(i, k) : 6 * i + k] += sign * x;
+        }
+}
+
+/* Columns of n (6x6, split) in the stage's axes. */
+static INLINE void open_columns(lanes *p, const lanes *n, const lanes *q)
+{
+    UNROLL for (int i = 0; i < 3; i++)
+        UNROLL for (int k = 0; k < 3; k++) {
+            p[6 * i + k] = n[6 * i] * q[3 * k] + n[6 * i + 1] * q[3 * k + 1];
+            p[6 * i + 3 + k] = n[6 * i + 2] * q[3 * k + 2];
+            p[18 + 6 * i + k] = n[18 + 6 * i + 3] * q[3 * k + 2];
+            p[21 + 6 * i + k] = n[18 + 6 * i + 4] * q[3 * k] + n[18 + 6 * i + 5] * q[3 * k + 1];
+        }
+}
+
+/* What is turned from a link's axes (r) into those of its body, in which its arms are, goes to places by row and by column. */
+static const int ORDER[6] = {0, 1, 2, 3, 4, 5}, PLACE[6] = {0, 1, 3, 4, 5, 2}; /* x, y, z, rx, ry, rz among x, y, rz, z, rx, ry */
+
+/* One of a link's own blocks. */
+static INLINE void add_own(lanes *own, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *arm, const int *place)
+{
+    lanes n[36], p[36];
+    turn(n, law, stride, r, zero, 1), carried(p, n, arm), join(own, p, arm, 1.0, SYMMETRIC, place, place);
+}
+
+/* A link's edge of K or M (`symmetric`: K); columns are in the stage's axes where those of the row's body are q. */
+static INLINE void add_edge(
+    lanes *edge, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *first, const lanes *second, double sign,
+    const int symmetric, const lanes *q, const int *row, const int *column)
+{
+    lanes n[36], p[36];
+    turn(n, law, stride, r, zero, symmetric);
+    if (q)
+        for (int i = 0; i < 36; i += 3) {
+            lanes u[3];
+            for (int k = 0; k < 3; k++) u[k] = n[i] * q[3 * k] + n[i + 1] * q[3 * k + 1] + n[i + 2] * q[3 * k + 2];
+            memcpy(n + i, u, sizeof u);
+        }
+    carried(p, n, second), join(edge, p, first, sign, PLAIN, row, column);
+}
+
+/* Adds a link that is not symmetric about a plane; of bodies with axes of their own in these. */
+static void assemble_whole(const Task *t, Room *w, int64_t l)
+{
+    const int64_t part = t->link[4 * l], *body = t->link + 4 * l + 1, e = t->link[4 * l + 3];
+    const lanes *k = w->number + t->start[0] + 36 * part, *m = w->number + t->start[1] + 144 * part, *r = w->number + t->start[2] + 9 * l;
+    const lanes *arm[2] = {w->number + t->start[3] + 3 * l, w->number + t->start[4] + 3 * l};
+    const int *zero = w->law[part].zero;
+    lanes q[9], own_r[9], own_arm[2][3], crossed[36];
+    const int64_t leg = body[body[0] < 0 || t->plane[2 * body[0]] < 0];
+    const int has = leg >= 0 && t->plane[2 * leg] >= 0;
+    if (has) {
+        axes_of(q, t, w, leg);
+        for (int i = 0; i < 9; i++) own_r[i] = along(q, i / 3, r + i % 3, 3);
+        for (int i = 0; i < 6; i++) own_arm[i / 3][i % 3] = along(q, i % 3, arm[i / 3], 1);
+    }
+    for (int side = 0; side < 2; side++) {
+        if (body[side] < 0) continue;
+        const int own = t->plane[2 * body[side]] >= 0;
+        const lanes *turns = own ? own_r : r, *reach = own ? own_arm[side] : arm[side];
+        const int *place = own ? PLACE : ORDER;
+        add_own(w->stiff + OWN * body[side], k, 6, turns, zero, reach, place);
+        add_own(w->mass + OWN * body[side], m + 78 * side, 12, turns, zero + 4 + 10 * side, reach, place);
+    }
+    if (e < 0) return;
+    const int one = body[0] > body[1], two = 1 - one, same = has && inner(t, e);
+    int none[4];
+    for (int i = 0; i < 36; i++) crossed[i] = one ? m[72 + 12 * (i / 6) + i % 6] : m[6 + 12 * (i / 6) + i % 6];
+    for (int i = 0; i < 4; i++) none[i] = one ? zero[4 + 8 + 4 * (i / 2) + i % 2] : zero[4 + 2 + 4 * (i / 2) + i % 2];
+    const lanes *turns = has ? own_r : r, *first = has ? own_arm[one] : arm[one], *second = same ? own_arm[two] : arm[two], *open = has && !same ? q : 0;
+    const int *row = has ? PLACE : ORDER, *column = same ? PLACE : ORDER;
+    add_edge(w->stiff_edge + 36 * e, k, 6, turns, zero, first, second, -1.0, 1, open, row, column);
+    add_edge(w->mass_edge + 36 * e, crossed, 6, turns, none, first, second, 1.0, 0, open, row, column);
+}
+
+/* Adds a link of a leg with axes of its own; tells in which lanes it is not of the leg's plane. */
+static marks assemble_plane(const Task *t, Room *w, int64_t l)
+{
+    const int64_t part = t->link[4 * l], *body = t->link + 4 * l + 1, e = t->link[4 * l + 3];
+    const lanes *k = w->number + t->start[0] + 36 * part, *m = w->number + t->start[1] + 144 * part;
+    const lanes *r = w->number + t->start[2] + 9 * l;
+    const int *zero = w->law[part].zero;
+    lanes q[9], n[36], p[36], stiff[36];
+    Side at;
+    axes_of(q, t, w, body[body[0] < 0 || t->plane[2 * body[0]] < 0]);
+    const marks bad = lay(t, w, l, q, &at);
+    lie(stiff, k, 6, &at, 0);
+    for (int side = 0; side < 2; side++) {
+        if (body[side] < 0) continue;
+        lanes *own = w->stiff + OWN * body[side], *heavy = w->mass + OWN * body[side];
+        if (t->plane[2 * body[side]] >= 0) {
+            carried_plane(p, stiff, at.arm[side]), join_plane(own, p, at.arm[side], 1.0, SYMMETRIC, 1);
+            lie(n, m + 78 * side, 12, &at, 0), carried_plane(p, n, at.arm[side]), join_plane(heavy, p, at.arm[side], 1.0, SYMMETRIC, 1);
+        } else {
+            const lanes *arm = w->number + t->start[3 + side] + 3 * l;
+            turn(n, k, 6, r, zero, 1), carried(p, n, arm), join(own, p, arm, 1.0, SYMMETRIC, ORDER, ORDER);
+            turn(n, m + 78 * side, 12, r, zero + 4 + 10 * side, 1), carried(p, n, arm), join(heavy, p, arm, 1.0, SYMMETRIC, ORDER, ORDER);
+        }
+    }
+    if (e < 0) return bad;
+    const int row = body[0] > body[1];
+    if (row) lie(n, m + 6, 12, &at, 1);
+    else lie(n, m + 6, 12, &at, 0);
+    if (inner(t, e)) {
+        carried_plane(p, stiff, at.arm[!row]), join_plane(w->stiff_edge + 36 * e, p, at.arm[row], -1.0, PLAIN, 1);
+        carried_plane(p, n, at.arm[!row]), join_plane(w->mass_edge + 36 * e, p, at.arm[row], 1.0, PLAIN, 1);
+    } else {
+        const lanes *arm = w->number + t->start[4 - row] + 3 * l;
+        lanes wide[36];
+        open_columns(wide, stiff, q), carried(p, wide, arm), join_plane(w->stiff_edge + 36 * e, p, at.arm[row], -1.0, PLAIN, 0);
+        open_columns(wide, n, q), carried(p, wide, arm), join_plane(w->mass_edge + 36 * e, p, at.arm[row], 1.0, PLAIN, 0);
+    }
+    return bad;
+}
+
+/* A body's inertia in axes of its own; tells in which lanes it is not symmetric about the plane. */
+static marks weigh_plane(const Task *t, Room *w, int64_t b)
+{
+    static const int none[4];
+    lanes q[9], r[9], own[36];
+    marks bad = {0};
+    axes_of(q, t, w, b);
+    for (int i = 0; i < 9; i++) r[i] = q[3 * (i % 3) + i / 3];
+    turn(own, w->number + t->inertia[b], 6, r, none, 1);
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k <= i; k++) {
+            const lanes x = own[6 * SPOT[i] + SPOT[k]];
+            const int kept = BOTH(1, i, k) || !t->flat[2 * b];
+            w->mass[OWN * b + LOWER(i, k)] = kept ? x : all(0.0);
+            if (!kept) bad |= ~(x * x <= t->skew * t->skew * (own[7 * SPOT[i]] * own[7 * SPOT[k]]));
+        }
+    return bad;
+}
+
+static marks assemble(const Task *t, Room *w)
+{
+    marks bad = {0};
     memset(w->stiff, 0, sizeof(lanes) * OWN * t->bodies);
     memset(w->stiff_edge, 0, sizeof(lanes) * 36 * t->edges);
     memset(w->mass_edge, 0, sizeof(lanes) * 36 * t->edges);
+    for (int64_t i = 0; i < w->crossings; i++) bad |= ~(w->number[w->crossing[i]] == 0.0);
     for (int64_t b = 0; b < t->bodies; b++)
-        for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
-    for (int64_t l = 0; l < t->links; l++) {
-        const int64_t part = t->link[4 * l], a = t->link[4 * l + 1], b = t->link[4 * l + 2], e = t->link[4 * l + 3];
-        const lanes *r = w->number + t->start[2] + 9 * l, *first = w->number + t->start[3] + 3 * l, *second = w->number + t->start[4] + 3 * l;
-        const lanes *m = w->number + t->start[1] + 144 * part;
-        const int *zero = w->law[part].zero;
-        lanes n[36], p[36];
-        turn(n, w->number + t->start[0] + 36 * part, 6, r, zero, 1);
-        if (a >= 0) carried(p, n, first), join(w->stiff + OWN * a, p, first, 1.0, SYMMETRIC);
-        if (b >= 0) carried(p, n, second), join(w->stiff + OWN * b, p, second, 1.0, SYMMETRIC);
-        if (e >= 0) join_edge(w->stiff_edge + 36 * e, p, first, -1.0, a > b);
-        if (a >= 0) turn(n, m, 12, r, zero + 4, 1), carried(p, n, first), join(w->mass + OWN * a, p, first, 1.0, SYMMETRIC);
-        if (b >= 0) turn(n, m + 78, 12, r, zero + 14, 1), carried(p, n, second), join(w->mass + OWN * b, p, second, 1.0, SYMMETRIC);
-        if (e >= 0) turn(n, m + 6, 12, r, zero + 6, 0), carried(p, n, second), join_edge(w->mass_edge + 36 * e, p, first, 1.0, a > b);
-    }
+        if (t->plane[2 * b] >= 0) bad |= weigh_plane(t, w, b);
+        else for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
+    for (int64_t l = 0; l < t->links; l++)
+        if (t->normal[l] >= 0) bad |= assemble_plane(t, w, l);
+        else assemble_whole(t, w, l);
+    return bad;
 }
 
 /* ---- elimination ---- */
 
-/* a = L D L^T: L below the diagonal, D^-1 on it. */
-static INLINE void invert(lanes *a, lanes *pivot)
+/* A product of two edges of body v, which elimination subtracts from what is between later bodies. */
+static INLINE void join_update(const Task *t, Room *w, int64_t v, const int64_t *edges)
 {
-    UNROLL for (int s = 0; s < 6; s++) {
-        const lanes inverse = 1.0 / (pivot[s] = a[LOWER(s, s)]);
-        UNROLL for (int i = s + 1; i < 6; i++) {
-            const lanes l = a[LOWER(i, s)] * inverse;
-            for (int k = s + 1; k <= i; k++) a[LOWER(i, k)] -= l * a[LOWER(k, s)];
-        }
-        UNROLL for (int i = s + 1; i < 6; i++) a[LOWER(i, s)] *= inverse;
-        a[LOWER(s, s)] = inverse;
+    const lanes *own = w->other + OWN * v, *x = w->other_edge + 36 * edges[0], *y = w->other_edge + 36 * edges[1];
+    lanes *to = w->other_edge + 36 * edges[2];
+    const int left = (int)t->thin[2 * edges[0] + 1], right = (int)t->thin[2 * edges[1] + 1];
+    for (int c = 0; c < 6; c++) {
+        lanes scaled[6];
+        UNROLL for (int i = 0; i < 6; i++) scaled[i] = own[LOWER(i, i)] * y[6 * i + c];
+        if (right)
+            UNROLL for (int i = 0; i < 3; i++) scaled[c < 3 ? 3 + i : i] = all(0.0);
+        if (left) multiply_split(to + c, x, scaled, 6, TURNED, 1, 1);
+        else multiply_whole(to + c, x, scaled, 6, TURNED, 1, 1);
     }
-}
-
-/* An own block -= x^T D x, of rows from `first` to `last`. */
-static INLINE void update(lanes *restrict to, const lanes *restrict x, const lanes *restrict a, const int first, const int last)
-{
-    lanes sum[OWN];
-    UNROLL for (int i = LOWER(first, 0); i < LOWER(last, 0); i++) sum[i] = to[i];
-    UNROLL for (int r = 0; r < 6; r++)
-        UNROLL for (int i = first; i < last; i++) {
-            const lanes scaled = x[6 * r + i] * a[LOWER(r, r)];
-            for (int k = 0; k <= i; k++) sum[LOWER(i, k)] -= scaled * x[6 * r + k];
-        }
-    UNROLL for (int i = LOWER(first, 0); i < LOWER(last, 0); i++) to[i] = sum[i];
 }
 
 /* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves. Gives per lane how many
  * pivots are negative and the least pivot over its own entry of K, where these are asked for. */
 static INLINE void eliminate(const Task *t, Room *w, lanes shift, const int told, lanes *negative, lanes *least)
 {
-    for (int64_t i = 0; i < OWN * t->bodies; i++) w->other[i] = w->stiff[i] - shift * w->mass[i];
+    for (int64_t v = 0; v < t->bodies; v++) {
+        lanes *own = w->other + OWN * v;
+        const lanes *stiff = w->stiff + OWN * v, *mass = w->mass + OWN * v;
+        if (t->flat[2 * v + 1]) shifted_split(own, stiff, mass, shift);
+        else shifted_whole(own, stiff, mass, shift);
+    }
     if (w->fills)
         for (int64_t i = 0; i < 36 * t->edges; i++) w->other_edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
     for (int64_t v = 0; v < t->bodies; v++) {
-        lanes a[OWN], pivot[6];
-        UNROLL for (int i = 0; i < OWN; i++) a[i] = w->other[OWN * v + i];
-        invert(a, pivot);
-        UNROLL for (int i = 0; i < OWN; i++) w->other[OWN * v + i] = a[i];
+        lanes pivot[6], *own = w->other + OWN * v;
+        const int split = (int)t->flat[2 * v + 1];
+        if (split) invert_split(own, pivot);
+        else invert_whole(own, pivot);
         UNROLL for (int s = 0; told && s < 6; s++) {
             const lanes ratio = size_of(pivot[s]) / w->stiff[OWN * v + LOWER(s, s)];
             *negative += pick(pivot[s] < 0.0, all(1.0), all(0.0));
             *least = pick(ratio >= *least, *least, ratio);
         }
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
-            UNROLL for (int half = 0; half < 6; half += 3) {
-                lanes *to = w->other_edge + 36 * e + half, x[18];
-                const lanes *k = w->stiff_edge + 36 * e + half, *m = w->mass_edge + 36 * e + half;
-                UNROLL for (int i = 0; i < 18; i++) x[i] = w->fills ? to[6 * (i / 3) + i % 3] : k[6 * (i / 3) + i % 3] - shift * m[6 * (i / 3) + i % 3];
-                UNROLL for (int s = 0; s < 6; s++)
-                    UNROLL for (int i = s + 1; i < 6; i++)
-                        UNROLL for (int c = 0; c < 3; c++) x[3 * i + c] -= w->other[OWN * v + LOWER(i, s)] * x[3 * s + c];
-                UNROLL for (int i = 0; i < 18; i++) to[6 * (i / 3) + i % 3] = x[i];
-            }
+        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
+            lanes *edge = w->other_edge + 36 * e;
+            const lanes *stiff = w->stiff_edge + 36 * e, *mass = w->mass_edge + 36 * e;
+            if (t->thin[2 * e + 1]) reduce_split(edge, stiff, mass, shift, own, w->fills, 1);
+            else if (split) reduce_split(edge, stiff, mass, shift, own, w->fills, 0);
+            else reduce_whole(edge, stiff, mass, shift, own, w->fills, 0);
+        }
         for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
-            const int64_t left = t->update[3 * u], right = t->update[3 * u + 1], target = t->update[3 * u + 2];
+            const int64_t left = t->update[3 * u];
+            lanes *later = w->other + OWN * t->later[left];
             const lanes *x = w->other_edge + 36 * left;
-            if (target < 0) {
-                update(w->other + OWN * t->later[left], x, w->other + OWN * v, 3, 6);
-                update(w->other + OWN * t->later[left], x, w->other + OWN * v, 0, 3);
-            } else
-                UNROLL for (int c = 0; c < 6; c++) {
-                    lanes scaled[6];
-                    UNROLL for (int i = 0; i < 6; i++) scaled[i] = a[LOWER(i, i)] * w->other_edge[36 * right + 6 * i + c];
-                    multiply(w->other_edge + 36 * target + c, x, scaled, 6, TURNED, 1, 1);
-                }
+            if (t->update[3 * u + 2] >= 0) join_update(t, w, v, t->update + 3 * u);
+            else if (t->thin[2 * left + 1]) update_split(later, x, own, 3), update_split(later, x, own, 0);
+            else update_whole(later, x, own, 3), update_whole(later, x, own, 0);
         }
     }
+}
+
+/* y += or -= a x for n columns, a split or whole. */
+static INLINE void apply(lanes *y, const lanes *a, const lanes *x, int m, const int kind, const int negative, const int n, int64_t split)
+{
+    if (split) multiply_split(y, a, x, m, kind, negative, n);
+    else multiply_whole(y, a, x, m, kind, negative, n);
 }
 
 static INLINE void forward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
@@ -281,12 +485,11 @@ static INLINE void forward(const Task *t, const Room *w, lanes *restrict x, int6
     const lanes *a = w->other + OWN * v;
     lanes u[24];
     pick_columns(u, x + 6 * m * v, m, n);
-    UNROLL for (int s = 0; s < 6; s++)
-        UNROLL for (int i = s + 1; i < 6; i++)
-            UNROLL for (int k = 0; k < n; k++) u[i * n + k] -= a[LOWER(i, s)] * u[s * n + k];
+    if (t->flat[2 * v + 1]) lower_split(u, a, n);
+    else lower_whole(u, a, n);
     UNROLL for (int i = 0; i < 6; i++)
         UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k] *= a[LOWER(i, i)];
-    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(x + 6 * m * t->later[e], w->other_edge + 36 * e, u, m, TURNED, 1, n);
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) apply(x + 6 * m * t->later[e], w->other_edge + 36 * e, u, m, TURNED, 1, n, t->thin[2 * e + 1]);
 }
 
 static INLINE void backward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
@@ -298,14 +501,13 @@ static INLINE void backward(const Task *t, const Room *w, lanes *restrict x, int
         lanes sum[24];
         pick_columns(u, x + 6 * m * t->later[e], m, n);
         UNROLL for (int i = 0; i < 6 * n; i++) sum[i] = all(0.0);
-        multiply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n);
+        apply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n, t->thin[2 * e + 1]);
         UNROLL for (int i = 0; i < 6; i++)
             UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] -= a[LOWER(i, i)] * sum[i * n + k];
     }
     pick_columns(u, x + 6 * m * v, m, n);
-    UNROLL for (int i = 5; i > 0; i--)
-        UNROLL for (int s = 0; s < i; s++)
-            UNROLL for (int k = 0; k < n; k++) u[s * n + k] -= a[LOWER(i, s)] * u[i * n + k];
+    if (t->flat[2 * v + 1]) upper_split(u, a, n);
+    else upper_whole(u, a, n);
     UNROLL for (int i = 0; i < 6; i++)
         UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k];
 }
@@ -315,12 +517,12 @@ static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const 
 {
     lanes u[24], other[24];
     pick_columns(u, x + 6 * m * v, m, n);
-    multiply(y + 6 * m * v, w->mass + OWN * v, u, m, SYMMETRIC, 0, n);
+    apply(y + 6 * m * v, w->mass + OWN * v, u, m, SYMMETRIC, 0, n, t->flat[2 * v]);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
         if (t->heavy[e]) {
-            multiply(y + 6 * m * t->later[e], w->mass_edge + 36 * e, u, m, TURNED, 0, n);
             pick_columns(other, x + 6 * m * t->later[e], m, n);
-            multiply(y + 6 * m * v, w->mass_edge + 36 * e, other, m, PLAIN, 0, n);
+            apply(y + 6 * m * t->later[e], w->mass_edge + 36 * e, u, m, TURNED, 0, n, t->thin[2 * e]);
+            apply(y + 6 * m * v, w->mass_edge + 36 * e, other, m, PLAIN, 0, n, t->thin[2 * e]);
         }
 }
 
@@ -490,7 +692,8 @@ static void begin(const Task *t, Room *w, Ritz *out)
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
     eliminate(t, w, all(t->shift), 0, 0, 0);
     for (int64_t i = 0; i < n * m; i++) w->next[i] = w->ahead[i] = all(t->force[i]);
-    solve(t, w, w->ahead, w->now, m);
+    if (m == 7) solve(t, w, w->ahead, w->now, 7); /* six platform modes below all others, the usual case */
+    else solve(t, w, w->ahead, w->now, m);
     const Layout at = {m, 1};
     gram(n, m, at, stiff, w->ahead, w->next);
     gram(n, m, at, mass, w->ahead, w->now);
@@ -757,6 +960,15 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
             mean[i][lane] = sum / size;
         }
     }
+    for (int64_t b = 0; b < t->bodies; b++) {
+        lanes q[9], *x = w->shapes + 6 * k * b, u[6];
+        if (t->plane[2 * b] < 0) continue;
+        axes_of(q, t, w, b);
+        for (int c = 0; c < k; c++) {
+            for (int i = 0; i < 6; i++) u[SPOT[i]] = x[i * k + c];
+            for (int i = 0; i < 6; i++) x[i * k + c] = q[3 * (i % 3)] * u[i - i % 3] + q[3 * (i % 3) + 1] * u[i - i % 3 + 1] + q[3 * (i % 3) + 2] * u[i - i % 3 + 2];
+        }
+    }
     for (; pairs < k; pairs++) pair[pairs].i = pair[pairs].j = pairs;
     for (int i = 0; i < k; i++)
         for (int j = i + 1; j < k; j++)
@@ -822,7 +1034,11 @@ static void designs(const Task *t, Room *w, int64_t design)
     for (int i = 0; i < t->count; i++) value[i] = all(1.0), share[i] = all(0.0);
     if (t->variables) memset(w->shapes, 0, sizeof(lanes) * 6 * t->bodies * t->count);
     for (int lane = 0; lane < WIDTH; lane++) verdict[lane].done = 0;
-    assemble(t, w);
+    const marks bad = assemble(t, w);
+    if (!any(~bad)) {
+        for (int lane = 0; lane < WIDTH; lane++) t->good[design + lane] = -1;
+        return;
+    }
     begin(t, w, &known);
     for (int64_t round = 0; round < t->rounds && left; round++) {
         if (round) blend(6 * t->bodies, (int)t->single, (Layout){1, 6 * t->bodies}, w->force, w->next, known.mix, (int)t->single);
@@ -839,7 +1055,7 @@ static void designs(const Task *t, Room *w, int64_t design)
     }
     eliminate(t, w, shift, 1, &negative, &least);
     for (int lane = 0; lane < WIDTH; lane++)
-        t->good[design + lane] = verdict[lane].done && least[lane] > t->pivot && negative[lane] == (double)verdict[lane].below;
+        t->good[design + lane] = bad[lane] ? -1 : verdict[lane].done && least[lane] > t->pivot && negative[lane] == (double)verdict[lane].below;
     for (int i = 0; i < t->count; i++)
         store(t->values + i * t->stride + design, value[i]), store(t->share + i * t->stride + design, share[i]);
     if (t->variables) derive(t, w, design, value);
@@ -916,6 +1132,7 @@ int64_t flexstage_modes(const Task *t)
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
     char *const filled = malloc(t->numbers);
+    int64_t *const crossing = malloc(sizeof(int64_t) * 180 * t->links);
     w.law = malloc(sizeof(Law) * t->parts);
     w.fills = 0;
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
@@ -924,6 +1141,13 @@ int64_t flexstage_modes(const Task *t)
         const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, varying);
         const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, changing);
         outlines(t, w.law, w.numbers, varying, some, filled);
+        w.crossing = crossing, w.crossings = 0;
+        for (int64_t l = 0; l < t->links; l++)
+            for (int64_t i = 0; i < 36 + 144 && t->normal[l] >= 0; i++) {
+                const int row = (int)(i < 36 ? i / 6 : (i - 36) / 12 % 6), column = (int)(i < 36 ? i % 6 : (i - 36) % 6);
+                const int64_t at = i < 36 ? t->start[0] + 36 * t->link[4 * l] + i : t->start[1] + 144 * t->link[4 * l] + i - 36;
+                if (filled[at] && (row / 3 == column / 3) != ((row % 3 == t->normal[l]) == (column % 3 == t->normal[l]))) w.crossing[w.crossings++] = at;
+            }
         for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
             gather(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, first, t->designs, varying, some);
             gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, changing, other);
