@@ -13,6 +13,7 @@ from flexstage.analysis.judge import measure_all
 from flexstage.analysis.requirements import measure
 from flexstage.analysis.sensitivities import step_parameters
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import case
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
@@ -102,6 +103,23 @@ def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: 
     for values, responses in zip(found.variables, found.responses, strict=True):
         alone = measure_all(apply(study.design, study.variables, values), tuple(study.columns.values()))
         np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-9)
+
+
+@pytest.mark.parametrize("address", ["materials.steel.yield_stress", "parts.stack.stroke"])
+def test_designs_that_differ_in_their_limits_alone_are_those_one_by_one(address: str):
+    """Stiffness and loads are those of one design then."""
+    varied = f'variables.limit = {{ of = "{address}", from = "-40 %", to = "10 %", levels = 3 }}'
+    asked = 'responses = { b = "buckling", s = "safety", x = "stroke.x" }\nsweep = { sampling = "grid" }'
+    study = loads_study(f'format = "flexstage study 1"\ncase = "parallelogram"\n{varied}\n{asked}\n')
+    found = piece(study, 0, 3)
+    for values, responses in zip(found.variables, found.responses, strict=True):
+        alone = measure_all(apply(study.design, study.variables, values), tuple(study.columns.values()))
+        np.testing.assert_allclose(responses, [float(value) for value in alone], rtol=1e-9)
+
+
+def test_without_strokes_there_is_no_error_of_their_map() -> None:
+    stage = case("tilt-stage")
+    assert "no actuator imposes a stroke" in str(measure_all(stage, (measure(stage, "map_error.x", "require"),))[0])
 
 
 @pytest.mark.parametrize("responses", ['responses.f = "frequency.platform.1"', 'responses.k = "stiffness.x"'], ids=["engine", "dense"])

@@ -135,10 +135,10 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
         return _of_large(mechanism, _pieces(mechanism, model), limits)
     pieces, dead = _loaded(mechanism, model)
     unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
-    matrices = np.broadcast_arrays(pieces.stiffness, dead, *unit)
-    batch = matrices[0].shape[:-2]
-    flat = [each.reshape(-1, *each.shape[-2:]) for each in matrices]
     corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
+    matrices = (pieces.stiffness, dead, *unit)
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in (*matrices, corners)))
+    flat = [np.broadcast_to(each, (*batch, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in matrices]
     corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
     each_corners = corners.reshape(len(flat[0]), *corners.shape[-2:])
     rows = [_single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], own) for place, own in enumerate(each_corners)]

@@ -57,7 +57,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     """Error of x = J a over the box of strokes: its corners, the centres of its faces and `inside` points of a Halton sequence.
 
     Redundant strokes strain the links unless they belong to a pose: there the vertices of the reachable polytope are tried, and halfway to
-    them. Raises `DesignError` for more than 12 actuators.
+    them. Raises `DesignError` for more than 12 actuators, and where there are none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -67,6 +67,8 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     >>> error.strokes.shape, bool(error.worst[5] < 4e-6)
     ((80, 6), True)
     """
+    if not kinematics.actuators:
+        raise refuse("linear map error", "no actuator imposes a stroke, so there is no map of strokes", "Ask for what forces reach instead")
     depth = len(design_shape(mechanism, kinematics))
     if len(kinematics.actuators) > kinematics.mobility:
         vertices = np.moveaxis(reachable(kinematics.mapping, limits).vertices, -2, 0)

@@ -179,7 +179,8 @@ def _stress(part: Part, link: PlacedLink, wrenches: Array) -> tuple[Array, Array
 
 def _limit(link: PlacedLink, name: str, peak: Array) -> Array:
     limit = None if link.material is None else getattr(link.material, name)
-    return np.broadcast_to(np.nan if limit is None else np.asarray(limit), peak.shape)
+    own = np.asarray(np.nan if limit is None else limit)
+    return np.broadcast_to(own, np.broadcast_shapes(own.shape, peak.shape))
 
 
 def _real(part: Any) -> Any:
