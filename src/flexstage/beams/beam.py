@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.number import Array, Number, stack
+from flexstage.base.number import Array, Number
 from flexstage.beams.quadrature import Stations
 from flexstage.beams.section import Section
 from flexstage.beams.torsion import Twisting, constrained_twist, free_twist
@@ -73,16 +73,9 @@ def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting
     [[1.2732, 1.2732, 1.2732, 10.1859, 20.3718, 20.3718]]
     """
     lateral = section.shear / (shear * section.area)
-    return stack(
-        [
-            1.0 / (young * section.area),
-            lateral if across is None else lateral * (shear / across),
-            lateral,
-            twisting.rate,
-            1.0 / (young * section.inertia_y),
-            1.0 / (young * section.inertia_z),
-        ]
-    )
+    stretched = 1.0 / (young * section.area)
+    sideways = lateral if across is None else lateral * (shear / across)
+    return _rows(stretched, sideways, lateral, twisting.rate, 1.0 / (young * section.inertia_y), 1.0 / (young * section.inertia_z))
 
 
 def inertia(section: Section, density: Array) -> Array:
@@ -93,7 +86,12 @@ def inertia(section: Section, density: Array) -> Array:
     [[12.0, 12.0, 12.0, 2.0, 1.0, 1.0]]
     """
     along = density * section.area
-    return stack([along, along, along, density * section.polar, density * section.inertia_y, density * section.inertia_z])
+    return _rows(along, along, along, density * section.polar, density * section.inertia_y, density * section.inertia_z)
+
+
+def _rows(*rows: Array) -> Array:
+    """Rows (..., m) as (..., m, n), each in one piece in memory."""
+    return np.moveaxis(np.stack(np.broadcast_arrays(*rows)), 0, -1)
 
 
 def _column(number: Number) -> Array:

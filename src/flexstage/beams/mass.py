@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 from collections.abc import Iterator
 from typing import TypeAlias
 
@@ -67,8 +69,8 @@ def _asks_for_modes(part: Part) -> bool:
 def consistent_mass(beam: Beam) -> Array:
     """Consistent mass (..., 12, 12) of a beam, as `mass` says.
 
-    A straight symmetric section moves along, about its axis, and in two planes, and none of the four feels another: only their entries
-    are integrated.
+    A straight symmetric section moves along, about its axis, and in two planes, and none of the four feels another. By the mean and the
+    difference of the motions of both ends, each falls in two again: only their entries are integrated, over half the beam.
 
     >>> from flexstage.beams.piezo import piezo_beam
     >>> from flexstage.parts.piezo import Piezo
@@ -77,19 +79,28 @@ def consistent_mass(beam: Beam) -> Array:
     [2.0, 1.0, 2.0]
     """
     weight = _weights(beam)
-    blocks = [(columns, _total([_product(rows[row], weight[..., row, :]) for row in rows])) for columns, rows in _motions(beam)]
-    batch = np.broadcast_shapes(*(block.shape[:-2] for _, block in blocks))
-    result = np.zeros((*batch, 12, 12), dtype=np.result_type(*(block for _, block in blocks)))
-    for columns, block in blocks:
-        both = np.concatenate([columns, columns + 6])
-        result[..., both[:, None], both] = block
-    return result
+    entries: dict[tuple[int, int], Array] = {}
+    for motions in _motions(beam):
+        heavy = {place: {row: weight[..., row] * moved for row, moved in rows.items()} for place, rows in motions.items()}
+        for one, other in itertools.combinations_with_replacement(motions, 2):
+            shared = [moved * motions[other][row] for row, moved in heavy[one].items() if row in motions[other]]
+            entries[one, other] = entries[other, one] = np.sum(functools.reduce(np.add, shared), axis=-1)
+    batch = np.broadcast_shapes(*(entry.shape for entry in entries.values()))
+    result = np.zeros((*batch, 12, 12), dtype=np.result_type(*entries.values()))
+    for (one, other), entry in entries.items():
+        result[..., one, other] = entry
+    return _of_ends(np.swapaxes(_of_ends(result), -1, -2))
+
+
+def _of_ends(rows: Array) -> Array:
+    """From rows (..., 12, n) by mean and difference of the ends' motions to rows by the motions themselves."""
+    mean, apart = 0.5 * rows[..., :6, :], rows[..., 6:, :]
+    return np.concatenate([mean - apart, mean + apart], axis=-2)
 
 
 def _weights(beam: Beam) -> Array:
-    """Inertia (..., 6, s) of what stands for each station -x and x."""
-    weight = (beam.points.rule.weights * beam.points.rate)[..., None, :] * np.swapaxes(beam.inertia, -1, -2)
-    return np.concatenate([weight, weight], axis=-1)
+    """Inertia (..., s, 6) of what stands for the stations -x and x."""
+    return (2.0 * beam.points.rule.weights * beam.points.rate)[..., None] * beam.inertia
 
 
 def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
@@ -107,69 +118,43 @@ def _with_modes(beam: Beam, ends: Array, held: tuple[Held, ...]) -> Array:
 
 def _shared(beam: Beam, held: Held) -> Array:
     """Mass (..., 12, n) that modes share with the motion of the ends: integral of N^T w phi dx, phi (v, dv/dx), of the ends' motion N."""
-    weight = _weights(beam)
-    columns, rows = next((columns, rows) for columns, rows in _motions(beam) if held.axis in columns)
-    turning = int(columns[-1])
-    block = (weight[..., held.axis, None, :] * _shape(rows[held.axis])) @ np.swapaxes(held.moved, -1, -2)
-    if held.turned is not None:
-        sign = 1.0 if held.axis == 1 else -1.0  # a slope of w along z turns about -y
-        block = block + sign * (weight[..., turning, None, :] * _shape(rows[turning])) @ np.swapaxes(held.turned, -1, -2)
-    result = np.zeros((*block.shape[:-2], 12, block.shape[-1]), dtype=block.dtype)
-    result[..., np.concatenate([columns, columns + 6]), :] = block
-    return result
+    turning, sign = {1: (5, 1.0), 2: (4, -1.0), 3: (3, 1.0)}[held.axis]  # a slope of w along z turns about -y
+    modes = {held.axis: held.moved} | ({} if held.turned is None else {turning: sign * held.turned})
+    half, weight = held.moved.shape[-1] // 2, 0.5 * _weights(beam)
+    result = np.zeros((12, held.moved.shape[-2]))
+    for motions in _motions(beam):
+        for place, rows in motions.items():
+            for row in rows.keys() & modes.keys():
+                even = 1.0 if (place < 6) == (place % 6 == row) else -1.0
+                mode = modes[row][..., half:] + even * modes[row][..., :half]
+                own = np.sum((weight[..., row] * rows[row])[..., None, :] * mode, axis=-1)
+                result = result + (np.arange(12) == place)[:, None] * own[..., None, :]
+    return _of_ends(result)
 
 
-_Rows: TypeAlias = dict[int, list[tuple[Array, Array]]]
-"""For the freedoms of a section, as (along x, y, z; about x, y, z): the pairs of entries of its twist per motion of both ends, and per
-relative motion, one pair for each column."""
+_Motions: TypeAlias = dict[int, dict[int, Array]]
+"""Motions of both ends, their means (0 to 5) and differences (6 to 11), and how sections at x move by them (along x, y, z; about x, y, z).
+
+At -x a mean moves a section along or about itself as at x, else the other way; a difference does the opposite."""
 
 
-def _total(items: list[Array]) -> Array:
-    return items[0] if len(items) == 1 else items[0] + items[1]
-
-
-def _product(entries: list[tuple[Array, Array]], weight: Array) -> Array:
-    """Integral of N^T w N over the stations for one row of N."""
-    shape = _shape(entries)
-    return (weight[..., None, :] * shape) @ np.swapaxes(shape, -1, -2)
-
-
-def _shape(entries: list[tuple[Array, Array]]) -> Array:
-    """One row of N = [X - second, second] at the stations."""
-    rows = [carry - second for carry, second in entries] + [second for _, second in entries]
-    return np.stack(np.broadcast_arrays(*rows), axis=-2)
-
-
-def _motions(beam: Beam) -> Iterator[tuple[Array, _Rows]]:
-    """Columns of the motions that do not feel one another, and their rows of X and of X Gamma at the stations -x and +x."""
-    points, flexibility = beam.points, beam.flexibility
-    position = points.position
-    both = np.concatenate([-position, position], axis=-1)
-    one, none = np.ones_like(both), np.zeros_like(both)
-    for axis in (0, 3):
-        share = _share(points.running(flexibility[..., axis]))[0]
-        yield np.array([axis]), {axis: [(one, share)]}
-    for across, turning, sign in ((1, 5, 1.0), (2, 4, -1.0)):
-        bending = flexibility[..., turning]
-        moved, moving = _share(points.running(flexibility[..., across] + position * position * bending))
-        turned, turns = _share(points.running(bending))
-        odd = sign * _odd_from_end(beam, position * bending)
-        odd = np.concatenate([odd, odd], axis=-1)
-        arm = sign * both
-        rows = {
-            across: [(one, moved + arm * odd / moving), (arm, odd / turns + arm * turned)],
-            turning: [(none, odd / moving), (one, turned)],
+def _motions(beam: Beam) -> Iterator[_Motions]:
+    """Motions that do not feel one another: the rows of X, and of X (Gamma - 1/2)."""
+    x, f, one = beam.points.position, beam.flexibility, np.ones(())
+    planes = [each for across, turn in ((1, 5), (2, 4)) for each in (f[..., across] + x * x * f[..., turn], f[..., turn], x * f[..., turn])]
+    pulled, twisted, *bent = beam.points.runnings(f[..., 0], f[..., 3], *planes)
+    for axis, grown in ((0, pulled), (3, twisted)):
+        yield {axis: {axis: one}}
+        yield {6 + axis: {axis: grown / _whole(grown)}}
+    for across, turn, sign, (moved, turned, odd) in ((1, 5, 1.0, bent[:3]), (2, 4, -1.0, bent[3:])):
+        left = odd[..., -1:] - odd
+        yield {across: {across: one}, 6 + turn: {across: sign * (left + x * turned) / _whole(turned), turn: turned / _whole(turned)}}
+        yield {
+            turn: {across: sign * x, turn: one},
+            6 + across: {across: (moved + x * left) / _whole(moved), turn: sign * left / _whole(moved)},
         }
-        yield np.array([across, turning]), rows
 
 
-def _share(half: Array) -> tuple[Array, Array]:
-    """The part of an even flexibility that has accumulated at the stations -x and +x, and the whole (..., 1)."""
-    total = 2.0 * half[..., -1:]
-    return np.concatenate([0.5 - half / total, 0.5 + half / total], axis=-1), total
-
-
-def _odd_from_end(beam: Beam, values: Array) -> Array:
-    """-integral of an odd function from the first end to -x or x, both alike: its integral from x to the second end."""
-    running = beam.points.running(values)
-    return running[..., -1:] - running
+def _whole(grown: Array) -> Array:
+    """The whole (..., 1) of an even flexibility that has grown so far at the stations x."""
+    return 2.0 * grown[..., -1:]

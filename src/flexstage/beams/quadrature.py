@@ -48,7 +48,12 @@ class Stations:
 
     def running(self, values: Array) -> Array:
         """Integrals from the centre to each station (..., m) -> (..., m)."""
-        return through(self.rule.running, (values * self.rate)[..., None])[..., 0]  # each design by itself: no bit depends on the batch
+        return self.runnings(values)[0]
+
+    def runnings(self, *values: Array) -> tuple[Array, ...]:
+        """Those of several."""
+        columns = np.stack(np.broadcast_arrays(*values, self.rate)[:-1], axis=-1) * self.rate[..., None]
+        return tuple(np.moveaxis(through(self.rule.running, columns), -1, 0))  # each design by itself: no bit depends on the batch
 
 
 def through(rule: Array, values: Array) -> Array:
@@ -82,10 +87,11 @@ def _straight(half: Number) -> Stations:
 def _arc(along: Number, across: Number, thinnest: Number, last: Number = 0.5 * np.pi) -> Stations:
     """Arc x = a sin p, w = c (1 - cos p) up to p = `last`.
 
-    The singularity is at p = i arccosh(1 + t / 2c). Nodes are complex where numbers are stepped.
+    The singularity is at p = i arccosh(1 + t / 2c). Nodes stay where numbers are stepped: what
+    changes is the integrand.
     """
     along, across = np.asarray(along)[..., None], np.asarray(across)[..., None]
-    scale = 2.0 * np.arcsinh(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
+    scale = 2.0 * np.arcsinh(np.sqrt(np.real(np.asarray(thinnest)[..., None] / (4.0 * across))))
     span = np.arcsinh(np.asarray(last)[..., None] / scale)
     stretched = span * _points()
     angle = scale * np.sinh(stretched)
@@ -115,7 +121,7 @@ def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
 def _parabola(profile: Parabolic, thinnest: Number) -> Stations:
     """x = a s, s = d sinh v, d = (t / 2c)^1/2: the thickness is twice the least at s = d."""
     along, across = np.asarray(profile.along)[..., None], np.asarray(profile.across)[..., None]
-    scale = np.sqrt(np.asarray(thinnest)[..., None] / (2.0 * across))
+    scale = np.sqrt(np.real(np.asarray(thinnest)[..., None] / (2.0 * across)))
     span = np.arcsinh(1.0 / scale)
     share = scale * np.sinh(span * _points())
     rate = along * scale * np.cosh(span * _points()) * span
@@ -126,7 +132,7 @@ def _hyperbola(profile: Hyperbolic, thinnest: Number) -> Stations:
     """x = a/k sinh p, w = q (cosh p - 1), k^2 the steepness, p = d sinh v: an arc with an imaginary angle, in two pieces for sharp ones."""
     across, steep = np.asarray(profile.semi_axis)[..., None], np.sqrt(np.asarray(profile.steepness))[..., None]
     along = np.asarray(profile.along)[..., None] / steep
-    scale = 2.0 * np.arctan(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
+    scale = 2.0 * np.arctan(np.sqrt(np.real(np.asarray(thinnest)[..., None] / (4.0 * across))))
     span = np.arcsinh(np.arcsinh(steep) / scale)
     stretched = 0.5 * span * np.concatenate([_points(), 1.0 + _points()])
     angle = scale * np.sinh(stretched)

@@ -37,7 +37,6 @@ from flexstage.parts.profile import (
 )
 from flexstage.parts.stated import Stated
 
-_ODD = np.arange(1.0, 8.0, 2.0)
 _ODD_FIFTH_POWERS = 1.00452376279513961613
 """Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
 
@@ -78,8 +77,11 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
     """
     tall = np.real(width) < np.real(thickness)
     short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
-    decay = np.exp(-np.pi * (long / short)[..., None] * _ODD)
-    series = _ODD_FIFTH_POWERS - np.sum(2.0 * decay / (1.0 + decay) / _ODD**5, axis=-1)
+    decay = np.exp(-np.pi * (long / short))
+    square, series = decay * decay, _ODD_FIFTH_POWERS
+    for odd in (1.0, 3.0, 5.0, 7.0):
+        series = series - 2.0 / odd**5 * decay / (1.0 + decay)
+        decay = decay * square
     return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
 
 
