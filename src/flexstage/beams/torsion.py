@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.beams.quadrature import Stations, through
+from flexstage.beams.quadrature import Stations
 from flexstage.beams.section import Section
 
 _TOGETHER = 16
@@ -78,18 +78,28 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
 
 
 def _warping(points: Stations, *numbers: Array) -> Array:
-    """theta at the stations (..., m), of 1 / (E C_w), g and f, each times dx/du; a few designs at a time: their matrices fit the cache."""
+    """theta at the stations (..., m), of 1 / (E C_w), g and f, each times dx/du; a few designs at a time: their matrices fit the cache.
+
+    Steps along a first axis, of the same real numbers, share the matrices of these.
+    """
     numbers = np.broadcast_arrays(*numbers)
-    flat = [each.reshape(-1, each.shape[-1]) for each in numbers]
-    if len(flat[0]) <= _TOGETHER:
-        return _theta(points, *numbers)
-    blocks = [slice(start, start + _TOGETHER) for start in range(0, len(flat[0]), _TOGETHER)]
-    found = [_theta(points, *(each[block] for each in flat)) for block in blocks]
-    return np.concatenate(found).reshape(numbers[0].shape)
+    shape: tuple[int, ...] = numbers[0].shape
+    shared = len(shape) > 2 and all(np.array_equal(np.real(each), np.broadcast_to(np.real(each[:1]), shape)) for each in numbers)
+    flat = [each.reshape(shape[0] if shared else 1, -1, shape[-1]) for each in numbers]
+    blocks = [slice(start, start + _TOGETHER) for start in range(0, flat[0].shape[1], _TOGETHER)]
+    found = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]
+    return np.moveaxis(np.concatenate(found), -1, 0).reshape(shape)
 
 
-def _theta(points: Stations, softness: Array, spring: Array, load: Array) -> Array:
-    rule = points.rule
-    integral = through(rule.weights - rule.running, softness[..., None] * rule.running)
-    system = np.eye(integral.shape[-1]) + integral * spring[..., None, :]
-    return np.linalg.solve(system, integral @ load[..., None])[..., 0]
+def _theta(points: Stations, *numbers: Array) -> Array:
+    """theta of numbers (b, m, n) whose real parts are those of the first of n; steps of the equation's solution solve it, too."""
+    out, running = points.rule.weights - points.rule.running, points.rule.running
+    softness, spring, load = (np.real(each[..., :1]) for each in numbers)
+    integral = out @ (softness * running)
+    system = np.eye(len(out)) + integral * np.swapaxes(spring, -1, -2)
+    theta = np.linalg.solve(system, integral @ load)
+    if not any(map(np.iscomplexobj, numbers)):
+        return np.broadcast_to(theta, numbers[0].shape)
+    softer, stiffer, loaded = map(np.imag, numbers)
+    right = out @ (softer * (running @ (load - spring * theta)) + softness * (running @ (loaded - stiffer * theta)))
+    return theta + 1j * np.linalg.solve(system, right)

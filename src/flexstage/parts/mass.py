@@ -101,7 +101,8 @@ def combine(items: list[MassProperties]) -> MassProperties:
     moment = sum((item.mass[..., None] * item.centre for item in items), np.zeros(3))
     safe = np.where(np.real(mass) > 0.0, mass, 1.0)
     centre = moment / safe[..., None]
-    inertia = sum((item.inertia + _steiner(item.mass, item.centre - centre) for item in items), np.zeros((3, 3)))
+    middle = np.real(centre)  # inertia is least about the centre: to first order a step of that does not change it
+    inertia = sum((item.inertia + _steiner(item.mass, item.centre - middle) for item in items), np.zeros((3, 3)))
     return MassProperties(mass, centre, inertia)
 
 
@@ -147,6 +148,8 @@ def within(properties: MassProperties, frame: Frame) -> MassProperties:
     >>> turned.centre.tolist(), turned.inertia.diagonal().tolist()
     ([0.0, 1.0, 0.0], [1.0, 0.0, 2.0])
     """
+    if np.array_equal(frame.rotation, np.eye(3)):
+        return MassProperties(properties.mass, frame.position + properties.centre, properties.inertia)
     inertia = frame.rotation @ properties.inertia @ np.swapaxes(frame.rotation, -1, -2)
     return MassProperties(properties.mass, frame.point(properties.centre), inertia)
 

@@ -6,7 +6,7 @@ share six parts. Numbers without batch axes hold for every design.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -158,33 +158,63 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     >>> features(double_triangle())["inertia", 0].diagonal()[:3].round(3).tolist()  # the platform's mass
     [13.997, 13.997, 13.997]
     """
-    assembly = lay_out(mechanism)
-    result: dict[tuple[str, int], Array] = {}
-    for number, link in enumerate(distinct_links(assembly)):
-        if wanted("stiffness", number) or wanted("mass", number):
-            result["stiffness", number], result["mass", number] = _in_blocks(link.part, link.material)
-    for number, link in enumerate(assembly.links.values()):
-        result["turn", number] = link.frame.rotation
-        for kind, body in zip(("first", "second"), link.joins, strict=True):
-            if wanted(kind, number):
-                result[kind, number] = np.zeros(3) if body == GROUND else assembly.bodies[body].reference - link.frame.position
-    for number, body in enumerate(layout(assembly).bodies):
-        if wanted("inertia", number):
-            inertia = moving_inertia(mechanism, assembly.bodies[body])
-            result["inertia", number] = np.zeros((6, 6)) if inertia is None else inertia
-    return result
+    return next(stepped_features([mechanism], [wanted]))
 
 
-def _in_blocks(part: Part, material: Material | None) -> tuple[Array, Array]:
-    """Stiffness and mass of a part, some designs after the others: the stations of many do not fit into the processor's cache."""
-    count = max((len(array) for each in (part, material) for array in _arrays(each)), default=1)
+def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) -> Iterator[dict[tuple[str, int], Array]]:
+    """The features of one description with several steps in its numbers; each part is integrated once for all of them.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [len(found) for found in stepped_features([double_triangle()], [lambda kind, owner: kind == "mass" and owner == 0])]
+    [29]
+    """
+    assemblies = [lay_out(mechanism) for mechanism in mechanisms]
+    found: list[dict[tuple[str, int], Array]] = [{} for _ in assemblies]
+    for number, links in enumerate(zip(*map(distinct_links, assemblies), strict=True)):
+        own = [place for place, asked in enumerate(wanted) if asked("stiffness", number) or asked("mass", number)]
+        for kind, arrays in _in_blocks([(links[place].part, links[place].material) for place in own]).items():
+            for place, array in zip(own, arrays, strict=True):
+                found[place][kind, number] = array
+    for mechanism, assembly, asked, result in zip(mechanisms, assemblies, wanted, found, strict=True):
+        for number, link in enumerate(assembly.links.values()):
+            result["turn", number] = link.frame.rotation
+            for kind, body in zip(("first", "second"), link.joins, strict=True):
+                if asked(kind, number):
+                    result[kind, number] = np.zeros(3) if body == GROUND else assembly.bodies[body].reference - link.frame.position
+        for number, body in enumerate(layout(assembly).bodies):
+            if asked("inertia", number):
+                inertia = moving_inertia(mechanism, assembly.bodies[body])
+                result["inertia", number] = np.zeros((6, 6)) if inertia is None else inertia
+        yield result
+
+
+def _in_blocks(parts: list[tuple[Part, Material | None]]) -> dict[str, list[Array]]:
+    """Stiffness and mass of a part with each of several steps, some designs after the others: more stations do not fit into the cache."""
+    if not parts:
+        return {}
+    both = _together(parts)
+    count = max((array.shape[-1] for array in _arrays(both)), default=1)
     blocks = [slice(start, start + _BLOCK) for start in range(0, count, _BLOCK)] if count > _BLOCK else [slice(None)]
-    found = [law_and_mass(_taken(part, block), _taken(material, block)) for block in blocks]
-    return _joined([law.stiffness for law, _ in found]), _joined([mass for _, mass in found])
+    laws, masses = zip(*(law_and_mass(*_taken(both, block)) for block in blocks), strict=True)
+    whole = {"stiffness": _joined([law.stiffness for law in laws]), "mass": _joined(masses)}
+    return {kind: list(array) if array.ndim == 4 else [array] * len(parts) for kind, array in whole.items()}
 
 
-def _joined(arrays: list[Array]) -> Array:
-    return np.concatenate(arrays) if len(arrays) > 1 and arrays[0].ndim > 2 else arrays[0]
+def _together(values: Sequence[Any]) -> Any:
+    """Descriptions that differ in steps as one, with a first axis in numbers that do."""
+    first = values[0]
+    if all(value is first for value in values):
+        return first
+    if isinstance(first, tuple):
+        return tuple(map(_together, zip(*values, strict=True)))
+    if isinstance(first, Description):
+        own = {field.name: _together([getattr(value, field.name) for value in values]) for field in fields(first)}  # type: ignore[arg-type]
+        return replace(first, **own)  # type: ignore[type-var]
+    return np.stack(np.broadcast_arrays(*values)) if any(map(np.iscomplexobj, values)) else first
+
+
+def _joined(arrays: Sequence[Array]) -> Array:
+    return np.concatenate(arrays, axis=-3) if len(arrays) > 1 and arrays[0].ndim > 2 else arrays[0]
 
 
 def _arrays(value: Any) -> Iterator[Array]:
@@ -200,7 +230,7 @@ def _arrays(value: Any) -> Iterator[Array]:
 def _taken(value: Any, designs: slice) -> Any:
     """Some designs of a description."""
     if isinstance(value, np.ndarray):
-        return value[designs]
+        return value[..., designs]
     if isinstance(value, tuple):
         return tuple(_taken(each, designs) for each in value)
     if isinstance(value, Description) and any(True for _ in _arrays(value)):

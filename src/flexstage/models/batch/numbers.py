@@ -18,7 +18,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
-from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, topology
+from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, stepped_features, topology
 from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
@@ -318,12 +318,14 @@ def _slopes(
     for start, change in _starts(changes):
         if all(change.variable != item.variable for item in told.get(change.key, ())):
             places.setdefault(change.variable, []).append((start, change))
+    asked: list[tuple[tuple[int, ...], Mechanism, set[Key]]] = []
     for group in family_.together:
         wanted = {change.key for number in group for _, change in places.get(number, [])}
-        if not wanted:
-            continue
-        wanted |= {key for number in group for change in dropped.get(number, ()) if (key := change.key)[0] != "inertia"}
-        arrays = features(step_numbers(family_, mechanism, values, group), lambda kind, owner, wanted=wanted: (kind, owner) in wanted)
+        if wanted:
+            wanted |= {key for number in group for change in dropped.get(number, ()) if (key := change.key)[0] != "inertia"}
+            asked.append((group, step_numbers(family_, mechanism, values, group), wanted))
+    keys = [lambda kind, owner, wanted=wanted: (kind, owner) in wanted for _, _, wanted in asked]
+    for (group, _, _), arrays in zip(asked, stepped_features([stepped for _, stepped, _ in asked], keys), strict=True):
         for number in group:
             for at, change in places.get(number, []):
                 flat = _flat(arrays[change.key], change)[..., change.rows]
