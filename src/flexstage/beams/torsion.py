@@ -84,7 +84,7 @@ def _warping(points: Stations, *numbers: Array) -> Array:
     """
     numbers = np.broadcast_arrays(*numbers)
     shape: tuple[int, ...] = numbers[0].shape
-    shared = len(shape) > 2 and all(np.array_equal(np.real(each), np.broadcast_to(np.real(each[:1]), shape)) for each in numbers)
+    shared = numbers[0].ndim > 2 and all(np.array_equal(np.real(each), np.broadcast_to(np.real(each[:1]), shape)) for each in numbers)
     flat = [each.reshape(shape[0] if shared else 1, -1, shape[-1]) for each in numbers]
     blocks = [slice(start, start + _TOGETHER) for start in range(0, flat[0].shape[1], _TOGETHER)]
     found = [_theta(points, *(np.moveaxis(each[:, block], 0, -1) for each in flat)) for block in blocks]

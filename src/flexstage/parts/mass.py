@@ -83,10 +83,9 @@ def of_moments(density: Number, moments: Moments) -> MassProperties:
     """
     safe = np.where(np.real(moments.volume) == 0.0, 1.0, moments.volume)
     centre = moments.first / safe[..., None]
-    central = moments.second - moments.first[..., :, None] * centre[..., None, :]
-    spread = np.trace(central, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - central
+    central = moments.second - _outer(moments.first, centre)
     weight = np.asarray(density)
-    return MassProperties(weight * moments.volume, centre, weight[..., None, None] * spread)
+    return MassProperties(weight * moments.volume, centre, weight[..., None, None] * _about(central))
 
 
 def combine(items: list[MassProperties]) -> MassProperties:
@@ -102,13 +101,19 @@ def combine(items: list[MassProperties]) -> MassProperties:
     safe = np.where(np.real(mass) > 0.0, mass, 1.0)
     centre = moment / safe[..., None]
     middle = np.real(centre)  # inertia is least about the centre: to first order a step of that does not change it
-    inertia = sum((item.inertia + _steiner(item.mass, item.centre - middle) for item in items), np.zeros((3, 3)))
-    return MassProperties(mass, centre, inertia)
+    arms = [item.centre - middle for item in items]
+    own = sum((item.inertia for item in items), np.zeros((3, 3)))
+    spread = sum((_outer(item.mass[..., None] * arm, arm) for item, arm in zip(items, arms, strict=True)), np.zeros((3, 3)))
+    return MassProperties(mass, centre, own + _about(spread))
 
 
-def _steiner(mass: Array, arm: Array) -> Array:
-    square = np.sum(arm * arm, axis=-1)[..., None, None]
-    return mass[..., None, None] * (square * np.eye(3) - arm[..., :, None] * arm[..., None, :])
+def _outer(one: Array, other: Array) -> Array:
+    return one[..., :, None] * other[..., None, :]
+
+
+def _about(second: Array) -> Array:
+    """The inertia of a second moment (..., 3, 3): tr S I - S."""
+    return np.trace(second, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - second
 
 
 def tensor(inertia: Inertia) -> Array:

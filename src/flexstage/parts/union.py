@@ -804,6 +804,8 @@ _Circle: TypeAlias = tuple[Array, Array]
 _Line: TypeAlias = tuple[Array, Array]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 """Exact to rounding for the trigonometric and other polynomials of second moments along an arc or a side."""
+_ROUND_NODES, _ROUND_WEIGHTS = np.arange(-7.0, 8.0, 2.0) / 8.0, np.full(8, 0.25)
+"""Along a whole circle, exact for trigonometric polynomials below the eighth degree."""
 
 
 def _section(circles: Sequence[_Circle], lines: Sequence[_Line], within: float, alike: _Alike) -> tuple[tuple[Path, ...], _Values] | None:
@@ -885,11 +887,12 @@ def _along_circle(number: int, circles: Sequence[_Circle], lines: Sequence[_Line
             limits.append((arm / apart[:, None], (size**2 - apart**2 - radius**2) / (2.0 * radius * apart)))
     for low, high in _intervals(limits, alike):
         half = 0.5 * (high - low)
-        angles = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
+        nodes, weights = (_ROUND_NODES, _ROUND_WEIGHTS) if np.all(half == np.pi) else (_NODES, _WEIGHTS)
+        angles = 0.5 * (low + high)[:, None] + half[:, None] * nodes
         outward = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
         turn = radius[:, None] ** 2 + radius[:, None] * (outward @ centre[..., None])[..., 0]
         places = centre[:, None] + radius[:, None, None] * outward
-        yield places, turn * half[:, None] * _WEIGHTS, (radius * half)[:, None] * _WEIGHTS
+        yield places, turn * half[:, None] * weights, (radius * half)[:, None] * weights
 
 
 def _intervals(limits: Sequence[tuple[Array, Array]], alike: _Alike) -> Iterator[tuple[Array, Array]]:

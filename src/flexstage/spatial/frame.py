@@ -194,10 +194,11 @@ def rigid_inertia(mass: Number, inertia: Array, centre: Array, reference: Array)
     >>> rigid_inertia(2.0, np.eye(3), np.zeros(3), np.zeros(3)).diagonal().tolist()
     [2.0, 2.0, 2.0, 1.0, 1.0, 1.0]
     """
-    carry = transport(centre - reference)
-    mass = np.asarray(mass)
-    shape = np.broadcast_shapes(mass.shape, inertia.shape[:-2], carry.shape[:-2])
-    core = np.zeros((*shape, 6, 6), dtype=np.result_type(mass, inertia, carry))
-    core[..., :3, :3] = mass[..., None, None] * np.eye(3)
-    core[..., 3:, 3:] = inertia
-    return np.swapaxes(carry, -1, -2) @ core @ carry
+    lever = cross_matrix(centre - reference)
+    mass = np.asarray(mass)[..., None, None]
+    shape = np.broadcast_shapes(mass.shape[:-2], inertia.shape[:-2], lever.shape[:-2])
+    result = np.zeros((*shape, 6, 6), dtype=np.result_type(mass, inertia, lever))
+    moment = mass * lever
+    result[..., :3, :3], result[..., 3:, :3], result[..., :3, 3:] = mass * np.eye(3), moment, -moment
+    result[..., 3:, 3:] = inertia + np.swapaxes(lever, -1, -2) @ moment
+    return result

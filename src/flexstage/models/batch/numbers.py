@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
 from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, stepped_features, topology
@@ -73,6 +73,11 @@ class Family:
             for place in places
             if (place.kind, place.owner) in keys
         )
+
+    @cached_property
+    def located(self) -> tuple[Place, ...]:
+        """Where the addresses point."""
+        return tuple(locate(self.mechanism, address) for address in self.addresses)
 
     @cached_property
     def told(self) -> Mapping[Key, tuple[Told, ...]]:
@@ -224,8 +229,7 @@ def describe(family_: Family, values: Array) -> Mechanism:
 
 def _set(family_: Family, mechanism: Mechanism, values: Mapping[int, Array]) -> Mechanism:
     for number, value in values.items():
-        address = family_.addresses[number]
-        place = locate(mechanism, address)
+        address, place = family_.addresses[number], family_.located[number]
         plain = not place.owners and not place.number and not set(MATRICES) & set(place.path)
         mechanism = replace_member(mechanism, place.path, value) if plain else set_value(mechanism, address, value)
     return mechanism
