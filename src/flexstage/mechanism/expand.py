@@ -618,7 +618,7 @@ def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> M
             for frame in (lambda item: item.frame, lambda item: item.aligned)
         )
         masses.append(union_properties(actual, meant))
-    return combine(masses) if len(masses) > 1 else masses[0] if masses else None
+    return combine(masses) if masses else None
 
 
 def _actuators(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[str, str]:

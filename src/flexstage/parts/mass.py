@@ -96,6 +96,8 @@ def combine(items: list[MassProperties]) -> MassProperties:
     >>> combine([point, other]).inertia.diagonal().tolist()
     [0.0, 2.0, 2.0]
     """
+    if len(items) == 1:
+        return items[0]
     mass = sum((item.mass for item in items), np.asarray(0.0))
     moment = sum((item.mass[..., None] * item.centre for item in items), np.zeros(3))
     safe = np.where(np.real(mass) > 0.0, mass, 1.0)
@@ -113,7 +115,9 @@ def _outer(one: Array, other: Array) -> Array:
 
 def _about(second: Array) -> Array:
     """The inertia of a second moment (..., 3, 3): tr S I - S."""
-    return np.trace(second, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - second
+    result, (xx, yy, zz) = -second, np.moveaxis(np.diagonal(second, axis1=-2, axis2=-1), -1, 0)
+    result[..., range(3), range(3)] = np.stack([yy + zz, xx + zz, xx + yy], axis=-1)
+    return result
 
 
 def tensor(inertia: Inertia) -> Array:

@@ -135,6 +135,8 @@ class _Region:
                 item = flat.rounds[number]
                 rates = [np.imag(item.radius)[:, None], np.imag(item.point), np.imag(item.axis)]
             rate = np.concatenate(rates, axis=1)
+            if not np.any(rate):
+                continue
             total += (gain @ rate[..., None])[..., 0] if rate.shape[1] > 1 else gain[..., 0] * rate
         second = total[:, _SYMMETRIC].reshape(*shape, 3, 3)
         own = self.moments
@@ -587,8 +589,8 @@ def _polytopes(cell: _Cell, scale: float) -> tuple[Array, _Values, Surface | Non
     if len(corners) < 4:
         done = _empty_alike(np.real(normals), np.real(offsets) / scale)
         return done, (np.zeros(len(done)), np.zeros((len(done), 3)), np.zeros((len(done), 3, 3))), None
-    places = np.linalg.solve(normals[:, corners], offsets[:, corners][..., None])[..., 0]
-    beyond = np.einsum("bkx,bvx->bvk", np.real(normals), np.real(places)) - np.real(offsets)[:, None]
+    places = _crossings(normals[:, corners], offsets[:, corners])
+    beyond = np.real(places) @ np.swapaxes(np.real(normals), -1, -2) - np.real(offsets)[:, None]
     alike = np.flatnonzero(np.all(beyond <= 2.0 * within, axis=(1, 2)))
     try:
         hull = scipy.spatial.ConvexHull(np.real(places[0]) / scale)
@@ -626,14 +628,24 @@ def _outward(hull: scipy.spatial.ConvexHull) -> Array:
     return np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
 
 
+def _crossings(normals: Array, offsets: Array) -> Array:
+    """Where three planes each (..., 3, 3) meet (..., 3), by Cramer's rule."""
+    across = np.stack([_cross(normals[..., one, :], normals[..., other, :]) for one, other in ((1, 2), (2, 0), (0, 1))], axis=-2)
+    return np.sum(across * offsets[..., None], axis=-2) / _dot(normals[..., 0, :], across[..., 0, :])[..., None]
+
+
+def _cross(one: Array, other: Array) -> Array:
+    return one[..., [1, 2, 0]] * other[..., [2, 0, 1]] - one[..., [2, 0, 1]] * other[..., [1, 2, 0]]
+
+
 def _fan(arms: Array, middle: Array) -> _Values:
     """Moments of polytopes as tetrahedra from their middles (b, 3) to their triangles (b, n, 3, 3)."""
-    sixfold = np.linalg.det(arms)
+    sixfold = _dot(arms[..., 0, :], _cross(arms[..., 1, :], arms[..., 2, :]))[..., None]
     total = np.sum(arms, axis=2)
-    volume = np.sum(sixfold, axis=1) / 6.0
-    first = np.einsum("bn,bnx->bx", sixfold, total) / 24.0
-    second = (np.einsum("bn,bnvx,bnvy->bxy", sixfold, arms, arms) + np.einsum("bn,bnx,bny->bxy", sixfold, total, total)) / 120.0
-    return _shift((volume, first, second), middle)
+    ends = np.concatenate([arms, total[:, :, None]], axis=2)
+    heavy = sixfold[..., None] * ends
+    second = np.swapaxes(ends.reshape(len(ends), -1, 3), -1, -2) @ heavy.reshape(len(ends), -1, 3) / 120.0
+    return _shift((np.sum(sixfold, axis=(1, 2)) / 6.0, np.sum(heavy[:, :, 3], axis=1) / 24.0, second), middle)
 
 
 def _shift(values: _Values, by: Array) -> _Values:
