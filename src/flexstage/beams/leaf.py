@@ -11,7 +11,7 @@ from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
 from flexstage.beams.section import Section, cowper_rectangle, rectangle
-from flexstage.beams.torsion import Twisting, free_twist
+from flexstage.beams.torsion import Twisting, decays, free_twist
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
@@ -88,13 +88,12 @@ def _wavenumber(part: Leaf, material: Material) -> Number:
 
 
 def _twisting(part: Leaf, points: Stations, section: Section, material: Material) -> Twisting:
-    """Twist rate (1 - cosh(kx) / cosh(kL/2)) / (G J) and its bimoment E C_w phi'', in decaying exponentials."""
-    wavenumber, half = np.asarray(_wavenumber(part, material))[..., None], np.asarray(0.5 * part.length)[..., None]
+    """Twist rate (1 - cosh(kx) / cosh(kL/2)) / (G J) and its bimoment E C_w phi''."""
+    wavenumber = np.asarray(_wavenumber(part, material))[..., None]
     free = 1.0 / (np.asarray(material.shear)[..., None] * section.torsion)
-    near, far = np.exp(wavenumber * (points.position - half)), np.exp(-wavenumber * (points.position + half))
-    whole = 1.0 + np.exp(-2.0 * wavenumber * half)
+    straight, sloping = decays(points, wavenumber)
     warping = np.asarray(material.modulus)[..., None] * section.warping
-    return Twisting(free * (1.0 - (near + far) / whole), -free * warping * wavenumber * (near - far) / whole)
+    return Twisting(free * (1.0 - straight), -free * warping * wavenumber * sloping)
 
 
 def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]:

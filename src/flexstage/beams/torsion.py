@@ -52,7 +52,8 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     """Twist of a hinge whose ends cannot warp; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
     Eliminating phi' leaves (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2); it is solved as
-    theta = A (f - g theta) with A the twofold integral by the rule of the stations.
+    theta = A (f - g theta) with A the twofold integral by the rule of the stations. Where the section stays the same,
+    theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.beams.section import rectangle
@@ -72,9 +73,27 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     whole = section.torsion + stiffness * skew * skew
     load = stiffness * skew / whole
     spring = shear * stiffness * section.torsion / whole
-    theta = _warping(points, points.rate / (young * section.warping), points.rate * spring, points.rate * load)
-    bimoment = -points.running(load - spring * theta)
-    return Twisting(1.0 / (shear * whole) + load * theta, bimoment)
+    free, rigidity = 1.0 / (shear * whole), young * section.warping
+    if np.array_equal(spring, np.broadcast_to(spring[..., :1], spring.shape)):
+        wavenumber, rest = np.sqrt(spring / rigidity), load / spring
+        straight, sloping = decays(points, wavenumber)
+        return Twisting(free + load * rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping)
+    theta = _warping(points, points.rate / rigidity, points.rate * spring, points.rate * load)
+    return Twisting(free + load * theta, -points.running(load - spring * theta))
+
+
+def decays(points: Stations, wavenumber: Array) -> tuple[Array, Array]:
+    """cosh(k x) and sinh(k x) over cosh(k l) at the stations, l the last of them, for a wavenumber k (..., 1).
+
+    >>> from flexstage.beams.quadrature import stations
+    >>> from flexstage.parts.profile import Straight
+    >>> [float(each[-1]) for each in decays(stations(Straight(2.0), 0.1), np.full(1, 1000.0))]
+    [1.0, 1.0]
+    """
+    half = points.position[..., -1:]
+    near, far = np.exp(wavenumber * (points.position - half)), np.exp(-wavenumber * (points.position + half))
+    whole = 1.0 + np.exp(-2.0 * wavenumber * half)
+    return (near + far) / whole, (near - far) / whole
 
 
 def _warping(points: Stations, *numbers: Array) -> Array:
