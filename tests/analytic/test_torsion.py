@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from flexstage.beams.section import rectangle_torsion
+from flexstage.beams.quadrature import stations
+from flexstage.beams.section import rectangle, rectangle_torsion
+from flexstage.beams.torsion import constrained_twist
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Straight
@@ -76,3 +78,27 @@ def test_wide_hinges_bend_strip_by_strip(profile):
         ratios.append(found[3] * width**2 / (12.0 * found[1]) - 1.0)
     assert abs(ratios[1]) < 2e-4
     assert ratios[0] / ratios[1] == pytest.approx(4.0, rel=0.02)
+
+
+def twisting(thickness, points):
+    section = rectangle(thickness, np.full_like(thickness, 0.01))
+    return constrained_twist(section, points, np.full(1, UNIT.young), np.full(1, UNIT.shear))
+
+
+def test_uniform_sections_twist_as_the_equation_at_stations_says():
+    """A section that differs along the hinge by less than rounding is solved for; steps pass through both."""
+    points = stations(Straight(0.03), 0.002)
+    same = np.full(points.position.shape, 0.002 + 1e-24j)
+    found, expected = twisting(same, points), twisting(same * (1.0 + 1e-15 * (points.position > 0.0)), points)
+    for one, other in ((found.rate, expected.rate), (found.bimoment, expected.bimoment)):
+        np.testing.assert_allclose(np.real(one), np.real(other), atol=1e-11 * np.max(np.abs(other)))
+        np.testing.assert_allclose(np.imag(one), np.imag(other), atol=1e-10 * np.max(np.abs(np.imag(other))))
+
+
+def test_steps_beside_one_another_are_each_alone():
+    """Steps that share real numbers, and those that do not, as if each were solved for itself."""
+    points = stations(Circular(0.01), 0.002)
+    for thicker in (0.0, 1e-4):
+        both = np.array([[0.002 + 1e-24j], [0.002 + thicker + 3e-24j]])[..., None] + 2.0 * points.growth
+        alone = [twisting(each, points).rate for each in both]
+        np.testing.assert_allclose(np.imag(twisting(both, points).rate), np.imag(alone), rtol=1e-10)

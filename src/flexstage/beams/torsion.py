@@ -25,6 +25,8 @@ from flexstage.base.number import Array
 from flexstage.beams.quadrature import Stations
 from flexstage.beams.section import Section
 
+_LONG = 20.0
+"""Decay lengths from the centre to an end from which stations do not resolve the ends: the equation at stations has their integral."""
 _TOGETHER = 16
 """Designs solved at once."""
 
@@ -52,8 +54,8 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     """Twist of a hinge whose ends cannot warp; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
     Eliminating phi' leaves (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2); it is solved as
-    theta = A (f - g theta) with A the twofold integral by the rule of the stations. Where the section stays the same,
-    theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
+    theta = A (f - g theta) with A the twofold integral by the rule of the stations. Where the section stays the same and the stations
+    resolve its ends, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.beams.section import rectangle
@@ -74,8 +76,10 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     load = stiffness * skew / whole
     spring = shear * stiffness * section.torsion / whole
     free, rigidity = 1.0 / (shear * whole), young * section.warping
-    if np.array_equal(spring, np.broadcast_to(spring[..., :1], spring.shape)):
-        wavenumber, rest = np.sqrt(spring / rigidity), load / spring
+    wavenumber = np.sqrt(spring / rigidity)
+    uniform = np.array_equal(wavenumber, np.broadcast_to(wavenumber[..., :1], wavenumber.shape))
+    if uniform and np.all(np.real(wavenumber * points.position) < _LONG):
+        rest = load / spring
         straight, sloping = decays(points, wavenumber)
         return Twisting(free + load * rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping)
     theta = _warping(points, points.rate / rigidity, points.rate * spring, points.rate * load)
