@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import drawn_family, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
+from flexstage.models.batch.units import _told
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.given import Given
 from tests.conftest import examples
@@ -133,6 +135,16 @@ def told_and_stepped(stage: Mechanism, names: tuple[str, ...]) -> None:
             ]
             scale = np.sqrt(diagonal[:, None] * diagonal).reshape(-1, len(values))[change.rows]
             assert np.all(np.abs(found.values[rows] - stepped.values[rows]) * values[:, change.variable] <= 1e-13 * scale)
+
+
+def test_units_of_time_tell_a_stiffness_by_mass_and_frequency() -> None:
+    """k = m (2 pi f)^2 grows once with the mass and twice with the frequency; no part of the package has its stiffness so."""
+    felt = [(("part", "mass"), (Fraction(1), Fraction(0), Fraction(0))), (("part", "resonance"), (Fraction(0), Fraction(0), Fraction(-1)))]
+    told = _told(felt, {path: number for number, (path, _) in enumerate(felt)}, (0, 1))
+    assert [(item.variable, item.powers("stiffness", np.array([0])).tolist(), item.rest) for item in told] == [
+        (0, [1.0], ()),
+        (1, [2.0], ()),
+    ]
 
 
 @given(mechanisms.fresh())
