@@ -6,6 +6,7 @@ Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that p
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import lru_cache
 from itertools import pairwise, product
 from typing import Any, TypeAlias
 
@@ -45,6 +46,7 @@ def is_flat(form: Form) -> bool:
     return form.is_flat if isinstance(form, Solid) else form.is_prismatic and not form.throat.is_round
 
 
+@lru_cache(maxsize=256)
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
     """The convex pieces of a form in its own frame; a link's `trim` [m] is cut off at both of its ends. An imported shape has none.
 
