@@ -53,6 +53,24 @@ def test_prismatic_warping_in_closed_form(t, b, length, tolerance):
     assert found == pytest.approx(prismatic(t, b, length), rel=tolerance)
 
 
+def test_a_hinge_of_many_is_told_as_if_alone():
+    """To the bit, whichever way its neighbours are solved: one of them is too long for its stations."""
+    lengths, one = np.array([0.01, 0.3, 0.02]), np.ones((3, 1))
+
+    def twist(which):
+        points = stations(Straight(lengths[which]), np.full(len(lengths[which]), 0.001))
+        section = rectangle(
+            np.broadcast_to(0.001 * one[which], points.growth.shape), np.broadcast_to(0.01 * one[which], points.growth.shape)
+        )
+        return constrained_twist(section, points, 2.6 * one[which], one[which])
+
+    together = twist(slice(None))
+    for number in range(3):
+        alone = twist(slice(number, number + 1))
+        assert np.array_equal(alone.rate[0], together.rate[number])
+        assert np.array_equal(alone.bimoment[0], together.bimoment[number])
+
+
 def test_slender_hinges_are_saint_venants():
     """Long against its width, a straight hinge twists by L / (G J), less the ends: 1 - 1/lam, lam = (L/b) sqrt(6 / (1 + nu))."""
     length, lam = 400.0, 400.0 / 2.0 * np.sqrt(6.0 / 1.3)

@@ -73,17 +73,32 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     skew = (square_z - square_y) / (square_z + square_y)
     stiffness = section.polar / section.shear
     whole = section.torsion + stiffness * skew * skew
-    load = stiffness * skew / whole
+    load = np.asarray(stiffness * skew / whole)
     spring = shear * stiffness * section.torsion / whole
     free, rigidity = 1.0 / (shear * whole), young * section.warping
     wavenumber = np.sqrt(spring / rigidity)
-    uniform = np.array_equal(wavenumber, np.broadcast_to(wavenumber[..., :1], wavenumber.shape))
-    if uniform and np.all(np.real(wavenumber * points.position) < _LONG):
-        rest = load / spring
-        straight, sloping = decays(points, wavenumber)
-        return Twisting(free + load * rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping)
+    equal = np.all(wavenumber == wavenumber[..., :1], axis=-1)
+    resolved = (equal & (np.real(wavenumber * points.position)[..., -1] < _LONG))[..., None]
+    if np.all(resolved):
+        theta, bimoment = _in_closed_form(points, rigidity, load / spring, wavenumber)
+    else:
+        theta, bimoment = _at_stations(points, rigidity, spring, load)
+        if np.any(resolved):  # each design by itself: what is told of it does not depend on those beside it
+            closed, bending = _in_closed_form(points, rigidity, load / spring, wavenumber)
+            theta, bimoment = np.where(resolved, closed, theta), np.where(resolved, bending, bimoment)
+    return Twisting(free + load * theta, bimoment)
+
+
+def _in_closed_form(points: Stations, rigidity: Array, rest: Array, wavenumber: Array) -> tuple[Array, Array]:
+    """theta, and E C_w theta', where the section stays the same; theta is `rest` f / g far from ends."""
+    straight, sloping = decays(points, wavenumber)
+    return rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping
+
+
+def _at_stations(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
+    """theta, and E C_w theta', of the equation at the stations."""
     theta = _warping(points, points.rate / rigidity, points.rate * spring, points.rate * load)
-    return Twisting(free + load * theta, -points.running(load - spring * theta))
+    return theta, -points.running(load - spring * theta)
 
 
 def decays(points: Stations, wavenumber: Array) -> tuple[Array, Array]:
