@@ -189,17 +189,19 @@ def _doubled(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
     """
     back = np.linalg.solve(effort, np.hstack([B.T, cross.T]))
     through, moved, left = B @ back[:, : len(A)], A - B @ back[:, len(A) :], cost - cross @ back[:, len(A) :]
+    identity = np.eye(len(A))
     for _ in range(_DOUBLINGS):
-        both = np.linalg.solve(np.eye(len(A)) + through @ left, np.hstack([moved, through]))
+        both = np.linalg.solve(identity + through @ left, np.concatenate((moved, through), axis=1))
         more = moved.T @ left @ both[:, : len(A)]
-        through = through + moved @ both[:, len(A) :] @ moved.T
-        left, moved = left + more, moved @ both[:, : len(A)]
-        through, left = 0.5 * (through + through.T), 0.5 * (left + left.T)
+        left = left + more
+        left = 0.5 * (left + left.T)
         size = np.max(np.abs(left))
         if not np.isfinite(size):
             return None
         if np.max(np.abs(more)) <= _SETTLED * size:
             return left
+        through = through + moved @ both[:, len(A) :] @ moved.T
+        through, moved = 0.5 * (through + through.T), moved @ both[:, : len(A)]
     return None
 
 

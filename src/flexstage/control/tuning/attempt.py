@@ -22,7 +22,7 @@ from flexstage.control.system import System
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import laws
-from flexstage.control.tuning.view import View, resonances
+from flexstage.control.tuning.view import View
 
 _HIGH = 0.3
 """Gain of a loop at a mode from which on it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
@@ -80,7 +80,7 @@ class Attempt:
     def reaches(self, frequency: float, goal: Goal) -> bool:
         """Whether it is stable, no peak too high, and every loop passes 1 within 1 % of the frequency."""
         passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
-        return passed and keeps_peak(self.seen, self.system, self.gains, goal.sensitivity)
+        return passed and keeps_peak(self.seen, lambda: self.system, self.gains, goal.sensitivity)
 
 
 def attempt(seen: View, task: Task, frequency: float, calm: float = 0.0) -> Attempt | None:
@@ -168,7 +168,7 @@ def _together(seen: View, task: Task, found: list[_Chosen]) -> Attempt:
     """The loops at once, judged."""
     notches = tuple(each.notches for each in found)
     controller = Decentralised(seen.loops, tuple(each.law for each in found), notches if any(notches) else (), task.feedforward)
-    gains = (seen.responses @ seen.loops.drive) * np.stack([each.response for each in found], axis=-1)[:, None, :]
+    gains = seen.driven * np.stack([each.response for each in found], axis=-1)[:, None, :]
     return Attempt(seen, controller, gains, notches)
 
 
@@ -234,9 +234,9 @@ def _candidates(
     seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
 ) -> Iterator[_Chosen]:
     static = float(seen.static[loop] @ seen.loops.drive[:, loop])
-    first = next((each.frequency for each in resonances(seen, loop)), None)
-    filtered = np.prod([_notch_response(seen, notch) for notch in notches], axis=0) if notches else 1.0
-    notched = gain * complex(np.prod([notch.system(seen.step).transfer(np.array([frequency]))[0, 0, 0] for notch in notches]))
+    first = next((each.frequency for each in seen.resonances[loop]), None)
+    filtered = np.prod([_sampled_notch(seen, notch)[1] for notch in notches], axis=0) if notches else 1.0
+    notched = gain * complex(np.prod([_sampled_notch(seen, notch)[0].transfer(np.array([frequency]))[0, 0, 0] for notch in notches]))
     known = _law_responses(seen, kind, Place(frequency, notched, static, first))
     possible = [(law, response * filtered) for law, response in known if response is not None]
     if not possible:
@@ -246,10 +246,11 @@ def _candidates(
         yield _Chosen(law, notches, whole, score, lambda whole: _score(seen.frequencies, whole * seen.own[:, :, loop], frequency))
 
 
-def _notch_response(seen: View, notch: Notch) -> Array:
-    """Its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
+def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
+    """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
     if notch not in seen.kept:
-        seen.kept[notch] = resolvent(notch.system(seen.step)).at(seen.frequencies)[:, 0, 0]
+        found = notch.system(seen.step)
+        seen.kept[notch] = found, resolvent(found).at(seen.frequencies)[:, 0, 0]
     return seen.kept[notch]
 
 
@@ -277,7 +278,7 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
     """Peak of S of a single loop (v, f), the worst wherever its modes lie; where it crosses is asked of the first alone."""
-    if _crosses_elsewhere(frequencies, gains[0], frequency):
+    if _crosses_elsewhere(frequencies, np.abs(gains[0]), frequency):
         return 2.0 * _WRONG
     returned = 1.0 + gains
     return _WRONG * bool(np.any(_encircles(returned))) + float(1.0 / np.min(np.abs(returned)))
@@ -287,16 +288,19 @@ def _scores(frequencies: Array, gains: Array, frequency: float) -> Array:
     """Peaks of S (l,) of single loops (l, f), far above any for those that encircle -1 or pass 1 elsewhere first."""
     returned = 1.0 + gains
     peaks = _WRONG * _encircles(returned) + 1.0 / np.min(np.abs(returned), axis=-1)
-    return np.where([_crosses_elsewhere(frequencies, each, frequency) for each in gains], 2.0 * _WRONG, peaks)
+    return np.where([_crosses_elsewhere(frequencies, each, frequency) for each in np.abs(gains)], 2.0 * _WRONG, peaks)
 
 
 def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bool:
-    return abs(crossing_frequency(frequencies, np.abs(gains)) / frequency - 1.0) > _AGREES
+    return abs(crossing_frequency(frequencies, gains) / frequency - 1.0) > _AGREES
 
 
 def _encircles(returned: Array) -> Array:
-    """Whether curves (..., f) of 1 + L turn about 0."""
-    return np.abs(np.unwrap(np.angle(returned), axis=-1)[..., -1]) > 1.0
+    """Whether curves (..., f) of 1 + L turn about 0: their last angle and how often they pass the cut at half a turn, either way."""
+    angles = np.angle(returned)
+    jumps = angles[..., 1:] - angles[..., :-1]
+    turns = np.count_nonzero(jumps < -np.pi, axis=-1) - np.count_nonzero(jumps > np.pi, axis=-1)
+    return np.abs(angles[..., -1] + 2.0 * np.pi * turns) > 1.0
 
 
 def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
@@ -307,7 +311,7 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
         own = gains[:, loop, loop]
         added = [
             each
-            for each in resonances(seen, loop)
+            for each in seen.resonances[loop]
             if each.frequency > frequency and np.interp(each.frequency, seen.frequencies, own) > _HIGH
         ]
         widths = _WIDTHS if added else ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -44,20 +45,22 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
     )
 
 
-def keeps_peak(seen: View, control: System, gains: Array, peak: float) -> bool:
+def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: float) -> bool:
     """Whether `judge_loop` finds a loop stable and no `peak` of S above this one: asked first where no is told soonest.
+
+    `control` makes the controller, which many a loop can do without: its peak tells.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.tuning.view import view
     >>> closed = integral_loop(gain=100.0)
     >>> seen = view(closed.plant, platform_loops(closed.plant.coordinates), 0.02)
-    >>> [keeps_peak(seen, closed.controller, open_gains(seen, closed.controller), peak) for peak in (1.01, 10.0)]
+    >>> [keeps_peak(seen, lambda: closed.controller, open_gains(seen, closed.controller), peak) for peak in (1.01, 10.0)]
     [False, True]
     """
     return (
         all(highest_gain(_sensitivity(seen, each[::_COARSE]))[0] <= peak for each in gains)
-        and all(closed_growth(system, control) < 0.0 for system in seen.systems)
+        and all(closed_growth(system, control()) < 0.0 for system in seen.systems)
         and all(highest_gain(_sensitivity(seen, each))[0] <= peak for each in gains)
     )
 
@@ -138,10 +141,11 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
     >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
     """
-    below = np.flatnonzero(gains < 1.0)
-    if not len(below):
+    below = gains < 1.0
+    first = int(np.argmax(below))
+    if not below[first]:
         return np.inf
-    if not below[0]:
+    if not first:
         return 0.0
-    ends = slice(int(below[0]) - 1, int(below[0]) + 1)
+    ends = slice(first - 1, first + 1)
     return float(np.exp(np.interp(0.0, -np.log(gains[ends]), np.log(frequencies[ends]))))

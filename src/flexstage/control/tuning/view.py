@@ -54,6 +54,11 @@ class View:
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
     @cached_property
+    def driven(self) -> Array:
+        """Responses (v, f, k, k) of the loops' poses to the loops' commands."""
+        return self.responses @ self.loops.drive
+
+    @cached_property
     def own(self) -> Array:
         """The loops' own responses (v, f, k)."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
@@ -67,6 +72,11 @@ class View:
     def kept(self) -> dict[Any, Any]:
         """What is the same at all frequencies of a search, kept by it: responses of notches, observers."""
         return {}
+
+    @cached_property
+    def resonances(self) -> tuple[tuple[Resonance, ...], ...]:
+        """Modes that stand out, by loop."""
+        return tuple(resonances(self, loop) for loop in range(len(self.loops.names)))
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
