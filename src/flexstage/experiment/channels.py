@@ -67,11 +67,11 @@ class _Remedy:
         return _Remedy(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
 
 
-def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Array | None = None) -> Doubt | None:
+def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> Doubt | None:
     """What makes shapes alike that are unlike as they are: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
 
     Where none of these does, two of them together are tried, and must leave almost nothing. Of several that say as much the first counts;
-    of two together that name others as well, none.
+    of two together that name others as well, none. `scales` are worked out only where something is left to gain.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
@@ -85,7 +85,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: A
     before = score(shapes)
     if before > 1.0 - _LEAST:
         return None  # nothing is left to gain
-    tried = list(_remedies(outputs, scales))
+    tried = list(_remedies(outputs, None if scales is None else scales()))
     single, alone = _best(tried, shapes, score)
     chosen, best = single, alone
     if alone < _COMPLETE and count <= _MOST_TOGETHER:

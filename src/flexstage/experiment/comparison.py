@@ -174,7 +174,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         found, alike = _pair(frequencies, experiment, bases, shapes)
         return sum(float(alike[place, index]) for place, index in found.items()) / max(1, shapes.shape[1])
 
-    doubt = shape_doubt(sensors, seen, score, _scales(frequencies, experiment, groups, own, seen))
+    doubt = shape_doubt(sensors, seen, score, lambda: _scales(frequencies, experiment, groups, own, seen))
     right = pairs if doubt is None else _pair(frequencies, experiment, bases, _unit(doubt.put_right(seen)))[0]
     matched = _match_groups(groups, candidates, right)
     misnamed = gain_doubts(_residues(mechanism, linear, theory, experiment, sensors, matched=matched, doubt=doubt))
