@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.labelled import NOISE, Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH, RATIO
 from flexstage.base.record import INNER, VIEW
 from flexstage.models.linear.arguments import takes_models
@@ -77,7 +77,7 @@ class LostMotion(InNotebook):
     budget: Annotated[Mapping[str, Matrix], INNER]
     correction: Matrix
     energy: Matrix
-    length: Annotated[float, LENGTH]
+    length: Annotated[Number, LENGTH]
     provenance: str
 
     @property

@@ -109,7 +109,7 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
         what = f"it has {len(plant.rows)} motions by {', '.join(plant.columns)}, the gains are for {', '.join(given.gains.rows)}"
         raise refuse("plant", what, "Give the platform's twist by these actuators")
-    names, length = kinematics.coordinates, kinematics.length
+    names, length = kinematics.coordinates, kinematics.first_length
     reached = plant.values @ given.gains.values
     error = np.eye(len(names)) - kinematics.projection @ reached
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in names)

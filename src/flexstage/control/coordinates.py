@@ -77,7 +77,7 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
     (('x', 'y', 'z', 'rx', 'ry', 'rz'), [0.333333, 0.333333, 0.333333])
     """
     units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
-    scale = np.array([1.0 if unit == "m" else kinematics.length for unit in units])
+    scale = np.array([1.0 if unit == "m" else kinematics.first_length for unit in units])
     require(_mixture(kinematics))
     drive = np.real(first_design(kinematics.actuation, 2))
     pushed = np.real(first_design(kinematics.thrust, 2)).T if kinematics.thrusts else drive
@@ -101,7 +101,7 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
         pose=_pose(kinematics, told) / scale[:, None],
         strokes=drive,
         back=back,
-        length=kinematics.length,
+        length=kinematics.first_length,
         input_units=kinematics.thrust_inputs,
     )
 
@@ -125,7 +125,7 @@ def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
 def _even(kinematics: Kinematics) -> Array:
     """Factors (t,) that make readings comparable: 1, and the stage's length for rotations."""
     units = dict(zip(kinematics.gauges, kinematics.reading_units, strict=True))
-    return np.array([1.0 if units[name] == "m" else kinematics.length for name in kinematics.telling])
+    return np.array([1.0 if units[name] == "m" else kinematics.first_length for name in kinematics.telling])
 
 
 def _pose(kinematics: Kinematics, told: Array) -> Array:
@@ -151,7 +151,7 @@ def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: 
 
 def _direction(row: Array, kinematics: Kinematics) -> str:
     """A motion in words, its largest part made 1: rotations in rad per m where both occur."""
-    size = np.array([1.0 if name[0] != "r" else 1.0 / kinematics.length for name in kinematics.coordinates])
+    size = np.array([1.0 if name[0] != "r" else 1.0 / kinematics.first_length for name in kinematics.coordinates])
     row = row * size
     largest = row[np.argmax(np.abs(row / size))]
     parts = [(value / largest, name) for value, name in zip(row, kinematics.coordinates, strict=True) if abs(value / largest) > 1e-6]

@@ -61,8 +61,8 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
         names = ", ".join(channel.name for channel in found.outputs[:8])
         return _missing_shapes(f"no output of the record ({names}) has the name of a gauge or of a motion of the stage")
     chosen = [index for index, channel in enumerate(found.outputs) if channel.name in rows]
-    weight = np.array([kinematics.length if _is_rotation(kinematics, name) else 1.0 for name in rows])
-    scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+    weight = np.array([kinematics.first_length if _is_rotation(kinematics, name) else 1.0 for name in rows])
+    scale = np.array([1.0 / kinematics.first_length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
     seen = weight[:, None] * np.stack(list(rows.values())) * scale
     rank = int(np.linalg.matrix_rank(seen, tol=_RANK * float(np.linalg.norm(seen, 2))))
     if rank < kinematics.mobility:

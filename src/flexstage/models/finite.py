@@ -234,7 +234,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         spans=_together([np.asarray(part.span) for part in slender], 0),
         round=np.array([part.throat.is_round for part in slender], dtype=float),
         posed=tuple(COMPONENTS.index(name) for name in kinematics.coordinates) if posed else (),
-        length=kinematics.length,
+        length=kinematics.first_length,
     )
 
 

@@ -20,7 +20,7 @@ import scipy
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lapack import pivoted_qr
-from flexstage.base.number import Array, first_design
+from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.beams.compliance import law
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, Same, expand
@@ -29,7 +29,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
-from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate_each, null_space
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.models.linear.large import least_strain
 from flexstage.parts.freedom import ALL, Freedom
@@ -43,7 +43,10 @@ _MATRICES = 10.0
 
 @dataclass(frozen=True, eq=False)
 class _Graph:
-    """The stage as constraints: `strain` of all links (..., 6 L, N), constraint rows (..., m, N + n) and their names."""
+    """The stage as constraints: `strain` of all links (..., 6 L, N), constraint rows (..., m, N + n) and their names.
+
+    `scale` (..., N + n) makes coordinates comparable by the `length` (...) of each design.
+    """
 
     assembly: Assembly
     order: Layout
@@ -51,7 +54,7 @@ class _Graph:
     constraints: Array
     names: tuple[str, ...]
     scale: Array
-    length: float
+    length: Number
     elements: Mapping[str, PlacedSuperelement]
 
 
@@ -91,7 +94,7 @@ def _read(mechanism: Mechanism) -> Kinematics:
 def _ideal(mechanism: Mechanism) -> Kinematics:
     """With dense matrices, of all designs of a batch."""
     graph = _graph(mechanism)
-    solution = eliminate(graph.constraints, graph.scale, keep=tuple(range(6)))
+    solution = eliminate_each(graph.constraints, graph.scale, keep=tuple(range(6)))
     freedoms = [index for index in solution.independent if index < 6]
     columns = [solution.independent.index(index) for index in freedoms]
     rest = [index for index in range(len(solution.independent)) if index not in columns]
@@ -135,7 +138,7 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
     operators = [cast("Sparse", deformation(assembly, order, link)) for link in assembly.links.values()]
     rows, names = _large_constraints(assembly, operators, order.size)
     length = _length(assembly)
-    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.strokes))])
+    scale = _scale(assembly, length)
     solved = eliminate_blocks(rows, scale, len(order.bodies), len(assembly.strokes))
     free = [index for index in solved.last.independent if index < 6]
     columns = [solved.last.independent.index(index) for index in free]
@@ -270,7 +273,7 @@ def _rigid_ends(link: PlacedLink, found: Blockage) -> tuple[str, ...]:
 
 def _comparable(graph: _Graph) -> Array:
     """The constraints of the first design, all rows of one size."""
-    first = np.real(first_design(graph.constraints, 2)) * graph.scale
+    first = np.real(first_design(graph.constraints, 2)) * first_design(graph.scale, 1)
     norms = np.linalg.norm(first, axis=1)
     return first / np.where(norms > 0.0, norms, 1.0)[:, None]
 
@@ -286,9 +289,15 @@ def _graph(mechanism: Mechanism) -> _Graph:
     batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
     strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
     length = _length(assembly)
-    scale = np.concatenate([np.tile(_weights(1.0 / length), len(order.bodies)), np.ones(len(assembly.strokes))])
     constraints, names = _constraints(assembly, strain)
-    return _Graph(assembly, order, strain, constraints, names, scale, length, whole.superelements)
+    return _Graph(assembly, order, strain, constraints, names, _scale(assembly, length), length, whole.superelements)
+
+
+def _scale(assembly: Assembly, length: Number) -> Array:
+    """What makes all coordinates (..., N + n) comparable, by real parts."""
+    own = _weights(1.0 / np.real(length))
+    twists = np.tile(own, len(assembly.bodies))
+    return np.concatenate([twists, np.ones((*own.shape[:-1], len(assembly.strokes)))], axis=-1)
 
 
 def _constraints(assembly: Assembly, strain: Array) -> tuple[Array, tuple[str, ...]]:
@@ -308,15 +317,19 @@ def _by_link(strains: Array) -> Array:
     return np.moveaxis(strains.reshape(*strains.shape[:-2], strains.shape[-2] // 6, 6, strains.shape[-1]), -3, 0)
 
 
-def _weights(rotation: float) -> Array:
-    return np.array([1.0, 1.0, 1.0, *[rotation] * 3])
+def _weights(rotation: Number) -> Array:
+    """Of translations 1, of rotations this (..., 6)."""
+    own = np.asarray(rotation)[..., None]
+    return np.concatenate([np.ones((*own.shape[:-1], 3)), own, own, own], axis=-1)
 
 
-def _length(assembly: Assembly) -> float:
-    """Length scale of the stage: rms distance of its links from the platform's reference, on the first design."""
+def _length(assembly: Assembly) -> Number:
+    """Length scale (...) of each design: rms distance of its links from the platform's reference."""
     centre = assembly.bodies[PLATFORM].reference
-    arms = [np.real(link.frame.position - centre).reshape(-1, 3)[0] for link in assembly.links.values()]
-    return float(np.sqrt(np.mean([arm @ arm for arm in arms]))) or 1.0
+    arms = [link.frame.position - centre for link in assembly.links.values()]
+    squares = [(arm[..., None, :] @ arm[..., None])[..., 0, 0] for arm in arms]
+    length = np.sqrt(np.mean(np.stack(np.broadcast_arrays(*squares), axis=-1), axis=-1))
+    return np.where(np.real(length) > 0.0, length, 1.0) if length.ndim or np.iscomplexobj(length) else float(length) or 1.0
 
 
 def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
@@ -339,7 +352,7 @@ def _without_idle(graph: _Graph, solution: Elimination, columns: list[int], rest
     if not rest:
         return wanted
     size = graph.order.size
-    weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[:, None] * graph.strain
+    weighted = np.tile(_weights(graph.length), len(graph.assembly.links))[..., None] * graph.strain
     before, spun = (weighted @ motion[..., :size, :] for motion in (wanted, idle))
     transposed = np.swapaxes(spun, -1, -2)
     return wanted - idle @ np.linalg.solve(transposed @ spun, transposed @ before)
@@ -449,12 +462,12 @@ def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
     gauge, row = graph.assembly.gauges[name], _reading(graph, name)
     if all({sight.body, sight.base} <= {PLATFORM, "ground"} for sight in gauge.sights):
         return row[..., :6]
-    weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length) ** 2
+    weighted = np.swapaxes(motion, -1, -2) * _weights(graph.length)[..., None, :] ** 2
     return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)
 
 
 def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
-    scale = graph.scale[: graph.order.size, None]
+    scale = first_design(graph.scale, 1)[: graph.order.size, None]
     vectors = echelon((motions / scale).T).T * scale
     strains = np.real(first_design(graph.strain, 2)) @ vectors
     threshold = _NEGLIGIBLE * np.max(np.abs(vectors), axis=0, initial=0.0)

@@ -187,7 +187,7 @@ def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) 
     loads = order.selector(PLATFORM).T @ np.concatenate(wrenches, axis=-1)
     rigid = np.array([isinstance(assembly.links[name].part, Joint) for name, axes in locked.items() for _ in axes])
     rows, loads = _broadcast(np.concatenate(_broadcast(*strains), axis=-2), loads)
-    forces = _equilibrium(rows, loads, rigid, kinematics.length)
+    forces = _equilibrium(rows, loads, rigid, kinematics.first_length)
     return None if forces is None else _work(assembly, locked, forces)
 
 

@@ -94,25 +94,27 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
     [0.333333, 0.333333, 0.333333]
     """
     seen, reading = kinematics.seen, dict(zip(kinematics.gauges, kinematics.reading_units, strict=True))
-    scale = np.array([1.0 / kinematics.length if name.startswith("r") else 1.0 for name in kinematics.coordinates])
+    turns = [name.startswith("r") for name in kinematics.coordinates]
+    scale = np.where(turns, 1.0 / np.asarray(kinematics.length)[..., None], 1.0)
     even = _even(kinematics, reading)
-    first = np.real((even * seen)[(0,) * (seen.ndim - 2)]) * scale
-    rank = int(np.linalg.matrix_rank(first, tol=1e-9)) if first.size else 0
+    scaled = even * seen * scale[..., None, :]
+    rank = int(np.min(np.linalg.matrix_rank(np.real(scaled), tol=1e-9))) if scaled.size else 0
     if rank < kinematics.mobility:
         raise refuse(
             "gauges",
             f"{len(kinematics.telling)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
-    values = kinematics.motion @ (scale[:, None] * _pseudo_inverse(even * seen * scale) * even[:, 0])
+    values = kinematics.motion @ (scale[..., None] * _pseudo_inverse(scaled) * even[..., None, :, 0])
     single = kinematics.single_gauges
     values = values @ kinematics.selection if kinematics.sums else values
     return Matrix(values, COMPONENTS, single, tuple(tuple(f"{unit}/{reading[name]}" for name in single) for unit in TWIST_UNITS))
 
 
 def _even(kinematics: Kinematics, units: Mapping[str, str]) -> Array:
-    """Factors (t, 1) that make readings comparable: 1, and the stage's length for rotations."""
-    return np.array([1.0 if units[name] == "m" else kinematics.length for name in kinematics.telling])[:, None]
+    """Factors (..., t, 1) that make readings comparable: 1, and the stage's length for rotations."""
+    lengths = [units[name] == "m" for name in kinematics.telling]
+    return np.where(lengths, 1.0, np.asarray(kinematics.length)[..., None])[..., None]
 
 
 def _pseudo_inverse(matrix: Array) -> Array:

@@ -186,7 +186,7 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
     found = known.kinematics
     reference = known.assembly.bodies["platform"].reference
     free = tuple(
-        _screw(name, first_design(found.motion, 2)[:, column], first_design(reference, 1), found.length, _bent(found.strains, column))
+        _screw(name, first_design(found.motion, 2)[:, column], first_design(reference, 1), found.first_length, _bent(found.strains, column))
         for column, name in enumerate(found.coordinates)
     )
     redundant = tuple(Fact(f"redundant {number}", ", ".join(each.constraints)) for number, each in enumerate(found.redundant, start=1))
@@ -399,10 +399,10 @@ def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
 def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
     """What the links hold of the platform's motion: a basis of what is no ideal motion, at its reference."""
     free = first_design(motion_, 2)
-    scale = np.array([1.0] * 3 + [known.kinematics.length] * 3)
+    scale = np.array([1.0] * 3 + [known.kinematics.first_length] * 3)
     basis, sizes, _ = np.linalg.svd(free * scale[:, None], full_matrices=True)
     rank = int(np.sum(sizes > 1e-9 * sizes.max(initial=0.0))) if sizes.size else 0
     reference = first_design(known.assembly.bodies["platform"].reference, 1)
     for number, twist in enumerate(basis[:, rank:].T, start=1):
         held = np.where(np.abs(twist) > 1e-12, twist, 0.0) / scale
-        yield _screw(f"held {number}", held, reference, known.kinematics.length, ())
+        yield _screw(f"held {number}", held, reference, known.kinematics.first_length, ())

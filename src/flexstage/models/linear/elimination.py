@@ -1,16 +1,18 @@
 """Exact elimination of linear constraints by a pivoted partition of the coordinates.
 
-A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i. Pivots are chosen on real parts of the
-first design only, so the result stays complex-analytic and broadcasts over batch axes.
+A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i. Pivots are chosen on real parts, so
+the result stays complex-analytic: by `eliminate` on the first design of a batch, by `eliminate_each` on every design.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, first_design
 
@@ -45,18 +47,80 @@ def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> E
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
     """
-    first = np.real(first_design(constraints, 2)) * scale
+    return _solved(constraints, _choice(np.real(first_design(constraints, 2)), scale, keep))
+
+
+def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
+    """As `eliminate`, each design of a batch by its own pivots: what is found of it is what is found of it alone, to the last bit.
+
+    `scale` is (..., N). Designs may differ in the coordinates that stand for motions outside `keep`: those told are the first design's.
+    Raises `DesignError` for designs that have other coordinates of `keep` independent, or another number of independent coordinates.
+
+    >>> rows = np.array([[[1.0, 2.0, 0.0]], [[1.0, 0.0, 2.0]]])
+    >>> eliminate_each(rows, np.ones((2, 3)), keep=(0,)).basis[:, :, 0].tolist()
+    [[1.0, -0.5, 0.0], [1.0, 0.0, -0.5]]
+    """
+    batch = np.broadcast_shapes(constraints.shape[:-2], scale.shape[:-1])
+    count, size = math.prod(batch), constraints.shape[-2:]
+    flat = np.broadcast_to(constraints, (*batch, *size)).reshape(count, *size)
+    groups = _by_choice(np.real(flat), np.broadcast_to(scale, (*batch, size[1])).reshape(count, size[1]), keep)
+    parts = [_solved(flat[designs], choice) for choice, designs in groups.items()]
+    _require_alike(parts, list(groups.values()), keep)
+    basis = np.empty((len(flat), *parts[0].basis.shape[1:]), dtype=flat.dtype)
+    for part, designs in zip(parts, groups.values(), strict=True):
+        basis[designs] = part.basis
+    return replace(parts[0], basis=basis.reshape(*batch, *basis.shape[1:]))
+
+
+_Choice = tuple[tuple[int, ...], tuple[int, ...]]
+
+
+def _by_choice(designs: Array, scale: Array, keep: tuple[int, ...]) -> dict[_Choice, list[int]]:
+    """Numbers of the designs (b, m, N) that have a choice of pivots in common; steps of one design are not chosen for anew."""
+    found: dict[_Choice, list[int]] = {}
+    last: _Choice | None = None
+    for number, (rows, sizes) in enumerate(zip(designs, scale, strict=True)):
+        stays = last is not None and np.array_equal(rows, designs[number - 1]) and np.array_equal(sizes, scale[number - 1])
+        last = last if stays and last is not None else _choice(rows, sizes, keep)
+        found.setdefault(last, []).append(number)
+    return found
+
+
+def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], keep: tuple[int, ...]) -> None:
+    """Refuse designs whose motions are others than the first design's."""
+    mine = _freedom(parts[0], keep)
+    for part, numbers in zip(parts[1:], designs[1:], strict=True):
+        theirs = _freedom(part, keep)
+        if theirs != mine:
+            counts = [f"{len(kept)} of the platform and {beside} beside" for kept, beside in (theirs, mine)]
+            other = counts[0] if counts[0] != counts[1] else "as many, but other ones"
+            what = f"design {numbers[0] + 1} of the batch has other motions than the first, which has {counts[1]}: {other}"
+            raise refuse("designs", what, "Read them one by one")
+
+
+def _freedom(found: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
+    kept = tuple(index for index in found.independent if index in keep)
+    return kept, len(found.independent) - len(kept)
+
+
+def _choice(rows: Array, scale: Array, keep: tuple[int, ...]) -> _Choice:
+    """Dependent columns of one real design (m, N), and the rows that these follow from."""
+    first = rows * scale
     norms = np.linalg.norm(first, axis=1)
     first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
     dependent = _pivot_columns(first, keep)
-    rows = _pivots(first[:, dependent].T)[: len(dependent)]
-    independent = _without(first.shape[1], dependent)
+    return tuple(dependent), tuple(_pivots(first[:, dependent].T)[: len(dependent)])
+
+
+def _solved(constraints: Array, choice: _Choice) -> Elimination:
+    dependent, rows = (list(each) for each in choice)
+    independent = _without(constraints.shape[-1], dependent)
     square = constraints[..., rows, :]
     solved = -np.linalg.solve(square[..., dependent], square[..., independent])
-    basis = np.zeros((*constraints.shape[:-2], first.shape[1], len(independent)), dtype=constraints.dtype)
+    basis = np.zeros((*constraints.shape[:-2], constraints.shape[-1], len(independent)), dtype=constraints.dtype)
     basis[..., dependent, :] = solved
     basis[..., independent, :] = np.eye(len(independent))
-    return Elimination(basis, tuple(independent), tuple(dependent), tuple(rows))
+    return Elimination(basis, tuple(independent), *choice)
 
 
 def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) -> Array:

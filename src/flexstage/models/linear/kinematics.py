@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, first_design
 from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.models.linear.blockage import Blockage
@@ -41,9 +41,9 @@ class Kinematics(InNotebook):
     The platform's twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
     `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f), `bodies` the motion of all body coordinates per
     xi (..., N, f), `strains` each link's deformation per xi (..., 6, f) in its frame (only intended freedoms and strokes non-zero).
-    `free` says which freedoms were taken as free at each link. `length` is the scale that makes rotations comparable with translations.
-    `blocked` says of each immobile actuator which locked freedoms hold its stroke. `gauge_units` are those of the readings (absent: m),
-    `sums` the weights of the gauges that each sum of gauges takes up.
+    `free` says which freedoms were taken as free at each link. `length` (...) is the scale that makes rotations comparable with
+    translations. `blocked` says of each immobile actuator which locked freedoms hold its stroke. `gauge_units` are those of the readings
+    (absent: m), `sums` the weights of the gauges that each sum of gauges takes up.
 
     `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion; `thrust` (..., f, t) is the generalised force that
     a unit of their input (`thrust_inputs`, N or A) exerts on xi, V^T W.
@@ -61,7 +61,7 @@ class Kinematics(InNotebook):
     free: Mapping[str, tuple[Freedom, ...]]
     idle: tuple[Idle, ...]
     redundant: tuple[Redundant, ...]
-    length: Annotated[float, LENGTH]
+    length: Annotated[Number, LENGTH]
     provenance: str
     blocked: Annotated[Mapping[str, Blockage], INNER] = field(default_factory=dict)
     thrusts: tuple[str, ...] = ()
@@ -77,16 +77,15 @@ class Kinematics(InNotebook):
 
     @property
     def actuated(self) -> Annotated[bool, VIEW]:
-        """Whether the strokes determine the platform: R_a has full column rank (on the first design)."""
-        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
-        scaled = actuation * _scales(self.coordinates, 1.0 / self.length)
-        return self.mobility > 0 and bool(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility)
+        """Whether the strokes determine the platform: R_a has full column rank, in all designs of a batch."""
+        scaled = np.real(self.actuation) * self._rotations_as_lengths
+        return self.mobility > 0 and bool(np.all(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility))
 
     @property
     def immobile(self) -> tuple[str, ...]:
         """Actuators whose stroke no ideal motion of the platform changes: rigid links hold them (on the first design)."""
-        actuation = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)])
-        size = np.max(np.abs(actuation * _scales(self.coordinates, 1.0 / self.length)), axis=-1, initial=0.0)
+        scaled = first_design(np.real(self.actuation) * self._rotations_as_lengths, 2)
+        size = np.max(np.abs(scaled), axis=-1, initial=0.0)
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
 
     @property
@@ -114,7 +113,7 @@ class Kinematics(InNotebook):
         Those of all ideal motions if R_a and V^T W together have rank f; without force actuators, what the strokes hold.
         """
         first = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)]), np.real(self.thrust[(0,) * (self.thrust.ndim - 2)])
-        scale = _scales(self.coordinates, 1.0 / self.length)
+        scale = first_design(self._rotations_as_lengths, 2)[0]
         columns = np.concatenate([first[0].T, first[1]], axis=1) * scale[:, None]
         basis = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False)
         spanned = basis[0][:, basis[1] > 1e-9]
@@ -125,6 +124,16 @@ class Kinematics(InNotebook):
     def motions(self) -> Annotated[Matrix, VIEW]:
         """V, the platform's twist in each ideal motion."""
         return Matrix(self.motion, COMPONENTS, self.coordinates, ratio_units(TWIST_UNITS, self._units))
+
+    @property
+    def first_length(self) -> float:
+        """The `length` of the first design, by its real part."""
+        return float(np.real(first_design(np.asarray(self.length), 0)))
+
+    @property
+    def _rotations_as_lengths(self) -> Array:
+        """Factors (..., 1, f) of columns per coordinate that make these comparable, by real parts."""
+        return _scales(self.coordinates, 1.0 / np.real(self.length))[..., None, :]
 
     @property
     def _units(self) -> tuple[str, ...]:
@@ -183,7 +192,7 @@ class Kinematics(InNotebook):
     @property
     def projection(self) -> Array:
         """V^+ (..., f, 6): the part of a platform twist that is an ideal motion, rotations weighted with `length`."""
-        weight = _scales(COMPONENTS, self.length) ** 2
+        weight = _scales(COMPONENTS, self.length)[..., None, :] ** 2
         weighted = np.swapaxes(self.motion, -1, -2) * weight
         return np.linalg.solve(weighted @ self.motion, weighted)
 
@@ -233,5 +242,6 @@ def _freeing(blockage: Blockage) -> str:
     return f"It joins {' and '.join(blockage.ends)} without a hinge, and gives way along itself alone: put {hinge}; or f{told}"
 
 
-def _scales(names: tuple[str, ...], rotation: float) -> Array:
-    return np.array([rotation if name.startswith("r") else 1.0 for name in names])
+def _scales(names: tuple[str, ...], rotation: Number) -> Array:
+    """1 for translations, `rotation` (...) for rotations (..., n)."""
+    return np.where([name.startswith("r") for name in names], np.asarray(rotation)[..., None], 1.0)

@@ -132,7 +132,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
     if kinematics.mobility in (0, 6):
         return None
     units = ratio_units(TWIST_UNITS, tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates))
-    note = f"The length that makes rotations comparable with translations is {number(1e3 * kinematics.length, 4)} mm."
+    note = f"The length that makes rotations comparable with translations is {number(1e3 * kinematics.first_length, 4)} mm."
     return matrix_table("Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), fine=False, notes=[note])
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.labelled import NOISE, Matrix
 from flexstage.show.display import number, percent
+from flexstage.show.scene.primitives import first_value
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table
 
 _SHOWN = 1e-4
@@ -181,10 +182,11 @@ def parasitic_table(lost: LostMotion) -> Table | None:
     True
     """
     values, scale = first_design(lost.parasitic.values, 2), first_design(lost.gain.values, 2)
-    weight = np.array([1.0, 1.0, 1.0, *[lost.length] * 3])[:, None]
+    length = first_value(lost.length)
+    weight = np.array([1.0, 1.0, 1.0, *[length] * 3])[:, None]
     if np.max(np.abs(values * weight), initial=0.0) < NOISE * np.max(np.abs(scale * weight), initial=0.0):
         return None
-    note = f"Rotations and translations are compared by a length of {number(1e3 * lost.length, 4)} mm."
+    note = f"Rotations and translations are compared by a length of {number(1e3 * length, 4)} mm."
     return matrix_table("Parasitic motion per stroke", lost.parasitic, against=lost.gain, notes=[note])
 
 

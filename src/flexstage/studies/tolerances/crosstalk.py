@@ -68,13 +68,13 @@ def command(bench: Bench, point: str) -> Command:
         np.array([float(each) for each in _strokes(bench)]),
         np.asarray(reference),
         _sensing_inverse(bench, reference),
-        bench.kinematics.length,
+        bench.kinematics.first_length,
     )
 
 
 def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
-    rows = _gauges(bench, reference, bench.kinematics.length)
-    weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.length] * 3])
+    rows = _gauges(bench, reference, bench.kinematics.first_length)
+    weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.first_length] * 3])
     scaled = rows / weights
     if len(rows) < len(COMPONENTS) or np.linalg.cond(scaled) > _SINGULAR:
         return None
