@@ -196,7 +196,9 @@ def _shift(values: Array) -> float:
 def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: Method = Method.FASTEST) -> PlatformModes:
     """The platform's modes of designs given by the numbers (b, P) at the plan's addresses, and with `slopes` their derivatives by these.
 
-    Frequencies agree with those of `models.lumped` solved whole within 1e-6 (relative), proved design by design; no design stops another.
+    Frequencies agree with those of `models.lumped` solved whole within 1e-6 (relative), proved design by design. Numbers that are not
+    finite and stiffness that is not positive stop no other design. Raises `DesignError` for all where one cannot be described, as where its
+    outlines overlap so that it cannot be weighed: studies look for such designs first.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))

@@ -24,6 +24,7 @@ _FRAMEWORKS_INTERRUPTED = 130
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+_KEPT = "Kept are only finished finite elements, in the cache, and designs of a study, in its results file (--resume)."
 
 
 def run_guarded(action: Callable[[], object]) -> int:
@@ -63,7 +64,7 @@ def _code_of_exit(end: SystemExit) -> int:
     if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
-        print_note("Ended by a signal. Finished parts are kept: the same command resumes from there, that of a study with --resume.")
+        print_note(f"Ended by a signal. {_KEPT}")
     return end.code if isinstance(end.code, int) else DONE if end.code is None else MISSED
 
 
@@ -78,7 +79,7 @@ def _run_and_flush(action: Callable[[], object]) -> None:
 
 
 def _interrupted() -> int:
-    print_note("Interrupted; nothing was written. Finished parts are kept in the cache: the same command resumes from there.")
+    print_note(f"Interrupted; nothing was written. {_KEPT}")
     return INTERRUPTED
 
 
