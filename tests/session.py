@@ -1,9 +1,8 @@
-"""What is set up once a process for all tests and examples: threads, the cache, processes that wait."""
+"""What is set up once a process for all tests and examples: threads, the cache."""
 
 from __future__ import annotations
 
 import os
-from types import FunctionType
 
 import pytest
 from threadpoolctl import threadpool_limits
@@ -13,26 +12,6 @@ from threadpoolctl import threadpool_limits
 def _one_blas_thread():
     with threadpool_limits(limits=1):
         yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _kept_processes():
-    """Processes for jobs are kept from test to test: those that reduce solids, to which limits of memory are set, and the others."""
-    from flexstage.base import jobs
-    from flexstage.control.study import compare
-    from flexstage.solid.fea import remote
-    from flexstage.studies.sweeps import work
-    from tests.kept import Workers
-
-    solids, others = Workers(), Workers()
-    results = FunctionType(jobs.results.__code__, vars(jobs) | {"Worker": others})
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(remote, "Worker", solids)
-        patch.setattr(work, "results", results)
-        patch.setattr(compare, "results", results)
-        yield
-    solids.end()
-    others.end()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -26,7 +26,7 @@ def bar():
     frames = [Frame(np.eye(3), np.array([x, 0.0, 0.0])) for x in (5e-3, 13e-3)]
     forms = [Block("m", (size, 4e-3, 3e-3)) for size in (10e-3, 6e-3)]
     pieces = tuple(
-        Piece(f"block {number}", form, medium, frame, f"body {number}")
+        Piece(f"block {number}", form, medium, frame)
         for number, (form, medium, frame) in enumerate(zip(forms, (SOFT, STIFF), frames, strict=True))
     )
     joints = (

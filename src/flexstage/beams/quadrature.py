@@ -87,11 +87,10 @@ def _straight(half: Number) -> Stations:
 def _arc(along: Number, across: Number, thinnest: Number, last: Number = 0.5 * np.pi) -> Stations:
     """Arc x = a sin p, w = c (1 - cos p) up to p = `last`.
 
-    The singularity is at p = i arccosh(1 + t / 2c). Nodes stay where numbers are stepped: what
-    changes is the integrand.
+    The singularity is at p = i arccosh(1 + t / 2c). Nodes are complex where numbers are stepped.
     """
     along, across = np.asarray(along)[..., None], np.asarray(across)[..., None]
-    scale = 2.0 * np.arcsinh(np.sqrt(np.real(np.asarray(thinnest)[..., None] / (4.0 * across))))
+    scale = 2.0 * np.arcsinh(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
     span = np.arcsinh(np.asarray(last)[..., None] / scale)
     stretched = span * _points()
     angle = scale * np.sinh(stretched)
@@ -121,7 +120,7 @@ def _vee_stations(profile: Vee, thinnest: Number) -> Stations:
 def _parabola(profile: Parabolic, thinnest: Number) -> Stations:
     """x = a s, s = d sinh v, d = (t / 2c)^1/2: the thickness is twice the least at s = d."""
     along, across = np.asarray(profile.along)[..., None], np.asarray(profile.across)[..., None]
-    scale = np.sqrt(np.real(np.asarray(thinnest)[..., None] / (2.0 * across)))
+    scale = np.sqrt(np.asarray(thinnest)[..., None] / (2.0 * across))
     span = np.arcsinh(1.0 / scale)
     share = scale * np.sinh(span * _points())
     rate = along * scale * np.cosh(span * _points()) * span
@@ -132,7 +131,7 @@ def _hyperbola(profile: Hyperbolic, thinnest: Number) -> Stations:
     """x = a/k sinh p, w = q (cosh p - 1), k^2 the steepness, p = d sinh v: an arc with an imaginary angle, in two pieces for sharp ones."""
     across, steep = np.asarray(profile.semi_axis)[..., None], np.sqrt(np.asarray(profile.steepness))[..., None]
     along = np.asarray(profile.along)[..., None] / steep
-    scale = 2.0 * np.arctan(np.sqrt(np.real(np.asarray(thinnest)[..., None] / (4.0 * across))))
+    scale = 2.0 * np.arctan(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
     span = np.arcsinh(np.arcsinh(steep) / scale)
     stretched = 0.5 * span * np.concatenate([_points(), 1.0 + _points()])
     angle = scale * np.sinh(stretched)

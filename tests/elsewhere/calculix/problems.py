@@ -102,8 +102,9 @@ FINENESS = Fineness(neck=2.0, block=1.5, order=2)
 
 
 def mesh_of(problem: Problem, fineness: Fineness = FINENESS) -> PieceMesh:
-    """A problem's mesh, before `shape`."""
-    return mesh_component(problem.component, fineness)
+    """A problem's mesh, before `shape`; all elements are of one order, as CalculiX's are."""
+    mesh = mesh_component(problem.component, fineness)
+    return replace(mesh, finer=np.zeros_like(mesh.finer))
 
 
 def shape(mesh: PieceMesh, geometry: Geometry) -> None:
