@@ -1,8 +1,8 @@
-"""Kinematics of a batch are those of its designs, to the last bit, whichever design begins it; designs of other mobility are refused."""
+"""Models of a batch are those of its designs, whichever begins it; designs that the choices of the first do not serve are refused."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -12,10 +12,22 @@ from flexstage.analysis.requirements import measure
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.base.quantity import LENGTH
+from flexstage.base.scale import X, Y, Z
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.address import get, set_value
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Link, Mechanism, Probe
+from flexstage.mechanism.pattern import Pose
+from flexstage.models.finite import forward_kinematics
+from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.elimination import eliminate, eliminate_each
+from flexstage.models.mapped import borne_compliance
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.gauge import Gauge, Positive
+from flexstage.parts.given import Given, Joint
+from flexstage.parts.part import Restricted
+from flexstage.parts.piezo import Piezo
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.evaluate import piece
 from flexstage.studies.sweeps.plan import Plan, Sampling
@@ -98,3 +110,135 @@ def test_the_pivots_of_a_design_are_its_own() -> None:
     stepped = eliminate_each(rows + 1e-20j * rows[:, :, ::-1], np.ones(4), keep=(0,)).basis
     np.testing.assert_array_equal(np.real(stepped), found.basis)
     assert np.max(np.abs((rows + 1e-20j * rows[:, :, ::-1]) @ stepped)) < 1e-15
+
+
+Numbers = float | np.ndarray
+TURNS = (Freedom.RX, Freedom.RY, Freedom.RZ)
+AXIAL = tuple(freedom for freedom in ALL if freedom is not Freedom.X)
+PLATE = Body(mass=1.0, centre=(0.01, 0.02, 0.03), inertia=Inertia(1e-3, 2e-3, 3e-3))
+
+
+def spring(stiffness: float, free: tuple[Freedom, ...] = ALL) -> Given:
+    """As stiff along all axes, and about them over 0.03 m."""
+    compliance = np.diag([1.0 / stiffness] * 3 + [1e3 / stiffness] * 3)
+    return Given(tuple(map(tuple, compliance.tolist())), free)
+
+
+def on_rods(apart: Numbers, turn: Numbers) -> Mechanism:
+    """A platform on springs, held by two rigid rods: those of one line hold one freedom, others two."""
+    along, ends = (np.cos(turn), np.sin(turn), 0.0 * turn), ("ground", "platform")
+    links = {"spring": Link(ends, "spring", (0.0, 0.0, 0.0), X, Z), "one": Link(ends, "rod", (0.0, 0.0, 0.0), along, Z)}
+    links["other"] = Link(ends, "rod", (0.0, apart, 0.0), along, Z)
+    return Mechanism("rods", parts={"spring": spring(1e6), "rod": Joint(AXIAL)}, bodies={"platform": PLATE}, links=links)
+
+
+def spinning(beside: Numbers, centre: Numbers, gauge: Numbers) -> Mechanism:
+    """A rod between two balls: a spring beside its line holds its spin, its centre of mass and what a gauge reads may be beside it too."""
+    rod = Body(mass=0.1, centre=(0.05, centre, 0.0), inertia=Inertia(0.0, 2e-4, 2e-4))
+    return Mechanism(
+        "spin",
+        parts={"spring": spring(1e6), "ball": Joint(TURNS), "side": Restricted(spring(1e5), ALL[:3], TURNS)},
+        bodies={"platform": PLATE, "rod": rod},
+        links={
+            "spring": Link(("ground", "platform"), "spring", (0.12, 0.0, 0.0), X, Z),
+            "first": Link(("ground", "rod"), "ball", (0.0, 0.0, 0.0), X),
+            "second": Link(("rod", "platform"), "ball", (0.1, 0.0, 0.0), X),
+            "side": Link(("ground", "rod"), "side", (0.03, beside, 0.0), X),
+        },
+        sensors={"gauge": Gauge(range=1e-4)},
+        gauges={"S": Probe("gauge", "rod", Pose((0.05, gauge, 0.0), Z, X), Positive.OPENS)},
+    )
+
+
+def pushed(turn: Numbers) -> Mechanism:
+    """A cart pushes a platform by three struts: two beside each other across the push bear none of it, one at an angle would."""
+    across = (np.sin(turn), np.cos(turn), 0.0 * turn)
+    return Mechanism(
+        "push",
+        parts={
+            "stack": Piezo(stroke=1e-5, stiffness=2e7, length=0.02, diameter=0.008),
+            "ball": Joint(TURNS),
+            "slide": Joint((Freedom.X,)),
+            "strut": spring(1e7, AXIAL),
+        },
+        bodies={"tip": Body(), "cart": Body(), "platform": PLATE},
+        links={
+            "pzt": Link(("ground", "tip"), "stack", (0.0, 0.0, 0.0), X),
+            "pin": Link(("tip", "cart"), "ball", (0.01, 0.0, 0.0), X),
+            "rail": Link(("ground", "cart"), "slide", (0.02, 0.0, 0.0), X, Z),
+            "push": Link(("cart", "platform"), "strut", (0.05, 0.0, 0.0), X, Z),
+            "across": Link(("cart", "platform"), "strut", (0.05, 0.01, 0.0), Y, Z),
+            "oblique": Link(("cart", "platform"), "strut", (0.05, 0.0, 0.0), across, Z),
+            "guide": Link(("ground", "platform"), "slide", (0.08, 0.03, 0.0), X, Z),
+        },
+    )
+
+
+def own_values(stage: Mechanism) -> np.ndarray:
+    return eigenvalues(fs.lumped(stage))
+
+
+def first_reading(stage: Mechanism) -> np.ndarray:
+    return fs.ideal(stage).sensing[..., 0, :]
+
+
+def borne(stage: Mechanism) -> np.ndarray:
+    found = borne_compliance(expand(stage), fs.ideal(stage), "pzt")
+    return np.array(np.nan) if found is None else np.asarray(found)
+
+
+UNLIKE = {
+    "rods of one line, then apart": (own_values, lambda apart: on_rods(apart, 0.0), (0.0, 0.05)),
+    "rods turned across": (own_values, lambda turn: on_rods(0.02, turn), (0.0, 0.5 * np.pi - 1e-7)),
+    "a spin, then held": (own_values, lambda beside: spinning(beside, 0.0, 0.0), (0.0, 0.02)),
+    "a spin without inertia, then with": (own_values, lambda centre: spinning(0.0, centre, 0.0), (0.0, 0.02)),
+    "a gauge on a line of spin, then beside it": (first_reading, lambda gauge: spinning(0.02, 0.0, gauge), (0.0, 0.01)),
+    "a gauge that sees a spin which is held, then not": (first_reading, lambda beside: spinning(beside, 0.0, 0.01), (0.02, 0.0)),
+}
+"""What is asked, of which stage, and two values that make other choices: read together, either would have numbers of another stage."""
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("asked", "stage", "values"), UNLIKE.values(), ids=UNLIKE)
+def test_designs_that_other_choices_serve_are_refused(
+    asked: Callable[[Mechanism], np.ndarray], stage: Callable[[Numbers], Mechanism], values: tuple[float, float], turned: bool
+) -> None:
+    with pytest.raises(DesignError, match=r"design 2 of the batch .* one by one"):
+        asked(stage(np.array(values[::-1] if turned else values)))
+
+
+LIKE = {
+    "rods": (own_values, lambda turn: on_rods(0.02, turn), (0.0, 0.7, 1.2)),
+    "rods of one line": (own_values, lambda turn: on_rods(0.0, turn), (0.0, 0.7, 1.2)),
+    "a spin": (own_values, lambda centre: spinning(0.0, centre, 0.0), (0.01, 0.02, 0.03)),
+    "a spin that is held": (own_values, lambda beside: spinning(beside, 0.0, 0.0), (0.01, 0.02, 0.03)),
+    "what a gauge reads of a spin": (first_reading, lambda gauge: spinning(0.02, 0.0, gauge), (0.01, 0.02, 0.03)),
+    "what bears a push": (borne, lambda turn: pushed(0.0 * turn), (0.1, 0.2, 0.3)),
+}
+
+
+@pytest.mark.parametrize(("asked", "stage", "values"), LIKE.values(), ids=LIKE)
+def test_designs_that_the_same_choices_serve_are_themselves(
+    asked: Callable[[Mechanism], np.ndarray], stage: Callable[[Numbers], Mechanism], values: tuple[float, ...]
+) -> None:
+    alone = np.array([asked(stage(value)) for value in values])
+    np.testing.assert_allclose(asked(stage(np.array(values))), alone, rtol=1e-9, atol=1e-12 * np.max(np.abs(alone)))
+
+
+def test_what_bears_a_load_is_chosen_for_every_design() -> None:
+    """Statics tells what one design's struts bear and not the other's; the first one's choice would tell both."""
+    told, untold = borne(pushed(0.0)), borne(pushed(0.3))
+    assert told == pytest.approx(1.0 / 2e7 + 1.0 / 1e7, rel=1e-9)
+    assert np.isnan(untold)
+    assert np.isnan(borne(pushed(np.array([0.0, 0.3]))))
+
+
+def test_finite_motion_weighs_rotations_by_each_design_s_own_length() -> None:
+    """Four stacks, one of them pushing: what does not fit is met by least squares."""
+    case, address, factors = "tip-tilt-four", "bodies.platform.solids.holder.diameter", (1.0, 1.2, 0.85)
+    strokes = np.array([10e-6, 0.0, 0.0, 0.0])
+    stages = [scaled(case, address, factors), *(scaled(case, address, factor) for factor in factors)]
+    whole, *alone = (forward_kinematics(stage, fs.ideal(stage), strokes) for stage in stages)
+    for number, one in enumerate(alone):
+        assert not np.all(one.consistent)
+        np.testing.assert_allclose(whole.pose.vector[number], one.pose.vector, rtol=0.0, atol=1e-15)

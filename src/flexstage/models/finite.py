@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.finding import refuse
-from flexstage.base.number import Array
+from flexstage.base.number import Array, Number
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import free_deformations, layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
@@ -30,6 +30,7 @@ _SETTLED = 1e-14
 _STALLED = 1e-9
 _CONSISTENT = 1e-10
 _SLOW = 0.1
+_AWAY = 1e3
 _RANK = 1e-9
 
 
@@ -64,7 +65,7 @@ class FiniteMotion:
     bodies: Mapping[str, FinitePose]
     residual: Array
     iterations: int
-    length: float
+    length: Number
     provenance: str
 
     @property
@@ -89,17 +90,18 @@ class _Links:
     spans: Array
     round: Array
     posed: tuple[int, ...]
-    length: float
+    length: Array
 
     @property
     def shape(self) -> tuple[int, ...]:
         own = (self.first_arm.shape[:-2], self.second_arm.shape[:-2], self.axes.shape[:-3], self.spans.shape[:-1])
-        return np.broadcast_shapes(*own, self.drives.shape[:-2])
+        return np.broadcast_shapes(*own, self.drives.shape[:-2], self.length.shape)
 
     @property
     def row_weights(self) -> Array:
-        weights = np.tile(_weights(self.length), len(self.first))[self.locked]
-        return np.concatenate([weights, _weights(self.length)[list(self.posed)]])
+        """Weights (..., m) that make the errors lengths."""
+        own = _weights(self.length)
+        return np.concatenate([np.tile(own, len(self.first))[..., self.locked], own[..., list(self.posed)]], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,17 +200,17 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
         step = -_times(slope, _residual(links, state, relative))
         state = _move(links, state, step)
         relative = _relative(links, state)
-        size = float(np.max(np.abs(step) * _step_weights(links, state), initial=0.0))
-        if size < _SETTLED * links.length or 0.5 * before < size < _STALLED * links.length:
+        size = float(np.max(np.abs(step) * _step_weights(links, state) / links.length[..., None], initial=0.0))
+        if size < _SETTLED or 0.5 * before < size < _STALLED:
             return state, iteration
-        if not np.isfinite(size) or size > 1e3 * links.length:
+        if not np.isfinite(size) or size > _AWAY:
             break
         if size > _SLOW * before:
             slope = _pseudo_inverse(links, state, relative)
         before = size
     raise refuse(
         "finite motion",
-        f"no convergence: the last step was {before:.3g} m on a stage of {links.length:.3g} m",
+        f"no convergence: the last step was {before:.3g} times the stage's size, {np.max(links.length):.3g} m",
         "The stage cannot be closed there; ask for smaller strokes or poses",
     )
 
@@ -234,7 +236,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         spans=_together([np.asarray(part.span) for part in slender], 0),
         round=np.array([part.throat.is_round for part in slender], dtype=float),
         posed=tuple(COMPONENTS.index(name) for name in kinematics.coordinates) if posed else (),
-        length=kinematics.first_length,
+        length=np.asarray(np.real(kinematics.length)),
     )
 
 
@@ -320,7 +322,7 @@ def _pseudo_inverse(links: _Links, state: _State, relative: _Relative) -> Array:
     """Least-norm, least-squares inverse of the weighted constraint slopes, rotations weighted with the length scale."""
     slopes = np.real(_slopes(links, state, relative))
     scale = 1.0 / _step_weights(links, state)
-    return scale[:, None] * np.linalg.pinv(links.row_weights[:, None] * slopes * scale, rcond=_RANK)
+    return scale[..., None] * np.linalg.pinv(links.row_weights[..., None] * slopes * scale[..., None, :], rcond=_RANK)
 
 
 def _slopes(links: _Links, state: _State, relative: _Relative) -> Array:
@@ -370,11 +372,13 @@ def _move(links: _Links, state: _State, step: Array) -> _State:
     return replace(state, shift=shift, turn=turn, strokes=strokes)
 
 
-def _weights(length: float) -> Array:
-    return np.array([1.0, 1.0, 1.0, length, length, length])
+def _weights(length: Array) -> Array:
+    """Of translations 1, of rotations the length (..., 6)."""
+    return np.where(np.arange(6) < 3, 1.0, length[..., None])
 
 
 def _step_weights(links: _Links, state: _State) -> Array:
-    """Weights (k,) that make the unknowns lengths."""
-    strokes = np.ones(state.strokes.shape[-1] if links.posed else 0)
-    return np.concatenate([np.tile(_weights(links.length), len(links.bodies)), strokes])
+    """Weights (..., k) that make the unknowns lengths."""
+    twists = np.tile(_weights(links.length), len(links.bodies))
+    strokes = np.ones((*twists.shape[:-1], state.strokes.shape[-1] if links.posed else 0))
+    return np.concatenate([twists, strokes], axis=-1)

@@ -29,7 +29,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
-from flexstage.models.linear.elimination import Elimination, echelon, eliminate_each, null_space
+from flexstage.models.linear.elimination import Elimination, echelon, eliminate_each, null_space, unlike
 from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
 from flexstage.models.linear.large import least_strain
 from flexstage.parts.freedom import ALL, Freedom
@@ -99,8 +99,8 @@ def _ideal(mechanism: Mechanism) -> Kinematics:
     columns = [solution.independent.index(index) for index in freedoms]
     rest = [index for index in range(len(solution.independent)) if index not in columns]
     size = graph.order.size
-    idle = np.real(first_design(solution.basis, 2))[:, rest]
-    _require_paths(graph, idle[size:])
+    idle = np.real(solution.basis[..., rest])
+    _require_paths(graph, idle[..., size:, :])
     motion = _without_idle(graph, solution, columns, rest)
     bodies, strokes = motion[..., :size, :], motion[..., size:, :]
     sensed = _sense(graph, solution, columns, rest, bodies)
@@ -117,7 +117,7 @@ def _ideal(mechanism: Mechanism) -> Kinematics:
         bodies=bodies,
         strains=dict(zip(graph.assembly.links, _by_link(graph.strain @ bodies), strict=True)) | _element_strains(graph, bodies),
         free={name: free_freedoms(link) for name, link in graph.assembly.links.items()},
-        idle=_idle(graph, idle[:size]),
+        idle=_idle(graph, first_design(idle, 2)[:size]),
         redundant=_redundant(graph),
         length=graph.length,
         provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
@@ -333,8 +333,8 @@ def _length(assembly: Assembly) -> Number:
 
 
 def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
-    """Strokes that can change while the platform stands still drive nothing."""
-    moving = np.max(np.abs(idle_strokes), axis=1, initial=0.0) > _NEGLIGIBLE
+    """Strokes (..., n, k) that can change while the platform stands still drive nothing, in any design."""
+    moving = np.max(np.abs(idle_strokes), axis=(*range(idle_strokes.ndim - 2), -1), initial=0.0) > _NEGLIGIBLE
     require(
         Finding(
             link,
@@ -365,10 +365,9 @@ def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[
     """
     size = graph.order.size
     wanted, idle = solution.basis[..., :size, columns], solution.basis[..., :size, rest]
-    still = np.real(first_design(idle, 2))
+    still = np.real(idle)
     rows = [*((name, _reading(graph, name)) for name in graph.assembly.gauges), *_elongations(graph).items()]
-    seen = [(name, np.real(first_design(row, 2))) for name, row in rows]
-    watching = [(name, row) for name, row in seen if _sees(row, still)]
+    watching = [(name, np.real(row)) for name, row in rows if _see_alike(name, np.real(row), still)]
     if not watching:
         return bodies
     energy, mixed = np.zeros((len(rest), len(rest))), np.zeros((len(rest), len(columns)))
@@ -376,19 +375,29 @@ def _sense(graph: _Graph, solution: Elimination, columns: list[int], rest: list[
         strain = graph.strain[..., place, :]
         force = np.swapaxes(stiffness @ (strain @ idle), -1, -2)
         energy, mixed = energy + force @ (strain @ idle), mixed + force @ (strain @ wanted)
-    held, loose = _split_by_energy(np.real(first_design(energy, 2)))
-    require(_undetermined_findings(graph, [name for name, row in watching if _sees(row, still @ loose)], still @ loose))
+    held, loose = _split_alike(np.real(energy))
+    unresisted = [name for name, row in watching if np.any(_sees(row, still @ loose))]
+    require(_undetermined_findings(graph, unresisted, first_design(still @ loose, 2)))
     return wanted - idle[..., held] @ np.linalg.solve(energy[..., held, :][..., held], mixed[..., held, :])
 
 
-def _sees(row: Array, motions: Array) -> bool:
-    """Whether a gauge's row (1, N) feels one of the motions (N, k) more than by rounding."""
-    return bool(np.any(np.abs(row @ motions) > _NEGLIGIBLE * (np.abs(row) @ np.abs(motions))))
+def _see_alike(name: str, row: Array, motions: Array) -> bool:
+    """`_sees`, in all designs of a batch the same."""
+    seen = np.ravel(_sees(row, motions))
+    if np.any(seen != seen[0]):
+        raise unlike(int(np.argmax(seen != seen[0])), f"differs from the first in whether {name} sees an idle motion")
+    return bool(seen[0])
+
+
+def _sees(row: Array, motions: Array) -> Array:
+    """Whether (...) a gauge's row (..., 1, N) feels one of the motions (..., N, k) more than by rounding."""
+    return np.any(np.abs(row @ motions) > _NEGLIGIBLE * (np.abs(row) @ np.abs(motions)), axis=(-2, -1))
 
 
 def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tuple[slice, Array]]:
     """Rows in the strain and stiffness of every link that idle motions deform."""
-    strained = np.max(np.abs(_by_link(np.real(first_design(graph.strain, 2)) @ idle)), axis=(1, 2)) > _NEGLIGIBLE
+    strains = np.abs(_by_link(np.real(graph.strain) @ idle))
+    strained = np.max(strains, axis=tuple(range(1, strains.ndim))) > _NEGLIGIBLE
     for number, (name, link) in enumerate(graph.assembly.links.items()):
         if strained[number]:
             element = next((each for each, item in _hinges(graph).items() if name in {weld.name for weld in item.welds()}), None)
@@ -401,6 +410,17 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
                 reason = "; ".join(finding.what for finding in error.findings)
                 what = f"it sees an idle motion, and how stiff {name} is against it is not known: {reason}"
                 raise refuse(", ".join(watching), what, "State it, or move the gauge to the platform") from error
+
+
+def _split_alike(energy: Array) -> tuple[list[int], Array]:
+    """`_split_by_energy` of all designs (..., k, k), in all the same; their combinations (..., k, l)."""
+    splits = [_split_by_energy(each) for each in energy.reshape(-1, *energy.shape[-2:])]
+    held = splits[0][0]
+    for number, (other, _) in enumerate(splits):
+        if other != held:
+            raise unlike(number, "has other idle motions that links resist than the first")
+    loose = np.stack([each for _, each in splits])
+    return held, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 
 
 def _split_by_energy(energy: Array) -> tuple[list[int], Array]:

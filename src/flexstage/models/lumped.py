@@ -40,7 +40,7 @@ from flexstage.models.linear.channels import (
     wrench_places,
 )
 from flexstage.models.linear.eigen import cholesky, sign_weights
-from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion
+from flexstage.models.linear.elimination import Elimination, eliminate, imposed_motion, unlike
 from flexstage.models.linear.large import SINGULAR, Quadratic, Solver, surely_definite
 from flexstage.models.linear.model import Contribution, Contributions, LinearModel, assemble, strain_forces
 from flexstage.parts.condensation import Condensed, condense
@@ -54,6 +54,7 @@ _ROUNDING = 1e-12
 _MASSLESS = 1e-12
 _STILL = 1e-7
 _BLOCKED = 1e-7
+_APART = 1e-6
 _MATRICES = 20.0
 """Dense matrices alive at once, modes and their energies by body included: 19 to 24 on chains of 200 and 300 rods, measured."""
 _STRETCHES = 1e-5
@@ -327,9 +328,10 @@ def _keep(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Kept:
         what = f"every freedom is locked, by {', '.join(stage.freedoms)}: strokes move the platform, and nothing is elastic"
         raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model tells how strokes move it as it is")
     loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
-    if loose.shape[1] == 0:
-        return _Kept(basis, driven, tuple(names[index] for index in independent), None)
     named = _loose_coordinates(stage, loose, independent)
+    _require_same_loose(stage, basis, independent, named)
+    if not named:
+        return _Kept(basis, driven, tuple(names[index] for index in independent), None)
     left = [index for index in range(len(independent)) if index not in named]
     full = np.eye(stage.order.size) if basis is None else basis
     idle = _idle(stage, inertia, full, tuple(names[independent[index]] for index in named), left=left, named=named)
@@ -348,8 +350,8 @@ def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array |
     if not imposed.any():
         return None
     motion = imposed_motion(solution, rows, imposed)
-    missed = np.abs(np.real(first_design(rows @ motion - imposed, 2))) > _BLOCKED
-    require(_blocked_findings(stage, locked, missed))
+    missed = np.abs(np.real(rows @ motion - imposed)) > _BLOCKED
+    require(_blocked_findings(stage, locked, np.any(missed, axis=tuple(range(missed.ndim - 2)))))
     return motion
 
 
@@ -378,22 +380,33 @@ def _idle(
     small[..., named, :] = np.eye(len(named))
     motions = basis @ small
     mass = _transpose(motions) @ _momentum(inertia, motions)
-    heavy = _heavy(np.real(first_design(mass, 2)), _largest(inertia, np.real(first_design(motions, 2)), stage.order.coordinates))
+    heavy = _heavy_of_all(np.real(mass), _largest(inertia, np.real(motions), stage.order.coordinates))
     return _Idle(motions, names, heavy, mass[..., heavy, :][..., heavy])
 
 
 def _largest(inertia: Mapping[str, Contribution], motions: Array, coordinates: tuple[str, ...]) -> Array:
-    """What n^T M n (k,) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding.
+    """What n^T M n (..., k) would be if nothing in its sum cancelled: an idle motion with much less has no inertia but rounding.
 
     Coordinates that stand still but for rounding count as if they moved by a share of the largest, 0.1 m making lengths of angles.
     """
     lengths = np.array([0.1 if name.rpartition(".")[2].startswith("r") else 1.0 for name in coordinates])[:, None]
-    least = _STILL * np.max(lengths * np.abs(motions), axis=0) / lengths
-    total = np.zeros(motions.shape[1])
+    least = _STILL * np.max(lengths * np.abs(motions), axis=-2, keepdims=True) / lengths
+    total = np.zeros(motions.shape[-1])
     for item in inertia.values():
-        seen = np.abs(np.real(first_design(item.operator, 2))) @ np.maximum(np.abs(motions), least)
-        total = total + np.sum(seen * (np.abs(np.real(first_design(item.law, 2))) @ seen), axis=0)
+        seen = np.abs(np.real(item.operator)) @ np.maximum(np.abs(motions), least)
+        total = total + np.sum(seen * (np.abs(np.real(item.law)) @ seen), axis=-2)
     return total
+
+
+def _heavy_of_all(mass: Array, largest: Array) -> tuple[int, ...]:
+    """`_heavy` of the first design of (..., k, k); refused where another one's are others."""
+    batch, count = np.broadcast_shapes(mass.shape[:-2], largest.shape[:-1]), mass.shape[-1]
+    masses = np.broadcast_to(mass, (*batch, count, count)).reshape(-1, count, count)
+    first, *others = map(_heavy, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
+    for number, heavy in enumerate(others, 1):
+        if heavy != first:
+            raise unlike(number, "has inertia in other idle motions than the first")
+    return first
 
 
 def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
@@ -425,27 +438,49 @@ def _broadcast(arrays: tuple[Array, ...]) -> list[Array]:
 
 def _loose(stage: _Stage, basis: Array | None) -> Array:
     """Null space (n, k) of the first design's stiffness in the independent coordinates."""
-    first = None if basis is None else np.real(first_design(basis, 2))
-    strains = {
-        name: Contribution(_without_rounding(np.real(first_design(item.operator, 2)), first), np.real(first_design(item.law, 2)))
-        for name, item in stage.strains.items()
+    strains = _strains(stage, basis, lambda values: np.real(first_design(values, 2)))
+    values, loose = _softest(assemble(strains, stage.order.size if basis is None else basis.shape[-1]))
+    if np.min(values, initial=0.0) < -SINGULAR:
+        raise _unstable(stage, strains, loose[:, 0] if basis is None else np.real(first_design(basis, 2)) @ loose[:, 0])
+    _require_told_apart(stage, loose, basis)
+    return loose
+
+
+def _strains(stage: _Stage, basis: Array | None, of_designs: Callable[[Array], Array]) -> dict[str, Contribution]:
+    """The links' real strains in the independent coordinates, without rounding, of the designs that are picked."""
+    own = None if basis is None else of_designs(basis)
+    return {
+        name: Contribution(_without_rounding(of_designs(item.operator), own), of_designs(item.law)) for name, item in stage.strains.items()
     }
-    stiffness = assemble(strains, stage.order.size if first is None else first.shape[1])
+
+
+def _softest(stiffness: Array) -> tuple[Array, Array]:
+    """Eigenvalues (k,) below `SINGULAR` of one stiffness (n, n) with its diagonal scaled to one, ascending, and their motions (n, k)."""
     diagonal = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
     scaled = stiffness / diagonal / diagonal[:, None]
     try:
         pivots = np.diag(np.linalg.cholesky(scaled))
         if np.min(pivots) ** 2 > SINGULAR:
-            return np.zeros((len(diagonal), 0))
+            return np.zeros(0), np.zeros((len(diagonal), 0))
     except np.linalg.LinAlgError:
         pass
     values, vectors = np.linalg.eigh(scaled)
-    if values[0] < -SINGULAR:
-        motion = vectors[:, 0] / diagonal
-        raise _unstable(stage, strains, motion if first is None else first @ motion)
-    loose = vectors[:, values < SINGULAR] / diagonal[:, None]
-    _require_told_apart(stage, loose, basis)
-    return loose
+    return values[values < SINGULAR], vectors[:, values < SINGULAR] / diagonal[:, None]
+
+
+def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[int, ...], named: list[int]) -> None:
+    """Refuse designs of a batch with other motions without stiffness than the first, or whose `named` coordinates hardly tell them."""
+    laws = (np.diagonal(np.real(item.law), axis1=-2, axis2=-1) for item in stage.strains.values())
+    if stage.order.sparse or all(np.all(law > 0.0) for law in laws):
+        return
+    stiffness = assemble(_strains(stage, basis, np.real), stage.order.size if basis is None else basis.shape[-1])
+    designs = stiffness.reshape(-1, *stiffness.shape[-2:])
+    for number in range(1, len(designs)):
+        if np.all(np.isfinite(designs[number])) and not np.array_equal(designs[number], designs[number - 1]):
+            values, loose = _softest(designs[number])
+            steady = np.min(values, initial=0.0) >= -SINGULAR  # others have no numbers: `_stable`
+            if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _told_apart(loose, named)):
+                raise unlike(number, "has other motions without stiffness than the first")
 
 
 def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:
@@ -504,23 +539,36 @@ def _without_rounding(operator: Array, basis: Array | None) -> Array:
     if basis is None:
         return operator
     product = operator @ basis
-    largest = np.max(np.abs(operator), axis=1, keepdims=True) * np.max(np.abs(basis), axis=0)
+    largest = np.max(np.abs(operator), axis=-1, keepdims=True) * np.max(np.abs(basis), axis=-2, keepdims=True)
     return np.where(np.abs(product) > _ROUNDING * largest, product, 0.0)
 
 
 def _loose_coordinates(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[int]:
     """Coordinates that tell the loose motions apart; a loose motion that moves the platform makes the stage a mechanism."""
-    platform = [position for position, index in enumerate(independent) if index < 6]
-    moved = np.max(np.abs(loose), axis=0, initial=0.0)
-    if np.any(np.abs(loose[platform]) > 1e-6 * moved):
+    if _moves_platform(loose, independent):
         raise refuse(
             "stage",
             f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without any stiffness move the platform, and with it "
             f"{', '.join(_moving(stage, loose, independent))}",
             "Add a link that holds this motion, or check which freedoms the links leave free",
         )
-    order = pivoted_qr((loose / moved).T)[2]
+    order = pivoted_qr(_as_ones(loose).T)[2]
     return sorted(int(index) for index in order[: loose.shape[1]])
+
+
+def _moves_platform(loose: Array, independent: tuple[int, ...]) -> bool:
+    platform = [position for position, index in enumerate(independent) if index < 6]
+    return bool(np.any(np.abs(_as_ones(loose)[platform]) > 1e-6))
+
+
+def _told_apart(loose: Array, named: list[int]) -> bool:
+    """Whether the named coordinates tell the loose motions (n, k) apart."""
+    return not named or bool(np.linalg.svd(_as_ones(loose)[named], compute_uv=False)[-1] > _APART)
+
+
+def _as_ones(motions: Array) -> Array:
+    """Motions (n, k) of which the largest coordinate is one."""
+    return motions / np.max(np.abs(motions), axis=0, initial=0.0)
 
 
 def _moving(stage: _Stage, loose: Array, independent: tuple[int, ...]) -> list[str]:
@@ -577,8 +625,8 @@ def _idle_inertia(stage: _Stage, inertia: Mapping[str, Contribution], idle: _Idl
     """What accelerating the ground exerts on the idle motions (..., k, 6), without what is only rounding."""
     exerted = _transpose(idle.motions) @ carried
     names = stage.order.coordinates
-    spin, rigid = (_largest(inertia, np.real(first_design(motions, 2)), names) for motions in (idle.motions, stage.rigid))
-    most = spin[:, None] * rigid
+    spin, rigid = (_largest(inertia, np.real(motions), names) for motions in (idle.motions, stage.rigid))
+    most = spin[..., :, None] * rigid[..., None, :]
     return np.where(np.abs(np.real(exerted)) > _ROUNDING * np.sqrt(most), exerted, 0.0)
 
 

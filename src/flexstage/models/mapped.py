@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lapack import pivoted_qr
-from flexstage.base.number import Array, Number, first_design
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
@@ -187,24 +187,26 @@ def borne_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) 
     loads = order.selector(PLATFORM).T @ np.concatenate(wrenches, axis=-1)
     rigid = np.array([isinstance(assembly.links[name].part, Joint) for name, axes in locked.items() for _ in axes])
     rows, loads = _broadcast(np.concatenate(_broadcast(*strains), axis=-2), loads)
-    forces = _equilibrium(rows, loads, rigid, kinematics.first_length)
+    forces = _equilibrium(rows, loads, rigid, kinematics.length)
     return None if forces is None else _work(assembly, locked, forces)
 
 
 def _idle_wrenches(kinematics: Kinematics) -> Array:
     """Wrenches (..., 6, 6 - f) that do no work in any ideal motion."""
     rest = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
-    return rest[..., pivoted_qr(np.real(first_design(rest, 2)))[2][: 6 - kinematics.mobility]]
+    count = 6 - kinematics.mobility
+    chosen = np.array([pivoted_qr(each)[2][:count] for each in np.real(rest).reshape(-1, 6, 6)], dtype=int)
+    return np.take_along_axis(rest, chosen.reshape(*rest.shape[:-2], 1, count), axis=-1)
 
 
 def _work(assembly: Assembly, locked: Mapping[str, list[int]], forces: Array) -> Number | None:
     """f^T C f of all links that bear something; none where a compliance is not known, or nothing gives way."""
     total, start = np.zeros(()), 0
-    largest = np.max(np.abs(np.real(first_design(forces, 1))))
+    largest = np.max(np.abs(np.real(forces)), axis=-1, keepdims=True)
     for name, axes in locked.items():
         borne = forces[..., start : start + len(axes)]
         start += len(axes)
-        if np.max(np.abs(np.real(borne)), initial=0.0) > _COLLINEAR * largest and not isinstance(assembly.links[name].part, Joint):
+        if np.any(np.abs(np.real(borne)) > _COLLINEAR * largest) and not isinstance(assembly.links[name].part, Joint):
             matrix = _known_compliance(assembly.links[name])
             if matrix is None:
                 return None
@@ -219,30 +221,41 @@ def _known_compliance(link: PlacedLink) -> Array | None:
         return None
 
 
-def _equilibrium(rows: Array, loads: Array, rigid: Array, length: float) -> Array | None:
+def _equilibrium(rows: Array, loads: Array, rigid: Array, length: Number) -> Array | None:
     """Forces (..., m) of constraints (..., m, N) that hold the first load (..., N, k), with any amount of the others added.
 
     Elastic constraints whose force is a matter of choice bear nothing: redundant ones, and guides, which the other loads would load. Those
-    that are `rigid` (m,) bear what is needed, which is not told. None where the first load cannot be held so. Choices are those of the
-    first design.
+    that are `rigid` (m,) bear what is needed, which is not told. None where the first load of a design cannot be held so. Every design of a
+    batch has choices of its own.
     """
-    scale = np.tile([1.0, 1.0, 1.0, *[1.0 / length] * 3], rows.shape[-1] // 6)
-    first, wanted = np.real(first_design(rows, 2)) * scale, np.real(first_design(loads, 2)) * scale[:, None]
-    columns = np.concatenate([_normal(first).T, _normal(wanted[:, 1:].T).T], axis=1)
-    open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[: len(first)] > _COLLINEAR
-    bearing = np.append(np.flatnonzero(rigid | ~open_), np.arange(len(first), columns.shape[1]))
-    _, triangle, order = pivoted_qr(columns[:, bearing])
+    batch, (count, size) = rows.shape[:-2], rows.shape[-2:]
+    full = np.concatenate([np.swapaxes(rows, -1, -2), loads[..., 1:], loads[..., :1]], axis=-1).reshape(-1, size, count + loads.shape[-1])
+    turns = np.broadcast_to(1.0 / np.real(length), batch).ravel()
+    scaled = np.real(full) * np.where(np.arange(size) % 6 < 3, 1.0, turns[:, None])[..., None]
+    forces, bearing = np.zeros((len(full), full.shape[-1]), dtype=full.dtype), None
+    for number, design in enumerate(full):
+        if number == 0 or not np.array_equal(scaled[number], scaled[number - 1]):
+            bearing = _bearing(scaled[number], rigid)
+        if bearing is None:
+            return None
+        equations, chosen = bearing
+        forces[number, chosen] = np.linalg.solve(design[np.ix_(equations, chosen)], design[equations, -1])
+    return forces[:, :count].reshape(*batch, count)
+
+
+def _bearing(system: Array, rigid: Array) -> tuple[Array, Array] | None:
+    """Equations and columns of constraints and other loads, in one design (N, m + k), that hold the load in the last column by these."""
+    count, wanted = len(rigid), system[:, -1]
+    columns = _normal(system[:, :-1].T).T
+    open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[:count] > _COLLINEAR
+    candidates = np.append(np.flatnonzero(rigid | ~open_), np.arange(count, columns.shape[1]))
+    _, triangle, order = pivoted_qr(columns[:, candidates])
     diagonal = np.abs(np.diag(triangle))
-    chosen = bearing[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
-    missed = wanted[:, 0] - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted[:, 0], rcond=None)[0]
-    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted[:, 0])):
+    chosen = candidates[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
+    missed = wanted - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted, rcond=None)[0]
+    if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted)):
         return None
-    equations = pivoted_qr(columns[:, chosen].T)[2][: len(chosen)]
-    full = np.concatenate([np.swapaxes(rows, -1, -2), loads[..., 1:]], axis=-1)
-    solved = np.linalg.solve(full[..., equations, :][..., chosen], loads[..., equations, :1])[..., 0]
-    forces = np.zeros((*solved.shape[:-1], columns.shape[1]), dtype=solved.dtype)
-    forces[..., chosen] = solved
-    return forces[..., : len(first)]
+    return pivoted_qr(columns[:, chosen].T)[2][: len(chosen)], chosen
 
 
 def _normal(rows: Array) -> Array:

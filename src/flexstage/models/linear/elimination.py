@@ -12,11 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, first_design
 
 _RANK = 1e-9
+_WEAKER = 1e-3
+"""By how much the first design's pivots may be less independent in another design of a batch."""
 _PREFERENCE = 1e-6
 """Symmetric stages tie in pivots: each column counts this much less than the one before it, so that rounding does not choose."""
 
@@ -42,12 +44,39 @@ class Elimination:
 def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate the constraints A z = 0, A (..., m, N).
 
-    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible.
+    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible. Raises `DesignError` for designs of a batch that
+    the pivots of the first do not serve: other constraints are independent there, or these hardly are.
 
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
     """
-    return _solved(constraints, _choice(np.real(first_design(constraints, 2)), scale, keep))
+    choice = _choice(np.real(first_design(constraints, 2)), scale, keep)
+    _require_served(constraints, scale, choice)
+    return _solved(constraints, choice)
+
+
+def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
+    """Refuse designs in which the pivots of the first are hardly independent, or leave constraints unmet."""
+    designs = np.real(constraints).reshape(math.prod(constraints.shape[:-2]), *constraints.shape[-2:])
+    others = np.flatnonzero(np.any(designs != designs[0], axis=(1, 2)) & np.all(np.isfinite(designs), axis=(1, 2)))
+    if not len(others):
+        return
+    dependent, rows = (list(each) for each in choice)
+    scaled = _comparable(np.concatenate([designs[:1], designs[others]]), scale)
+    least = np.min(np.linalg.svd(scaled[:, rows][..., dependent], compute_uv=False), axis=1, initial=1.0)
+    _require_none(others[least[1:] < max(_RANK, _WEAKER * least[0])])
+    missed = np.max(np.abs(scaled[1:] @ _solved(scaled[1:], choice).basis), axis=(1, 2), initial=0.0)
+    _require_none(others[missed > _RANK])
+
+
+def _require_none(others: Array) -> None:
+    if len(others):
+        raise unlike(int(others[0]), "has locked freedoms that depend on one another in another way than those of the first")
+
+
+def unlike(number: int, what: str) -> DesignError:
+    """The refusal of a design of a batch, counted from 0, that cannot be read with the choices of the first."""
+    return refuse("designs", f"design {number + 1} of the batch {what}", "Read them one by one")
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
@@ -94,8 +123,7 @@ def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], k
         if theirs != mine:
             counts = [f"{len(kept)} of the platform and {beside} beside" for kept, beside in (theirs, mine)]
             other = counts[0] if counts[0] != counts[1] else "as many, but other ones"
-            what = f"design {numbers[0] + 1} of the batch has other motions than the first, which has {counts[1]}: {other}"
-            raise refuse("designs", what, "Read them one by one")
+            raise unlike(numbers[0], f"has other motions than the first, which has {counts[1]}: {other}")
 
 
 def _freedom(found: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
@@ -105,11 +133,16 @@ def _freedom(found: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...]
 
 def _choice(rows: Array, scale: Array, keep: tuple[int, ...]) -> _Choice:
     """Dependent columns of one real design (m, N), and the rows that these follow from."""
-    first = rows * scale
-    norms = np.linalg.norm(first, axis=1)
-    first = first / np.where(norms > 0.0, norms, 1.0)[:, None]
+    first = _comparable(rows, scale)
     dependent = _pivot_columns(first, keep)
     return tuple(dependent), tuple(_pivots(first[:, dependent].T)[: len(dependent)])
+
+
+def _comparable(rows: Array, scale: Array) -> Array:
+    """Constraints (..., m, N) of length one over comparable coordinates; those of nothing stay."""
+    scaled = rows * scale
+    norms = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    return scaled / np.where(norms > 0.0, norms, 1.0)
 
 
 def _solved(constraints: Array, choice: _Choice) -> Elimination:
