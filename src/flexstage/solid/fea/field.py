@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.frontal import Grid, Matrix, dissect, factorise_fronts
+from flexstage.solid.fea.frontal import Fronts, Grid, Matrix, dissect, factorise_fronts
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.piece import MILLIMETRES, Medium
 from flexstage.spatial.frame import Frame
@@ -52,6 +52,11 @@ class Field:
             self, [ngsolve.CoefficientFunction((1.0, 1.0, 1.0)), ngsolve.CoefficientFunction(_coordinates())], None
         ).T
         return one.reshape(3, -1)[0], place.reshape(3, -1).T / MILLIMETRES
+
+    @cached_property
+    def fronts(self) -> Fronts:
+        """The order in which its free nodes are eliminated."""
+        return dissect(grid(self), self.free.reshape(3, -1)[0])
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
         """Hooke's law: 2 mu strain + lambda tr(strain) I, or by the tensor where a medium is a crystal [Pa, with strains per m]."""
@@ -319,6 +324,20 @@ def degrees_of(space: Field, elements: Array) -> Array:
     return result
 
 
+def nodes_on(space: Field, face: str) -> Array:
+    """Which functions (n / 3,) of one component of the space belong to a named face.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> bool(np.all(nodes_on(space, "foot") == ~space.free.reshape(3, -1)[0]))
+    True
+    """
+    found = space.space.components[0].GetDofs(space.meshed.mesh.Boundaries(_escape(face)))
+    return np.array([bool(bit) for bit in found], dtype=bool)
+
+
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
     """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame.
 
@@ -407,8 +426,10 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 Solver = Callable[[Array], Array]
 
 
-def factorise(space: Field, form: ngsolve.BilinearForm) -> Solver:
+def factorise(space: Field, form: ngsolve.BilinearForm, held: Array | None = None) -> Solver:
     """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
+
+    Beside those of the field, degrees of freedom of the mask `held` (n,) are.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
@@ -420,13 +441,14 @@ def factorise(space: Field, form: ngsolve.BilinearForm) -> Solver:
     100.0
     """
     values, columns, starts = form.mat.CSR()
-    matrix = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values))
+    whole = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values))
+    also = np.zeros(space.size, dtype=bool) if held is None else held
     try:
-        solve = factorise_fronts(dissect(grid(space), space.free.reshape(3, -1)[0]), matrix).solve
+        solve = factorise_fronts(space.fronts, whole.without(also) if also.any() else whole).solve
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
-        inverse = form.mat.Inverse(space.space.FreeDofs(), inverse="sparsecholesky")
+        inverse = form.mat.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky")
         solve = functools.partial(_apply_by_columns, inverse.Mult)
-    return lambda forces: solve(forces) if forces.ndim == 2 else solve(forces[:, None])[:, 0]
+    return lambda forces: solve(np.where(also[:, None], 0.0, forces.reshape(len(also), -1))).reshape(forces.shape)
 
 
 def grid(space: Field) -> Grid:

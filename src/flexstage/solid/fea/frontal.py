@@ -56,6 +56,12 @@ class Matrix:
     columns: Array
     values: Array
 
+    def without(self, held: Array) -> Matrix:
+        """The same without what couples some degrees of freedom (mask) to the others: each stands for itself."""
+        rows = np.repeat(np.arange(len(held)), np.diff(self.starts))
+        kept = ~(held[rows] | held[self.columns]) | (rows == self.columns)
+        return Matrix(self.starts, self.columns, np.where(kept, self.values, 0.0))
+
 
 @dataclass(frozen=True, eq=False)
 class _Front:

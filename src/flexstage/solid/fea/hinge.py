@@ -1,14 +1,15 @@
 """A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
 
 The hinge stands between rigid outer faces, with a stub of the block on each side that it grows on; the stubs are then taken off as beams,
-so that what its roots yield remains with the hinge. An end without a root is held rigid itself, where its arcs end.
+so that what its roots yield remains with the hinge. An end without a root is held rigid itself, where its arcs end. What is symmetric
+about its planes is cut there: the six motions are even or odd about each, so a quarter does, held accordingly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import ngsolve
@@ -22,7 +23,7 @@ from flexstage.parts.profile import Contour, Filleted
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
-from flexstage.solid.fea.field import Field, apply_form, factorise, field, rigid, stiffness, times
+from flexstage.solid.fea.field import Field, apply_form, factorise, field, hooke, nodes_on, rigid, stiffness, times
 from flexstage.solid.fea.fineness import Fineness
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.memory import Counts
@@ -30,7 +31,7 @@ from flexstage.solid.fea.mesh import PieceMesh, core_points, generate_mesh, rest
 from flexstage.solid.fea.piece import Medium, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.roots import Roots, own_roots, rises
-from flexstage.solid.fea.specimen import END, START, Specimen, own_stub
+from flexstage.solid.fea.specimen import END, MIRRORS, START, Specimen, cut_at_mirrors, own_stub
 from flexstage.solid.fea.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
@@ -65,6 +66,56 @@ class _Solve:
     freedoms: int
     elements: int
     order: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Subject:
+    """A hinge of a `medium` with stubs of so many metres at its first and second end, nought where the end is held rigid."""
+
+    part: Shaped
+    medium: Medium
+    first: float
+    second: float
+
+    @staticmethod
+    def of(part: Shaped, own: Medium, stub: float | None, roots: Roots) -> _Subject:
+        """With stubs of the length told, or their own, at the ends with roots."""
+        length = own_stub(part)[1] if stub is None else stub
+        return _Subject(part, own, length if roots.first else 0.0, length if roots.second else 0.0)
+
+    @property
+    def blunting_error(self) -> float:
+        """What is not known because arcs that end on a rigid face are blunted there."""
+        is_blunt = isinstance(self.part, Profiled) and not isinstance(self.part.profile, Contour) and rises(self.part)
+        return _BLUNT if is_blunt and min(self.first, self.second) == 0.0 else 0.0
+
+    @property
+    def stubs(self) -> Array:
+        """Compliance (6, 6) of both stubs about the hinge's centre."""
+        section, total = own_stub(self.part)[0], np.zeros((6, 6))
+        form = circle(float(section.height)) if section.is_round else rectangle(float(section.height), float(section.width))
+        for sign, length in ((-1.0, self.first), (1.0, self.second)):
+            if length > 0.0:
+                total += _about_centre(beam(form, length, self.medium), sign * 0.5 * (span(self.part) + length))
+        return total
+
+    def draw(self, size: float) -> Specimen:
+        """As a specimen, cut where hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
+        across = [axis for axis in _mirrors(self.medium) if not (axis == 1 and self.part.slender)]
+        return cut_at_mirrors(specimen(self.part, (self.first, self.second), size), across)
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """A mesh [mm], and the planes, by the axis across them, of which it is one side."""
+
+    mesh: ngsolve.Mesh
+    mirrors: tuple[int, ...]
+
+    @property
+    def copies(self) -> int:
+        """How many of it the hinge consists of."""
+        return 2 ** len(self.mirrors)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +160,11 @@ def hinge_compliance(
     asked = accuracy or Accuracy()
     require(_refusals(part))
     own = medium(material)
-    lengths = _stub_lengths(part, stub, roots or own_roots(part))
-    taken, blunt = _stubs(part, lengths, own), _blunting_error(part, lengths)
+    subject = _Subject.of(part, own, stub, roots or own_roots(part))
+    taken, blunt = subject.stubs, subject.blunting_error
     found: list[Array] = []
     last = None
-    for last in _solves(part, lengths, own, asked, told):
+    for last in _solves(subject, asked, told):
         found.append(_symmetrise(np.linalg.inv(last.stiffness)) - taken)
         if blunt + _error(part, found) <= asked.error:
             break
@@ -127,7 +178,7 @@ def hinge_compliance(
         error=error,
         changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
         whole=alone + taken,
-        stub=max(lengths),
+        stub=max(subject.first, subject.second),
         freedoms=last.freedoms,
         elements=last.elements,
         order=last.order,
@@ -159,55 +210,81 @@ def _error(part: Shaped, found: Sequence[Array]) -> float:
     return remaining([change(first, second) for first, second in pairwise(ends)])
 
 
-def _blunting_error(part: Shaped, stubs: tuple[float, float]) -> float:
-    """What is not known because arcs that end on a rigid face are blunted there."""
-    is_blunt = isinstance(part, Profiled) and not isinstance(part.profile, Contour) and rises(part)
-    return _BLUNT if is_blunt and min(stubs) == 0.0 else 0.0
-
-
 def _label(part: Shaped) -> str:
     return f"the {part.kind}"
 
 
-def _solves(part: Shaped, stubs: tuple[float, float], own: Medium, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
+def _solves(subject: _Subject, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
     """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms.
 
-    Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two.
+    Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two. Freedoms
+    and elements are counted for all of the hinge.
     """
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
         told.report(Stage.MESHING, 0.0)
-        mesh = _mesh(part, stubs, asked.shrink**refinement, highest)
+        cut = _mesh(subject, asked.shrink**refinement, highest)
         if refinement == 0:
-            if _space(mesh, own, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
-                lowest, mesh = 2, _mesh(part, stubs, _COARSER, highest)
+            if cut.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
+                lowest, cut = 2, _mesh(subject, _COARSER, highest)
+            mesh = cut.mesh
             told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
-            space = _space(mesh, own, order)
-            if space.size > asked.freedoms:
+            space = _space(subject, cut, order)
+            if cut.copies * space.size > asked.freedoms:
                 return
             told.report(Stage.FACTORISING, 0.0)
-            yield _Solve(_law(part, space), space.size, mesh.ne, order)
+            yield _Solve(_law(subject.part, space, cut), cut.copies * space.size, cut.copies * cut.mesh.ne, order)
 
 
-def _space(mesh: ngsolve.Mesh, own: Medium, order: int) -> Field:
-    mesh.Curve(order)
-    return field(PieceMesh(mesh, (own,), (START, END), np.zeros(mesh.ne, dtype=int), np.zeros(mesh.ne, dtype=bool)), [START, END], order)
+def _space(subject: _Subject, cut: _Mesh, order: int) -> Field:
+    cut.mesh.Curve(order)
+    owner, finer = np.zeros(cut.mesh.ne, dtype=int), np.zeros(cut.mesh.ne, dtype=bool)
+    return field(PieceMesh(cut.mesh, (subject.medium,), (START, END), owner, finer), [START, END], order)
 
 
-def _law(part: Shaped, space: Field) -> Array:
-    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other."""
-    form, motion = stiffness(space), rigid(space, identity(), faces=END)
-    motion -= factorise(space, form)(times(form, motion))
-    law = motion.T @ apply_form(stiffness(space, assemble=False), motion)  # by strains: the rounding of K u drowns a thin leaf
+def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
+    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other.
+
+    Motions that are not alike about a plane of symmetry have no energy in common.
+    """
+    form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
+    strained, forces = stiffness(space, assemble=False), times(form, motion)  # by strains: the rounding of K u drowns a thin leaf
+    for odd in product((False, True), repeat=len(cut.mirrors)):
+        signs = dict(zip(cut.mirrors, odd, strict=True))
+        alike = [column for column in range(6) if all(_is_odd(column, axis) == sign for axis, sign in signs.items())]
+        own = motion[:, alike] - factorise(space, form, _held_on_mirrors(space, signs))(forces[:, alike])
+        law[np.ix_(alike, alike)] = cut.copies * (own.T @ apply_form(strained, own))
     _require_symmetric(part, law)
     return _symmetrise(law)
+
+
+def _is_odd(column: int, axis: int) -> bool:
+    """Whether a rigid motion turns round in a mirror across an axis: along it, or about another axis."""
+    return column == axis if column < 3 else column != 3 + axis
+
+
+def _held_on_mirrors(space: Field, signs: Mapping[int, bool]) -> Array:
+    """Which degrees of freedom (n,) planes hold, by the axis across them: that across it of even motions, those along it of odd ones."""
+    held = np.zeros((3, space.size // 3), dtype=bool)
+    for axis, odd in signs.items():
+        across = np.arange(3) == axis
+        held[across != odd] |= nodes_on(space, MIRRORS[axis])
+    return held.ravel()
+
+
+def _mirrors(own: Medium) -> tuple[int, ...]:
+    """The axes, y or z, across which a medium is symmetric: no stress that turns round in a mirror there with a strain that does not."""
+    law = hooke(own)
+    turned = {1: np.array([1, 1, 1, -1, 1, -1]), 2: np.array([1, 1, 1, -1, -1, 1])}
+    return tuple(axis for axis, sign in turned.items() if np.max(np.abs(law - law * np.outer(sign, sign))) < _SYMMETRY * np.max(law))
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
     """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
 
-    Elements are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
+    It is what of a hinge of an isotropic material is computed: the quarter on the positive sides of y and z, the half of a leaf. Elements
+    are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
     `DesignError` when none of that helps.
 
     >>> from flexstage.parts.neck import Neck
@@ -215,22 +292,23 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
     >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
     ('medium 0',)
     """
-    return _mesh(part, _stub_lengths(part, stub, own_roots(part)), factor, order)
+    return _mesh(_Subject.of(part, Medium(1.0, 0.0, 1.0), stub, own_roots(part)), factor, order).mesh
 
 
-def _mesh(part: Shaped, stubs: tuple[float, float], factor: float, order: int) -> ngsolve.Mesh:
+def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
     reason = "the mesher was not asked"
     for shrink, grading, curvature in _ATTEMPTS:
+        drawn = subject.draw(factor * shrink)
         sizes = {
-            "mp": restrict_sizes(core_points(part, _NECK * factor * shrink)),
+            "mp": restrict_sizes((drawn.within(points), size) for points, size in core_points(subject.part, _NECK * factor * shrink)),
             "grading": grading,
             "curvaturesafety": curvature / factor,
         }
-        outcome = _attempt(specimen(part, stubs, factor * shrink), sizes, order)
+        outcome = _attempt(drawn, sizes, order)
         if isinstance(outcome, ngsolve.Mesh):
-            return outcome
+            return _Mesh(outcome, drawn.mirrors)
         reason = outcome
-    raise refuse(_label(part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
 
 
 def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
@@ -259,22 +337,6 @@ def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
     points = _INSIDE + (1.0 - 4.0 * _INSIDE) / _LATTICE * lattice
     rule = ngsolve.IntegrationRule([tuple(point) for point in points.tolist()], [1.0] * len(points))
     return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(mesh.MapToAllElements(rule, ngsolve.VOL))))
-
-
-def _stub_lengths(part: Shaped, length: float | None, roots: Roots) -> tuple[float, float]:
-    """Lengths [m] of the stubs of both ends, nought where there is none."""
-    own = own_stub(part)[1] if length is None else length
-    return own if roots.first else 0.0, own if roots.second else 0.0
-
-
-def _stubs(part: Shaped, lengths: tuple[float, float], own: Medium) -> Array:
-    """Compliance (6, 6) of both stubs about the hinge's centre."""
-    section, total = own_stub(part)[0], np.zeros((6, 6))
-    form = circle(float(section.height)) if section.is_round else rectangle(float(section.height), float(section.width))
-    for sign, length in zip((-1.0, 1.0), lengths, strict=True):
-        if length > 0.0:
-            total += _about_centre(beam(form, length, own), sign * 0.5 * (span(part) + length))
-    return total
 
 
 def _about_centre(compliance: Array, away: float) -> Array:
