@@ -847,17 +847,15 @@ static INLINE lanes between(const lanes *x, const lanes *y, int k, int row, int 
     return row == column ? x[row * k + at.i] * y[row * k + at.j] : both(x + row * k, y + column * k, at);
 }
 
-/* Ends' twists (12, k), forces less lambda times momenta (12, k), the twists in the stage's axes at the link (u: 3, k) of one link. */
-static INLINE void link_motion(
-    const Task *t, const Room *w, int64_t l, const lanes *mean, lanes *twist, lanes *force, lanes *seen, const int k)
+/* Twists (12, k) of a link's ends in its axes and those of its place in the stage's (u: 3, k). */
+static INLINE void link_motion(const Task *t, const Room *w, int64_t l, lanes *twist, lanes *seen, const int k)
 {
-    const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
-    const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
+    const lanes *r = w->number + t->start[2] + 9 * l;
     for (int side = 0; side < 2; side++) {
         const int64_t body = t->link[4 * l + 1 + side];
         lanes *e = twist + 6 * side * k, *u = seen + 3 * side * k;
         if (body < 0) {
-            memset(e, 0, sizeof(lanes) * 6 * k), memset(u, 0, sizeof(lanes) * 3 * k);
+            memset(e, 0, sizeof(lanes) * 6 * k);
             continue;
         }
         const lanes *a = w->number + t->start[3 + side] + 3 * l, *x = w->shapes + 6 * k * body, *o = x + 3 * k;
@@ -865,46 +863,44 @@ static INLINE void link_motion(
             u[c] = x[c] + (a[1] * o[2 * k + c] - a[2] * o[k + c]);
             u[k + c] = x[k + c] + (a[2] * o[c] - a[0] * o[2 * k + c]);
             u[2 * k + c] = x[2 * k + c] + (a[0] * o[k + c] - a[1] * o[c]);
-            for (int i = 0; i < 3; i++) {
+            UNROLL for (int i = 0; i < 3; i++) {
                 e[i * k + c] = r[i] * u[c] + r[3 + i] * u[k + c] + r[6 + i] * u[2 * k + c];
                 e[(3 + i) * k + c] = r[i] * o[c] + r[3 + i] * o[k + c] + r[6 + i] * o[2 * k + c];
             }
         }
     }
-    const Law *law = w->law + t->link[4 * l];
-    lanes strain[6 * MODES];
-    for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
-    for (int i = 0; i < 6; i++) {
-        lanes sum[MODES];
-        for (int c = 0; c < k; c++) sum[c] = all(0.0);
-        for (int at = law->start[i]; at < law->start[i + 1]; at++)
-            for (int c = 0; c < k; c++) sum[c] += stiff[6 * i + law->column[at]] * strain[law->column[at] * k + c];
-        for (int c = 0; c < k; c++) force[(6 + i) * k + c] = sum[c], force[i * k + c] = -sum[c];
-    }
-    for (int i = 0; i < 12; i++) {
-        lanes sum[MODES];
-        for (int c = 0; c < k; c++) sum[c] = all(0.0);
-        for (int at = law->start[6 + i]; at < law->start[7 + i]; at++)
-            for (int c = 0; c < k; c++) sum[c] += mass[12 * i + law->column[at]] * twist[law->column[at] * k + c];
-        for (int c = 0; c < k; c++) force[i * k + c] -= mean[c] * sum[c];
-    }
 }
 
-/* Adds a link's or part's share of every slot that is about it: of each mode with itself, or of some `pair`s of a cluster beyond these. */
+/* Forces less lambda times momenta (6, k) on one end of a link, in its axes, and their first half in the stage's. */
+static INLINE void end_force(
+    const Task *t, const Room *w, int64_t l, int side, const lanes *mean, const lanes *twist, const lanes *strain, lanes *force, lanes *world, const int k)
+{
+    const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
+    const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l] + 72 * side;
+    const Law *law = w->law + t->link[4 * l];
+    const double sign = side ? 1.0 : -1.0;
+    for (int i = 0; i < 6; i++) {
+        lanes sum[MODES], heavy[MODES];
+        for (int c = 0; c < k; c++) sum[c] = heavy[c] = all(0.0);
+        for (int at = law->start[i]; at < law->start[i + 1]; at++)
+            for (int c = 0; c < k; c++) sum[c] += stiff[6 * i + law->column[at]] * strain[law->column[at] * k + c];
+        for (int at = law->start[6 + 6 * side + i]; at < law->start[7 + 6 * side + i]; at++)
+            for (int c = 0; c < k; c++) heavy[c] += mass[12 * i + law->column[at]] * twist[law->column[at] * k + c];
+        for (int c = 0; c < k; c++) force[i * k + c] = sign * sum[c] - mean[c] * heavy[c];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < k; c++) world[i * k + c] = r[3 * i] * force[c] + r[3 * i + 1] * force[k + c] + r[3 * i + 2] * force[2 * k + c];
+}
+
+/* Adds a link's or part's share of every slot that is about it, of masses for lambda = -1: of each mode with itself, or of some `pair`s of a cluster
+ * beyond these. */
 static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *mean, int pairs, const Pair *pair, const int k)
 {
-    lanes twist[12 * MODES], heavy[12 * MODES], force[12 * MODES], seen[6 * MODES], strain[6 * MODES], world[6 * MODES];
-    link_motion(t, w, l, mean, twist, force, seen, k);
+    lanes twist[12 * MODES], force[12 * MODES], seen[6 * MODES], strain[6 * MODES], world[6 * MODES];
+    int known[2] = {0, 0};
+    if (t->reach[l] == t->reach[l + 1]) return;
+    link_motion(t, w, l, twist, seen, k);
     for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
-    const lanes *r = w->number + t->start[2] + 9 * l;
-    for (int side = 0; side < 2; side++)
-        for (int i = 0; i < 3; i++)
-            for (int c = 0; c < k; c++) {
-                const lanes *f = force + 6 * side * k;
-                world[(3 * side + i) * k + c] = r[3 * i] * f[c] + r[3 * i + 1] * f[k + c] + r[3 * i + 2] * f[2 * k + c];
-            }
-    for (int i = 0; i < 12; i++)
-        for (int c = 0; c < k; c++) heavy[i * k + c] = mean[c] * twist[i * k + c];
     for (int64_t of = t->reach[l]; of < t->reach[l + 1]; of++) {
         const int64_t s = t->about[of];
         const int kind = (int)t->slot[4 * s], row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
@@ -912,11 +908,12 @@ static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *me
         lanes *sum = w->sum + s * pairs;
 #define EACH(what) for (int p = pair ? k : 0; p < (pair ? pairs : k); p++) { const Pair at = pair ? pair[p] : (Pair){p, p}; what; }
         if (kind == STIFFNESS) EACH(sum[p] += between(strain, strain, k, row, column, at))
-        else if (kind == MASS) EACH(sum[p] -= between(heavy, twist, k, row, column, at))
+        else if (kind == MASS) EACH(sum[p] += between(twist, twist, k, row, column, at))
         else
             for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
                 const int64_t body = t->link[4 * l + 1 + side];
                 if (body < 0) continue;
+                if (!known[side]) end_force(t, w, l, side, mean, twist, strain, force + 6 * side * k, world + 3 * side * k, k), known[side] = 1;
                 const lanes *o = w->shapes + 6 * k * body + 3 * k, *u = seen + (3 * side + row) * k, *g = world + 3 * side * k;
                 const lanes *f = force + (6 * side + column) * k;
                 if (kind == TURN) EACH(sum[p] += both(f, u, at) + both(f + 3 * k, o + row * k, at))
@@ -979,12 +976,14 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
         else link_slots(t, w, t->alike[l], mean, pairs, 0, k);
         if (pairs > k) link_slots(t, w, t->alike[l], mean, pairs, pair, k);
     }
-    for (int64_t s = 0; s < t->slots; s++)
-        if (t->slot[4 * s] == INERTIA) {
-            const lanes *x = w->shapes + 6 * k * t->slot[4 * s + 1];
-            for (int p = 0; p < pairs; p++)
-                w->sum[s * pairs + p] = -mean[pair[p].i] * between(x, x, k, (int)t->slot[4 * s + 2], (int)t->slot[4 * s + 3], pair[p]);
-        }
+    for (int64_t s = 0; s < t->slots; s++) {
+        const lanes *x = w->shapes + 6 * k * t->slot[4 * s + 1];
+        lanes *sum = w->sum + s * pairs;
+        if (t->slot[4 * s] == INERTIA)
+            for (int p = 0; p < pairs; p++) sum[p] = between(x, x, k, (int)t->slot[4 * s + 2], (int)t->slot[4 * s + 3], pair[p]);
+        if (t->slot[4 * s] == INERTIA || t->slot[4 * s] == MASS)
+            for (int p = 0; p < pairs; p++) sum[p] *= -mean[pair[p].i];
+    }
     if (pairs == 6) contract(t, w, 6);
     else contract(t, w, pairs);
     for (int64_t variable = 0; variable < t->variables; variable++) {
