@@ -2,7 +2,8 @@
 
 Both start from the description and pay for its expansion and the laws of its parts (shown apart as "in both"); they run in turn, many
 times, in one process on one thread. Ours also makes what a `LinearModel` holds beyond K and M (inputs, outputs, stress resultants), and
-the mode shapes; Exudyn computes shapes too, its assembly is C++. Target: frequencies equal to 1e-8.
+the mode shapes; Exudyn computes shapes too, its assembly is C++. Cases whose links have modes of
+their own are left out: in Exudyn they have none. Target: frequencies equal to 1e-8.
 """
 
 from __future__ import annotations
@@ -71,6 +72,11 @@ def shared(stage: Mechanism) -> object:
     return of_parts(law, assembly), of_parts(mass, assembly)
 
 
+def has_bodies_alone(stage: Mechanism) -> bool:
+    """Whether the coordinates are those of bodies: no link has modes of its own."""
+    return all(found.inner is None for found in of_parts(law, expand(stage)).values())
+
+
 def times(actions: list[Callable[[], object]]) -> list[Times]:
     """Times of several actions, run in turn so that a busy machine slows all alike; two rounds are not counted."""
     runs: list[list[float]] = [[] for _ in actions]
@@ -102,7 +108,8 @@ def main() -> None:
         print(versions())
         print(f"{'':18} {'':5} {'largest':>10} {'flexstage ms':>15} {'Exudyn ms':>15} {'ratio':>15} {'in both ms':>15}")
         print(f"{'case':18} {'modes':>5} {'difference':>10}{4 * HEAD}")
-        worst = max(compare(name, case.build()) for name, case in CASES.items())
+        stages = {name: case.build() for name, case in CASES.items()}
+        worst = max(compare(name, stage) for name, stage in stages.items() if has_bodies_alone(stage))
     print(f"target: frequencies equal to {TARGET:.0e}: {'met' if worst < TARGET else 'MISSED'}")
 
 

@@ -1,9 +1,9 @@
 """Our reader of universal files beside pyuff: files of instruments, round trips, awkward files, altered ones, a long one.
 
-    python benchmarks/universal_files.py FOLDER [--count 1000] [--samples 2000000]
+    python benchmarks/universal_files.py [FOLDER] [--count 1000] [--samples 2000000]
 
-FOLDER holds universal files (`*.uff`, `*.unv`) of other programs. It prints the tables of decision 0037. Both readers give the ordinates of
-every function; "refused" is an exception, with its words where they say what is wrong.
+FOLDER holds universal files (`*.uff`, `*.unv`) of other programs; without one their table is left out. It prints the tables of decision
+0037. Both readers give the ordinates of every function; "refused" is an exception, with its words where they say what is wrong.
 """
 
 from __future__ import annotations
@@ -229,7 +229,7 @@ def mean(who: str, path: Path) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Universal files: our reader beside pyuff.")
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--count", type=int, default=1000, help="altered files")
     parser.add_argument("--samples", type=int, default=2_000_000, help="of the long record, a channel")
     parser.add_argument("--mean", default="", help=argparse.SUPPRESS)
@@ -240,7 +240,8 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory() as place:
         heads = ("file", "ours", "pyuff", "unit, ours", "unit, pyuff")
-        table("Files of instruments", heads, instruments(options.folder))
+        if options.folder is not None:
+            table("Files of instruments", heads, instruments(options.folder))
         table("Round trips", ("what", "written by", "read by ours", "read by pyuff"), round_trips(Path(place)))
         table("Awkward and damaged files", ("what", "ours", "pyuff"), awkward_files(Path(place)))
         table(f"{options.count} altered files", ("outcome", "files"), altered(Path(place), options.count))
