@@ -116,7 +116,11 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
         ("young = {", "design = {", 'variables.design: the results have a column "design" already, of the number of a design'),
         ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or has control characters"),
         ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or has control characters"),
-        ("flexstage study 1", "flexstage 1", "The first line of such a file is"),
+        (
+            "flexstage study 1",
+            "flexstage 1",
+            'error: 1 finding study.toml: line 2: format: found "flexstage 1", a design file, where',
+        ),
     ],
 )
 def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from flexstage.base.digest import KEY
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError
 from flexstage.base.quantity import RATIO, Bound, Quantity
 from flexstage.mechanism.grammar import OpenNode
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.node import AmountNode, ChoiceNode, NumberNode, TextsNode
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
 from flexstage.studies.sweeps.plan import Sampling
 
@@ -137,7 +138,7 @@ def study_file(text: str, where: str) -> StudyFile:
     try:
         return record_from(StudyFile, raw, FORMAT, tagged=False)
     except DesignError as error:
-        raise DesignError(in_file(error.findings, where)) from None
+        raise DesignError(with_lines(error.findings, text, where)) from None
 
 
 def study_schema() -> dict[str, Any]:
@@ -166,12 +167,3 @@ def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
     0.0015
     """
     return NumberNode(quantity).si(raw, where)
-
-
-def in_file(findings: Iterable[Finding], where: str) -> Iterator[Finding]:
-    """Findings with the file they are about.
-
-    >>> [str(each) for each in in_file([Finding("limits", "none", "Add one")], "study.toml")]
-    ['study.toml: limits: none. Add one.']
-    """
-    return (Finding(f"{where}: {each.where}", each.what, each.advice) for each in findings)

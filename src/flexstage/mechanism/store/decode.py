@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,7 +25,6 @@ from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
 from flexstage.mechanism.store.include import entry_of, with_included
 from flexstage.mechanism.store.lines import with_lines
 
-_FORMS = {FORMAT: "a design file"}
 _Record = TypeVar("_Record")
 
 
@@ -76,9 +76,18 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
 
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
-    if found != form:
-        what = f"found {kind(found)}" if found is not None else "the file does not say its format"
-        reader.refuse("format", what, f'The first line of {_FORMS.get(form, "such a file")} is format = "{form}"')
+    if found is None:
+        reader.refuse("format", "the file does not say its format", f'The first line of a {_kind_of(form)} is format = "{form}"')
+    elif found != form:
+        other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
+        told = f", a {_kind_of(found)}, where a {_kind_of(form)} is expected" if other else ""
+        reader.refuse("format", f"found {kind(found)}{told}", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        require(reader.findings)  # what else another kind of file holds says nothing
+
+
+def _kind_of(form: str) -> str:
+    """What a file of a format is called: "flexstage study 1" is a study file, "flexstage 1" a design file."""
+    return f"{' '.join(form.split()[1:-1]) or 'design'} file"
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/stage.toml: there is no such file. Check the path, or write one with "flexstage new".
+    flexstage.base.finding.DesignError: nowhere/stage.toml: there is no such file. Check the path; "flexstage new" writes a design file.
     """
     where = os.fspath(path)
     try:
@@ -89,7 +89,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
     if isinstance(error, FileNotFoundError):
-        return refuse(where, "there is no such file", 'Check the path, or write one with "flexstage new"')
+        return refuse(where, "there is no such file", 'Check the path; "flexstage new" writes a design file')
     if isinstance(error, IsADirectoryError):
         return refuse(where, "this is a directory", "Name the design file in it")
     return refuse(where, f"it cannot be read: {_reason(error)}", "Check the path and its permissions")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from flexstage.analysis.complete import felt, read
@@ -46,7 +47,18 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
             numbers = " or ".join(f"numbers.{name}" for name in sorted(parse_expression(text).names))
             advice = f"; to move all that depends on it, set {numbers}" if numbers else ""
             print_note(f'note: {address} is set by itself, its formula "{text}" is not kept{advice}')
-    return require_valid(result) if changes else mechanism
+    return _valid(result, changes) if changes else mechanism
+
+
+def _valid(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
+    """The description checked, where what is wrong with a number that was assigned names the assignment."""
+    assigned = {text.partition("=")[0].strip(): text for text in changes}
+    places = {place: text for address, text in assigned.items() for place in (address, f'change."{address}"')}
+    try:
+        return require_valid(mechanism)
+    except DesignError as error:
+        named = (replace(each, where=f"--set {places[each.where]}") if each.where in places else each for each in error.findings)
+        raise DesignError(named) from None
 
 
 def _where(text: str, inner: str) -> str:

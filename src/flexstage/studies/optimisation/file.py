@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from flexstage.base.finding import Finding, require, suggest_nearest
-from flexstage.studies.form import OptimiseTable, in_file, study_file
+from flexstage.mechanism.store.lines import with_lines
+from flexstage.studies.form import OptimiseTable, study_file
 from flexstage.studies.optimisation.wanted import Aim, Objective, Wanted
 from flexstage.studies.sweeps.definition import Study
 
@@ -20,7 +21,7 @@ def load_wanted(study: Study, where: str = "text") -> Wanted:
     table = study_file(study.text, where).optimise
     findings: list[Finding] = []
     wanted = Wanted(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.require)
-    require(in_file(findings, where))
+    require(with_lines(findings, study.text, where))
     return wanted
 
 

@@ -17,7 +17,8 @@ from flexstage.cases.registry import Variant
 from flexstage.mechanism.address import quantity_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.file import read_text
-from flexstage.studies.form import StudyFile, SweepTable, VariedTable, in_file, is_share, parse_amount, study_file
+from flexstage.mechanism.store.lines import with_lines
+from flexstage.studies.form import StudyFile, SweepTable, VariedTable, is_share, parse_amount, study_file
 from flexstage.studies.sweeps.definition import Study, name_findings
 from flexstage.studies.sweeps.plan import Plan, Sampling
 from flexstage.studies.sweeps.start import one_quantity, read_parameters, start
@@ -35,7 +36,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path, or write one with "flexstage new".
+    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
     """
     return loads_study(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -60,7 +61,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     if not file.responses:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
     study = Study(file.name, design, variables, Table(head.responses), head.limits, plan, text)
-    require(in_file([*findings, *variable_findings(design, variables), *name_findings(study)], where))
+    require(with_lines([*findings, *variable_findings(design, variables), *name_findings(study)], text, where))
     return study
 
 
@@ -90,7 +91,7 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
     try:
         design, variant = start(file, folder or Path())
     except DesignError as error:
-        raise DesignError(in_file(error.findings, where)) from None
+        raise DesignError(with_lines(error.findings, text, where)) from None
     findings: list[Finding] = []
     return Opening(file, design, _responses(file, design, findings), _limits(file, design, findings), findings, variant)
 

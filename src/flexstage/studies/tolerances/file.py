@@ -15,8 +15,9 @@ from flexstage.base.unit import show
 from flexstage.mechanism.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.file import read_text
+from flexstage.mechanism.store.lines import with_lines
 from flexstage.models.ideal import ideal
-from flexstage.studies.form import ScatterTable, ToleranceTable, in_file, is_share, parse_amount
+from flexstage.studies.form import ScatterTable, ToleranceTable, is_share, parse_amount
 from flexstage.studies.sweeps.definition import name_findings
 from flexstage.studies.sweeps.file import Opening, read_opening
 from flexstage.studies.sweeps.start import one_quantity
@@ -40,7 +41,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path, or write one with "flexstage new".
+    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -70,10 +71,10 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     limits = (*(_lines(design, findings) if file.tolerance.require else ()), *head.limits)
     if not head.responses and not limits and asked is None:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
-    require(in_file(findings, where))
+    require(with_lines(findings, text, where))
     study = _study(head, scatters, limits, bench.shared, text=text, command=asked)
     named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
-    require(in_file([*bound_findings(design, study.targets, study.deviations), *named], where))
+    require(with_lines([*bound_findings(design, study.targets, study.deviations), *named], text, where))
     return study
 
 
