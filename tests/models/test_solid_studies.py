@@ -17,7 +17,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
-from flexstage.solid.fea.cache import Cache, holds
+from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.component import components
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hinge_cache import HingeJob
@@ -27,7 +27,7 @@ from flexstage.solid.fea.remote import Pool
 from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.superelement import Skin, Superelement
 from flexstage.solid.fea.worker import Job
-from flexstage.solid.plan import Phase, Plan, verification_plan, work_ahead
+from flexstage.solid.plan import Phase, Plan, reduction_plan, verification_plan, work_ahead
 from flexstage.solid.read import read_solid, remember, solids
 from flexstage.solid.resolution import Converged, Resolution, converge
 from flexstage.solid.stage import solid_stage
@@ -216,17 +216,6 @@ def test_what_is_at_hand_is_put_together_from_two_orders() -> None:
     assert len(asked) == 3
 
 
-def test_orders_together_are_worked_where_the_first_is_asked_for(tmp_path: Path) -> None:
-    cache, stage = Cache(tmp_path), propped(6e-3, 7e-3)
-    low, high = (replace(COARSE, fineness=replace(COARSE.fineness, order=order), modes=0) for order in (1, 2))
-    keys = [job.key for job in reduce_jobs(components(stage), high)]
-    read = solids(Ways(cache), together=(low, high))
-    read(stage, replace(low, modes=1))
-    assert not any(holds(cache, key) for key in keys)
-    read(stage, low)
-    assert all(holds(cache, key) for key in keys)
-
-
 def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Outlines of the stage and its units together, then hinges and both orders together, the longest first."""
     checked: list[int] = []
@@ -252,6 +241,16 @@ def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pyte
     assert {job.reduction.fineness.order for job in reductions} == {2, 3}
     assert {job.name for job in jobs if isinstance(job, HingeJob)} == {"leaf", "neck-back"}
     assert [job.seconds() for job in jobs] == sorted((job.seconds() for job in jobs), reverse=True)
+
+
+def test_a_solid_is_worked_in_one_queue_too(tmp_path: Path) -> None:
+    """Both orders of every component; `bare` ones are others, without modes, but give the same figures at rest."""
+    stage, ways = propped(6e-3, 7e-3), Ways(Cache(tmp_path))
+    whole, bare = (reduction_plan([stage], Resolution(order=2), ways, bare=bare) for bare in (False, True))
+    assert [phase.name for phase in whole.phases] == [phase.name for phase in bare.phases] == ["order 1", "order 2"]
+    assert {job.reduction.modes for phase in bare.phases for job in phase.todo if isinstance(job, Reduce)} == {0}
+    assert whole.needed == set(whole.together)
+    assert not whole.needed & bare.needed
 
 
 def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) -> None:

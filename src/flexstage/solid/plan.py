@@ -1,9 +1,9 @@
-"""What a verification costs before it begins: its jobs that are not in the cache, in phases, with unknowns, seconds and memory."""
+"""What solids of a stage cost before they begin: their jobs that are not in the cache, in phases, with unknowns, seconds and memory."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 from flexstage.analysis.units import driven_units
@@ -90,7 +90,7 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
     of usual meshes of such parts, right within a factor of two or three; time left is told by what the first jobs took. Raises
     `DesignError` where the stage cannot be read as a solid, or has no hinge.
     """
-    shape, alone = with_drawn_parts(mechanism), _units_alone(mechanism)
+    shape, alone = with_drawn_parts(mechanism), units_alone(mechanism)
     check_together([shape, *alone], ways.cache, ways.pool)
     parts = [sound_components(shape, ways.cache)]
     try:
@@ -107,11 +107,29 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
     each = [jobs(stage, components) for stage, components in zip((shape, *alone), parts, strict=True)]
     names = "hinges", f"order {lower.fineness.order}", f"order {upper.fineness.order}"
-    whole = [_distinct(chain.from_iterable(same)) for same in zip(*each, strict=True)]
-    phases = tuple(_phase(name, of_all, ways) for name, of_all in zip(names, whole, strict=True))
     more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
-    known = sum(map(len, whole)) - sum(len(phase.todo) for phase in phases)
-    return Plan(phases, workers(ways.limits), known, more, frozenset(job.key for job in chain.from_iterable(each[0])))
+    phases = {name: chain.from_iterable(same) for name, same in zip(names, zip(*each, strict=True), strict=True)}
+    return _plan(phases, ways, more, frozenset(job.key for job in chain.from_iterable(each[0])))
+
+
+def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
+    """What `solid` has to do in any case for stages as they are drawn: their components at two orders, `bare` of modes.
+
+    Outlines are checked. Raises `DesignError` where a stage cannot be read as a solid.
+    """
+    check_together(stages, ways.cache, ways.pool)
+    parts = [part for stage in stages for part in sound_components(stage, ways.cache)]
+    reductions = [replace(way, modes=0) if bare else way for way in first_reductions(asked)]
+    phases = {f"order {way.fineness.order}": reduce_jobs(parts, way) for way in reductions}
+    return _plan(phases, ways, "", frozenset(job.key for jobs in phases.values() for job in jobs))
+
+
+def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, needed: frozenset[str]) -> Plan:
+    """A plan of the jobs of phases by name, each of them once."""
+    whole = {name: _distinct(jobs) for name, jobs in phases.items()}
+    todo = tuple(_phase(name, jobs, ways) for name, jobs in whole.items())
+    known = sum(map(len, whole.values())) - sum(len(phase.todo) for phase in todo)
+    return Plan(todo, workers(ways.limits), known, further, needed)
 
 
 def work_ahead(plan: Plan, ways: Ways, notice: Notice | None = None) -> None:
@@ -131,8 +149,12 @@ def work_ahead(plan: Plan, ways: Ways, notice: Notice | None = None) -> None:
             (notice or _ignore)(each)
 
 
-def _units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Every distinct unit alone; none where strokes leave motions of the platform open, which is told when its turn comes."""
+def units_alone(mechanism: Mechanism) -> list[Mechanism]:
+    """Every distinct unit alone as it is drawn; none where strokes leave motions of the platform open, which is told when its turn comes.
+
+    >>> units_alone(Mechanism("nothing"))
+    []
+    """
     try:
         return [with_drawn_parts(isolate(mechanism, copy)) for copy, _ in driven_units(mechanism).values()]
     except DesignError:

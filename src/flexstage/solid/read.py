@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -54,18 +54,15 @@ class SolidRead:
         return list({id(item.element): item for item in self.placed}.values())
 
 
-def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None, together: Sequence[Reduction] = ()) -> Solids:
+def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
     """Checks outlines and reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about it.
-
-    Where the first of several reductions `together` is asked for, the others are worked beside it, so that no core waits between them.
 
     >>> solids()(Mechanism("nothing"), Reduction())
     ()
     """
 
     def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        ahead = together[1:] if reduction in together[:1] else ()
-        found = reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways, ahead=ahead)
+        found = reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways)
         for finding in found.notices:
             (notice or _ignore)(finding)
         return found.parts

@@ -27,6 +27,7 @@ from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
 from flexstage.solid.calibration import substitute_parts
 from flexstage.solid.fea.estimate import Accuracy
+from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.remote import Pool
 from flexstage.solid.fea.ties import stated_links
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, hinges, solid_hinges
@@ -192,8 +193,13 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
     )
 
 
-def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[dict[str, SolidUnit]]:
-    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`."""
+def units_solid(
+    mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
+) -> Converged[dict[str, SolidUnit]]:
+    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
+
+    Its components have modes, as the stage's they may be shared with, unless they are `bare`: nothing moves, so figures are the same.
+    """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
         return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
@@ -202,7 +208,11 @@ def units_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
         return {part: size for unit in found.values() for part, size in unit.read.sizes.items()}
 
     again = remember(reduce)
-    return converge(lambda way: solid_units(mechanism, replace(way, static=True), again), figures, asked, sizes)
+
+    def work(way: Reduction) -> dict[str, SolidUnit]:
+        return solid_units(mechanism, replace(way, modes=0 if bare else way.modes, static=True), again)
+
+    return converge(work, figures, asked, sizes)
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:

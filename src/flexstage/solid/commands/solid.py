@@ -20,6 +20,7 @@ from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.record import SideBySide
 from flexstage.base.unit import parse
 from flexstage.beams.leaf import leaf_diagonal
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
@@ -43,9 +44,9 @@ from flexstage.solid.fea.install import require_installed
 from flexstage.solid.fea.parts import Parts, Ways
 from flexstage.solid.fea.remote import Limits, Pool
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.solid.plan import verification_plan, work_ahead
+from flexstage.solid.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
 from flexstage.solid.read import Solids, solids
-from flexstage.solid.resolution import Converged, Resolution, first_reductions
+from flexstage.solid.resolution import Converged, Resolution
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -235,9 +236,13 @@ def _verify(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> verifi
     reduce, compute = _solids(asked, shown), _hinges(asked, shown)
     todo = verification_plan(mechanism, asked.resolution, asked.ways(shown))
     print_note(str(todo))
+    _work_ahead(todo, asked, shown)
+    return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
+
+
+def _work_ahead(todo: Plan, asked: _Request, shown: ProgressBar) -> None:
     shown.follow([todo.together], todo.lanes)
     work_ahead(todo, asked.ways(shown), _notice)
-    return verification.verify(mechanism, asked.resolution, reduce, compute, _tell_verdicts if todo.jobs else None)
 
 
 def _tell_verdicts(rows: tuple[verification.Row, ...]) -> None:
@@ -292,15 +297,13 @@ def _size(memory: str | None) -> float | None:
     return size
 
 
-def _solids(asked: _Request, shown: ProgressBar, *, static: bool = False) -> Solids:
-    """Reduces with its progress shown, the two orders that are worked in any case in one go; `static`: without modes of components."""
+def _solids(asked: _Request, shown: ProgressBar) -> Solids:
+    """Reduces with its progress shown."""
     require_installed()
-    lower, upper = together = [replace(way, static=static) for way in first_reductions(asked.resolution)]
-    reduce = solids(asked.ways(shown), _notice, together)
+    reduce = solids(asked.ways(shown), _notice)
 
     def reduce_with_progress(mechanism: Mechanism, reduction: Reduction) -> Parts:
-        order = reduction.fineness.order
-        shown.about = f"orders {order} and {upper.fineness.order}, " if reduction == lower else f"order {order}, "
+        shown.about = f"order {reduction.fineness.order}, "
         return reduce(mechanism, reduction)
 
     return reduce_with_progress
@@ -329,7 +332,11 @@ def _hinge_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
 
 
 def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    found = verification.units_solid(mechanism, asked.resolution, _solids(asked, shown, static=True))
+    reduce, alone, ways = _solids(asked, shown), units_alone(mechanism), asked.ways(shown)
+    todo = reduction_plan(alone, asked.resolution, ways)
+    bare = todo.jobs > 0
+    _work_ahead(reduction_plan(alone, asked.resolution, ways, bare=True) if bare else todo, asked, shown)
+    found = verification.units_solid(mechanism, asked.resolution, reduce, bare=bare)
 
     def tables() -> Iterator[Table | None]:
         yield solid_unit_table(found)
@@ -347,7 +354,9 @@ def _unit_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _R
 
 
 def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _Result:
-    found = verification.stage_solid(mechanism, asked.resolution, _solids(asked, shown))
+    reduce = _solids(asked, shown)
+    _work_ahead(reduction_plan([with_drawn_parts(mechanism)], asked.resolution, asked.ways(shown)), asked, shown)
+    found = verification.stage_solid(mechanism, asked.resolution, reduce)
     stage = found.result
 
     def tables() -> Iterator[Table | None]:

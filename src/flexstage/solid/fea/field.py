@@ -48,10 +48,9 @@ class Field:
     @cached_property
     def linear(self) -> tuple[Array, Array]:
         """Coefficients (n / 3,) of the function 1 and (n / 3, 3) of the coordinates [m], in one component of the space."""
-        one, place = _interpolated(
-            self, [ngsolve.CoefficientFunction((1.0, 1.0, 1.0)), ngsolve.CoefficientFunction(_coordinates())], None
-        ).T
-        return one.reshape(3, -1)[0], place.reshape(3, -1).T / MILLIMETRES
+        place = _interpolated(self, [ngsolve.CoefficientFunction(_coordinates())], None)
+        at_vertices = np.arange(self.size // 3) < self.meshed.mesh.nv  # functions of higher order vanish there
+        return at_vertices.astype(float), place.reshape(3, -1).T / MILLIMETRES
 
     @cached_property
     def fronts(self) -> Fronts:

@@ -53,21 +53,17 @@ def reduce_parts(
     reduction: Reduction,
     ways: Ways = Ways(),
     springs: Mapping[str, Array] = _NO_SPRINGS,
-    *,
-    ahead: Sequence[Reduction] = (),
 ) -> ReducedParts:
     """Reduce components; `springs` between the interfaces of some, by name.
 
-    The solver is needed only for those that are not in the cache. Each is kept as soon as it is done: what is interrupted resumes. What is
-    reduced `ahead`, without springs, fills the time beside it and is found in the cache afterwards. Raises `DesignError` with all that
-    could not be reduced.
+    The solver is needed only for those that are not in the cache. Each is kept as soon as it is done: what is interrupted resumes. Raises
+    `DesignError` with all that could not be reduced.
 
     >>> reduce_parts((), Reduction()).parts
     ()
     """
     jobs = reduce_jobs(parts, reduction, springs)
-    later = [] if ways.cache is None else [job for way in ahead for job in reduce_jobs(parts, way)]
-    elements, notices = obtain([*jobs, *later], ways)
+    elements, notices = obtain(jobs, ways)
     return ReducedParts(as_joined(parts, [(job.component, elements[job.key]) for job in jobs]), notices)
 
 
