@@ -4,7 +4,8 @@ The problem is the study of docs/optimise.md: the lowest platform frequency as h
 lost motion and a safety factor of two. Ours: evaluations come with all derivatives. The others minimise the same objective with the same
 limits from the same evaluation, without derivatives and without batches: as constraints where a method takes them (differential
 evolution, COBYQA, pymoo), as an exact penalty where it takes none (Nelder-Mead). Each stops by its own tolerance, at MOST evaluations at
-the latest. Targets: 20 % more than as it stands, under 10 s, three starts that agree, gradients within 1e-6 of differences.
+the latest. Seconds are those of the processor. Targets: 20 % more than as it stands, under 10 s, three starts that
+agree, gradients within 1e-6 of differences.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from flexstage.studies.optimisation.values import Point
 from flexstage.studies.sweeps.file import loads_study
 from tests.docs.pages import blocks
 
+GRADIENT, GAIN, SECONDS = 1e-6, 1.2, 10.0
 MOST = int(sys.argv[1]) if len(sys.argv) > 1 else 600
 PENALTY = 10.0
 DIFFERENCE = 1e-4
@@ -88,18 +90,21 @@ def main() -> None:
     study = loads_study(next(block.text for block in blocks("docs/optimise.md") if block.word("file") == "study.toml"))
     wanted = load_wanted(study)
     set_up = setting(study, wanted)
-    print(f"gradients against differences: {gradient_error(set_up):.1e} (relative, all measures and variables)")
-    begun = time.perf_counter()
+    apart = gradient_error(set_up)
+    print(f"gradients against differences: {apart:.1e} (relative, all measures and variables)")
+    begun = time.process_time()
     found = optimise(study, wanted)
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     before, after = found.value(found.before), found.value(found.point) if found.point is not None else np.nan
     print(f"as it stands {before:.2f} Hz, optimum {after:.3f} Hz ({100.0 * (after / before - 1.0):+.1f} %),", end=" ")
     print(f"rounded {100.0 * found.improvement:+.1f} %; {found.agreeing} of {len(found.starts)} starts agree")
+    met = apart < GRADIENT and after > GAIN * before and seconds < SECONDS and found.agreeing == len(found.starts)
+    print(f"targets: {'met' if met else 'MISSED'}")
     print(f"\n{'method':46}{'evaluations':>12}{'time [s]':>10}{'feasible best [Hz]':>20}")
     tell("flexstage, three starts, with derivatives", sum(each.evaluated for each in found.starts), seconds, after)
     for title, run in RIVALS.items():
         counted = Counted(set_up)
-        begun, said = time.perf_counter(), title
+        begun, said = time.process_time(), title
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -109,7 +114,7 @@ def main() -> None:
         except ImportError:
             print(f"{title:46} not installed: make setup-oracles")
             continue
-        tell(said, counted.count, time.perf_counter() - begun, counted.best)
+        tell(said, counted.count, time.process_time() - begun, counted.best)
 
 
 def tell(title: str, count: int, seconds: float, value: float) -> None:
