@@ -174,6 +174,14 @@ def pushed(turn: Numbers) -> Mechanism:
     )
 
 
+def carried(mass: Numbers) -> Mechanism:
+    """A platform on a body of some mass, or none."""
+    carrier = Body(mass=mass, centre=(0.05, 0.0, 0.0), inertia=Inertia(1e-3 * mass, 2e-3 * mass, 2e-3 * mass))
+    links = {"first": Link(("ground", "carrier"), "spring", (0.0, 0.0, 0.0), X, Z)}
+    links["second"] = Link(("carrier", "platform"), "spring", (0.1, 0.0, 0.0), X, Z)
+    return Mechanism("carried", parts={"spring": spring(1e6)}, bodies={"platform": PLATE, "carrier": carrier}, links=links)
+
+
 def own_values(stage: Mechanism) -> np.ndarray:
     return eigenvalues(fs.lumped(stage))
 
@@ -192,6 +200,8 @@ UNLIKE = {
     "rods turned across": (own_values, lambda turn: on_rods(0.02, turn), (0.0, 0.5 * np.pi - 1e-7)),
     "a spin, then held": (own_values, lambda beside: spinning(beside, 0.0, 0.0), (0.0, 0.02)),
     "a spin without inertia, then with": (own_values, lambda centre: spinning(0.0, centre, 0.0), (0.0, 0.02)),
+    "a body without mass, then with": (own_values, carried, (0.0, 1.0)),
+    "modes of a body without mass, then with": (lambda stage: fs.modes(fs.lumped(stage)).frequencies, carried, (0.0, 1.0)),
     "a gauge on a line of spin, then beside it": (first_reading, lambda gauge: spinning(0.02, 0.0, gauge), (0.0, 0.01)),
     "a gauge that sees a spin which is held, then not": (first_reading, lambda beside: spinning(beside, 0.0, 0.01), (0.02, 0.0)),
 }
@@ -209,6 +219,8 @@ def test_designs_that_other_choices_serve_are_refused(
 
 LIKE = {
     "rods": (own_values, lambda turn: on_rods(0.02, turn), (0.0, 0.7, 1.2)),
+    "a body without mass": (own_values, lambda beside: carried(0.0 * beside), (0.0, 1.0)),
+    "a body with mass": (own_values, carried, (1.0, 2.0, 3.0)),
     "rods of one line": (own_values, lambda turn: on_rods(0.0, turn), (0.0, 0.7, 1.2)),
     "a spin": (own_values, lambda centre: spinning(0.0, centre, 0.0), (0.01, 0.02, 0.03)),
     "a spin that is held": (own_values, lambda beside: spinning(beside, 0.0, 0.0), (0.01, 0.02, 0.03)),

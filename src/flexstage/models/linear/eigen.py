@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
+from flexstage.models.linear.elimination import unlike
 from flexstage.models.linear.large import lowest
 from flexstage.models.linear.model import LinearModel
 
@@ -36,8 +37,8 @@ def eigen(model: LinearModel) -> Eigen:
     """Eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon); modes without inertia are left out.
 
     Solved as K^-1 M with K = L L^T, so M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is positive. A
-    design whose K is not positive definite gives NaN. The number of modes is that of the first design. Raises `DesignError` for a large
-    stage, of which `lowest_modes` gives some.
+    design whose K is not positive definite gives NaN. Raises `DesignError` for designs of a batch that have other numbers of modes, and for
+    a large stage, of which `lowest_modes` gives some.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -68,8 +69,7 @@ def eigenvalues(model: LinearModel) -> Array:
     [110.91, 110.91, 135.15]
     """
     lower, scaled = _scaled(model.stiffness_matrix, model.inertia_matrix)
-    inverse_values = np.linalg.eigvalsh(scaled)[..., ::-1]
-    inverse_values = inverse_values[..., : _massive(inverse_values)]
+    inverse_values = _massive(np.linalg.eigvalsh(scaled)[..., ::-1], lower)
     return np.where(np.isnan(lower[..., 0, 0])[..., None], np.nan, 1.0 / inverse_values)
 
 
@@ -97,9 +97,8 @@ def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
     """
     lower, scaled = _scaled(stiffness, inertia)
     inverse_values, vectors = np.linalg.eigh(scaled)
-    inverse_values, vectors = inverse_values[..., ::-1], vectors[..., ::-1]
-    count = _massive(inverse_values)
-    inverse_values, vectors = inverse_values[..., :count], vectors[..., :count]
+    inverse_values = _massive(inverse_values[..., ::-1], lower)
+    vectors = vectors[..., ::-1][..., : inverse_values.shape[-1]]
     shapes = np.linalg.solve(np.swapaxes(lower, -1, -2), vectors) / np.sqrt(inverse_values)[..., None, :]
     failed = np.isnan(lower[..., 0, 0])
     values = np.where(failed[..., None], np.nan, 1.0 / inverse_values)
@@ -125,10 +124,15 @@ def _forward(lower: Array, right: Array) -> Array:
     return np.stack([scipy.linalg.solve_triangular(*pair, lower=True, check_finite=False) for pair in pairs]).reshape(right.shape)
 
 
-def _massive(inverse_values: Array) -> int:
-    """How many modes of the first design have inertia."""
-    first = inverse_values.reshape(-1, inverse_values.shape[-1])[0]
-    return int(np.sum(first > _MASSLESS * np.max(first, initial=0.0)))
+def _massive(inverse_values: Array, lower: Array) -> Array:
+    """Those (..., k), descending, of modes with inertia: as many in every design that has a factor `lower`."""
+    counts = np.sum(inverse_values > _MASSLESS * np.max(inverse_values, axis=-1, keepdims=True, initial=0.0), axis=-1)
+    sound = np.ravel(~np.isnan(lower[..., 0, 0]))
+    first = int(np.ravel(counts)[np.argmax(sound)])
+    others = np.flatnonzero((np.ravel(counts) != first) & sound)
+    if len(others):
+        raise unlike(int(others[0]), "has another number of modes than the first")
+    return inverse_values[..., :first]
 
 
 def cholesky(matrix: Array) -> Array:
