@@ -254,3 +254,14 @@ def test_finite_motion_weighs_rotations_by_each_design_s_own_length() -> None:
     for number, one in enumerate(alone):
         assert not np.all(one.consistent)
         np.testing.assert_allclose(whole.pose.vector[number], one.pose.vector, rtol=0.0, atol=1e-15)
+
+
+def test_a_sweep_reads_designs_alone_that_cannot_be_read_together() -> None:
+    """A spring that is moved off the line of a spin: the first design has a mode less than the others."""
+    drawn = spinning(0.0, 0.0, 0.0)
+    columns = Table({key: measure(drawn, key, f"responses.{key}") for key in ("frequency.1", "frequency.2")})
+    places = Variable("place", ("links.side.at.y",), LENGTH, 0.0, 0.02)
+    swept = piece(Study("moved", drawn, (places,), columns, (), Plan(Sampling.GRID, 1, levels=(3,))), 0, 3)
+    alone = [np.sqrt(own_values(spinning(place, 0.0, 0.0))[:2]) / (2.0 * np.pi) for place in swept.variables[:, 0]]
+    assert not swept.failures
+    np.testing.assert_allclose(swept.responses, alone, rtol=1e-9)
