@@ -47,8 +47,9 @@ _SIZES = (
     "single",
     "parts",
 )
+_GRAPH = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
 _PLANES = ("plane", "normal", "flat", "thin")
-_TABLES = ("link", "range", "later", "heavy", "product", "update", "inertia", "start", "slot", "reach", "about", "entry", "alike", *_PLANES)
+_TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
 _RESULTS = ("values", "share", "good", "slopes")
@@ -202,6 +203,7 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
         "heavy": np.isin(np.arange(len(graph.edges)), [item[3] for item in link]).astype(np.int64),
         "product": np.searchsorted([firsts[item[0]] for item in update], np.arange(bodies + 1)).astype(np.int64),
         "update": np.array(update, dtype=np.int64).reshape(-1, 3),
+        "mirror": topology.mirror,
         "inertia": np.array([inertia + 36 * body for body in graph.order], dtype=np.int64),
         "alike": np.argsort([part for part, *_ in link], kind="stable").astype(np.int64),
         "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),

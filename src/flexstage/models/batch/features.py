@@ -54,6 +54,11 @@ class Feature:
         return SHAPES[self.kind]
 
     @property
+    def symmetric(self) -> bool:
+        """Whether it is a symmetric matrix."""
+        return self.kind in {"stiffness", "mass", "inertia"}
+
+    @property
     def slots(self) -> slice:
         """Where its numbers stand among all."""
         return slice(self.start, self.start + int(np.prod(self.shape)))
@@ -94,6 +99,16 @@ class Topology:
     def count(self) -> int:
         """How many numbers all features hold."""
         return self.features[-1].slots.stop
+
+    @property
+    def mirror(self) -> Array:
+        """Of each number the one that is the same, as matrices are symmetric; or itself.
+
+        >>> Topology(("platform",), ((0, -1, 0),), 1, locked=False).mirror[[0, 1, 6]].tolist()
+        [0, 6, 1]
+        """
+        places = [(place, np.arange(place.slots.start, place.slots.stop).reshape(place.shape)) for place in self.features]
+        return np.concatenate([(own.T if place.symmetric else own).ravel() for place, own in places])
 
 
 def topology(assembly: Assembly) -> Topology:

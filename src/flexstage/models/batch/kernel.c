@@ -30,6 +30,7 @@ typedef struct {
     const int64_t *heavy;   /* edges: whether some link is on it */
     const int64_t *product; /* bodies + 1: where the updates of each body begin */
     const int64_t *update;  /* updates x (edge, edge, target); -1: the later body's own block */
+    const int64_t *mirror;  /* numbers: the one that is the same by symmetry, or itself */
     const int64_t *inertia; /* bodies: where the inertia of the body at that place begins among the numbers */
     const int64_t *start;   /* stiffness, mass, turn, first, second */
     const int64_t *slot;    /* slots x (kind, owner or place, row, column) */
@@ -719,8 +720,10 @@ static void polish(const Task *t, Room *w, Ritz *known)
         for (int64_t step = 0; step < t->steps; step++) {
             memcpy(x, f, sizeof(lanes) * n);
             solve(t, w, x, g, 1);
-            between = after = all(0.0);
-            for (int64_t i = 0; i < n; i++) between += x[i] * f[i], after += x[i] * g[i];
+            lanes sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+            for (int64_t i = 0; i < n; i += 2) /* n is even */
+                UNROLL for (int k = 0; k < 2; k++) sum[k] += x[i + k] * f[i + k], sum[2 + k] += x[i + k] * g[i + k];
+            between = sum[0] + sum[1], after = sum[2] + sum[3];
             if (step + 1 == t->steps) break;
             before = after;
             memcpy(f, g, sizeof(lanes) * n);
@@ -1062,11 +1065,14 @@ static void designs(const Task *t, Room *w, int64_t design)
 
 /* ---- what of the numbers is the same in every design ---- */
 
-/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go to each of AHEAD vectors here, once. */
-static int64_t vary(lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, int64_t *varying)
+/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go to each of AHEAD vectors here,
+ * once. What is below the diagonal of symmetric matrices is never read: its `mirror` stands for both. */
+static int64_t vary(
+    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror, int64_t *varying)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < rows; i++) {
+        if (mirror && mirror[i] < i) continue;
         const double *own = from + (row ? row[3 * i] : i) * stride;
         const lanes first = all(*own);
         marks other = {0};
@@ -1074,19 +1080,21 @@ static int64_t vary(lanes *to, const double *from, const int64_t *row, int64_t r
             for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(own, design + k * WIDTH, designs) != first;
         if (any(other)) varying[count++] = i;
         else
-            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = first;
+            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = to[k * rows + (mirror ? mirror[i] : i)] = first;
     }
     return count;
 }
 
 /* The varying rows of AHEAD vectors of designs, vector by vector. */
 static void gather(
-    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *varying,
-    int64_t count)
+    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *mirror,
+    const int64_t *varying, int64_t count)
 {
-    for (int64_t i = 0; i < count; i++)
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t at = varying[i], other = mirror ? mirror[at] : at;
         for (int64_t k = 0; k < AHEAD && design + k * WIDTH < designs; k++)
-            to[k * rows + varying[i]] = load_at(from + (row ? row[3 * varying[i]] : varying[i]) * stride, design + k * WIDTH, designs);
+            to[k * rows + at] = to[k * rows + other] = load_at(from + (row ? row[3 * at] : at) * stride, design + k * WIDTH, designs);
+    }
 }
 
 /* A matrix of a law (`rows` x `rows`), whose entries in all designs are zero where it is not `filled`. */
@@ -1104,7 +1112,7 @@ static void outline(const char *filled, int rows, int *zero, int *start, int *co
 static void outlines(const Task *t, Law *law, const lanes *number, const int64_t *varying, int64_t count, char *filled)
 {
     for (int64_t i = 0; i < t->numbers; i++) filled[i] = number[i][0] != 0.0;
-    for (int64_t i = 0; i < count; i++) filled[varying[i]] = 1;
+    for (int64_t i = 0; i < count; i++) filled[varying[i]] = filled[t->mirror[varying[i]]] = 1;
     for (int64_t part = 0; part < t->parts; part++, law++) {
         law->start[0] = 0;
         outline(filled + t->start[0] + 36 * part, 6, law->zero, law->start, law->column);
@@ -1137,8 +1145,8 @@ int64_t flexstage_modes(const Task *t)
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
     const int short_of = !memory || !varying || !filled || !w.law;
     if (!short_of) {
-        const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, varying);
-        const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, changing);
+        const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
+        const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
         outlines(t, w.law, w.numbers, varying, some, filled);
         w.crossing = crossing, w.crossings = 0;
         for (int64_t l = 0; l < t->links; l++)
@@ -1148,8 +1156,8 @@ int64_t flexstage_modes(const Task *t)
                 if (filled[at] && (row / 3 == column / 3) != ((row % 3 == t->normal[l]) == (column % 3 == t->normal[l]))) w.crossing[w.crossings++] = at;
             }
         for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
-            gather(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, first, t->designs, varying, some);
-            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, changing, other);
+            gather(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, first, t->designs, t->mirror, varying, some);
+            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, 0, changing, other);
             for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
                 w.number = w.numbers + k * t->numbers, w.change = w.changes + k * t->entries;
                 designs(t, &w, first + k * WIDTH);

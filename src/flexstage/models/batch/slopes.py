@@ -87,7 +87,7 @@ def _whole(change: Change, values: Array) -> Array:
     result = np.zeros((values.shape[1], int(np.prod(change.place.shape))))
     result[:, change.rows] = values.T
     result = result.reshape(-1, *change.place.shape)
-    if change.place.kind in {"stiffness", "mass", "inertia"}:
+    if change.place.symmetric:
         result += np.swapaxes(np.triu(result, 1), -1, -2)
     return result
 

@@ -7,7 +7,6 @@ takes to meet other designs within `TOLERANCE`; where that takes too many, there
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.features import Feature, empty_rows
+from flexstage.models.batch.features import empty_rows
 from flexstage.models.batch.numbers import Family, Slopes, numbers_of
 
 TOLERANCE = 1e-10
@@ -96,10 +95,10 @@ class Surface:
     @cached_property
     def _mirror_places(self) -> tuple[Array, Array]:
         """Lower halves of symmetric features, and where their upper halves stand."""
-        found = {row: mirror for place in self.family.topology.features for row, mirror in _mirror(place)}
-        known = set(np.concatenate([piece.rows for piece in self.pieces]).tolist()) if self.pieces else set[int]()
-        pairs = [(mirror, row) for row, mirror in found.items() if row in known]
-        return np.array([pair[0] for pair in pairs], dtype=int), np.array([pair[1] for pair in pairs], dtype=int)
+        mirror = self.family.topology.mirror
+        known = np.concatenate([piece.rows for piece in self.pieces]) if self.pieces else np.zeros(0, dtype=int)
+        upper = known[mirror[known] > known]
+        return mirror[upper], upper
 
     @cached_property
     def _places(self) -> dict[tuple[int, int], tuple[Array, Array]]:
@@ -119,13 +118,6 @@ class Surface:
             key: (np.array([one for one, _ in pairs], dtype=int), np.array([at for _, at in pairs], dtype=int))
             for key, pairs in found.items()
         }
-
-
-def _mirror(place: Feature) -> Iterator[tuple[int, int]]:
-    if place.kind in {"stiffness", "mass", "inertia"}:
-        size = place.shape[0]
-        for row, column in itertools.combinations(range(size), 2):
-            yield place.start + row * size + column, place.start + column * size + row
 
 
 def _chebyshev(x: Array, highest: int) -> tuple[Array, Array]:
@@ -167,7 +159,7 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     fitted, met = (numbers_of(family, middle + half * points) for points in (inner, outer))
     scale = _scale(family, fitted)
     degrees = _degrees(family, (middle, half), scale)
-    lower = [mirror for place in family.topology.features for _, mirror in _mirror(place)]
+    lower = family.topology.mirror < np.arange(family.topology.count)
     degrees[:, lower] = 0
     varies: Array = np.asarray(degrees.any(axis=0))
     still = ~varies
