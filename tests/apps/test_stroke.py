@@ -46,3 +46,13 @@ def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
     assert (ended.code, "the design states no such path" in ended.err) == (2, True)
     ended = flexstage("stroke", "stage.toml", "--from", "1 mm", "--to", "1 mm")
     assert (ended.code, "platform.x goes from 1 mm to 1 mm: a drive that does nothing" in ended.err) == (2, True)
+
+
+def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> None:
+    """A stack at its full stroke, a coordinate near rest; of a force nothing is near."""
+    for drive, end in (("B", 38e-6), ("platform.x", 1e-4), ("platform.rz", 1e-3)):
+        flexstage("stroke", "stage.toml", "--drive", drive, "--points", "2", "--json", "found.json")
+        found = json.loads((two / "found.json").read_text())["along"]
+        assert [row[0] for row in found["values"]] == pytest.approx([0.0, end])
+    ended = flexstage("stroke", "stage.toml", "--drive", "platform.fx")
+    assert (ended.code, "it is not said where platform.fx ends" in ended.err) == (2, True)

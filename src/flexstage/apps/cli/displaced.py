@@ -20,13 +20,14 @@ from flexstage.analysis.stroke import stroke as over_stroke
 from flexstage.apps.cli.words import Side
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.quantity import ANGLE, LENGTH, RATIO
+from flexstage.base.quantity import ANGLE, LENGTH, RATIO, Quantity
 from flexstage.base.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
+from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
@@ -55,7 +56,7 @@ def stroke(  # noqa: PLR0913 (its options)
         str, text_option("--drive", "NAME", "What is driven: a coordinate, a stroke (B1), a force. Default: platform.x, without paths.")
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
-    end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: 0.1 mm, 1 mrad.')] = "",
+    end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
     points: Annotated[
         int | None, typer.Option("--points", metavar="N", min=2, help="Points of it. Default: as the path states, 11.")
     ] = None,
@@ -120,10 +121,20 @@ def _stated(mechanism: Mechanism, name: str, points: int | None, loads: dict[str
 def _asked(model: Nonlinear, drive: str, *, start: str, end: str, points: int, loads: dict[str, float]) -> Course:
     quantity = drive_quantity(model.assembly, drive, "--drive")
     low = parse(start, quantity, where="--from") if start else 0.0
-    high = parse(end, quantity, where="--to") if end else (1e-4 if quantity is LENGTH else 1e-3)
+    high = parse(end, quantity, where="--to") if end else _end(model, drive, quantity)
     if low == high:
         raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
     return Course(drive, np.linspace(low, high, points), loads, (), 1.0)
+
+
+def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
+    """Where a drive ends that is not told: a stack at its full stroke, a coordinate near rest."""
+    own = model.assembly.actuator(drive) if drive in model.assembly.strokes else None
+    if isinstance(own, StrokeActuator):
+        return float(np.real(own.stroke))
+    if quantity not in (LENGTH, ANGLE):
+        raise refuse("--to", f"it is not said where {drive} ends", f'Write for example --to "{quantity.example}"')
+    return 1e-4 if quantity is LENGTH else 1e-3
 
 
 @dataclass(frozen=True, eq=False)
