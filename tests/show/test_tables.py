@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from flexstage.analysis.complete import Analysis, Model
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import modes
+from flexstage.analysis.response import response
 from flexstage.analysis.stability import Stability
 from flexstage.analysis.statics import statics
 from flexstage.analysis.units import units
@@ -33,6 +34,7 @@ from flexstage.show.table import Column, Mark, Table, make_table, record_table, 
 from flexstage.show.tables.description import value_tables
 from flexstage.show.tables.lost_motion import budget_table, loss_table
 from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.response import response_table
 from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.strength import buckling_table
 from flexstage.show.tables.workspace import clearance_table, map_error_table
@@ -237,3 +239,12 @@ def test_records_are_rows_and_what_is_absent_has_a_dash() -> None:
     assert record_table("Stage", replace(one, links=()), "weakest").texts()[1:] == [["weakest", "-", ""]]
     unknown = _Pressed(("a", "b"), np.array([1.0, np.nan]), np.array([np.nan, 0.5]), (Ends.FREE, Ends.FREE))
     assert [row[1:3] for row in row_table("Bars", unknown).texts()[1:]] == [["1", "-"], ["-", "50 %"]]
+
+
+def test_responses_that_are_only_rounding_are_0():
+    """A leaf guide that is pushed does not rise: gains of 1e-20 had peaks, at a frequency that rounding chose."""
+    table = response_table(response(lumped(case("parallelogram")), ("platform.y", "platform.x", "platform.z"), ("B",)))
+    rows = {row[0]: row[1:] for row in table.texts()[1:]}
+    assert rows["platform.z"] == ["-", "0", "0", "-", "-"]
+    assert "0" not in rows["platform.y"]
+    assert any("0 stands for rounding noise" in note for note in table.notes)

@@ -12,6 +12,8 @@ from flexstage.models.linear.frequency import Response
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
+_NOISE = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Curve:
@@ -47,7 +49,7 @@ def _leading_input(gains: Array) -> int:
 
 
 def response_table(response: Response) -> Table:
-    """For each output its leading input: gain at the lowest frequency, highest magnitude and where.
+    """For each output its leading input: gain at the lowest frequency, highest magnitude and where; 0 for what is but rounding.
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -56,16 +58,23 @@ def response_table(response: Response) -> Table:
     ['x', 'a', '1', '5', '2', '5']
     """
     curves = leading_curves(response)
-    rows = [(Cell(curve.output, Mark.STRONG), curve.input, *_numbers(curve, response.frequencies)) for curve in curves]
+    largest = {unit: max(np.max(np.abs(curve.values)) for curve in curves if curve.unit == unit) for unit in {each.unit for each in curves}}
+    rows = [(Cell(curve.output, Mark.STRONG), *_numbers(curve, response.frequencies, _NOISE * largest[curve.unit])) for curve in curves]
     heads = ["output", "leading input", Column("low-frequency gain"), Column("highest magnitude"), Column("at", "Hz"), Column("rise")]
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    return make_table("Frequency responses", heads, rows, notes=[band], provenance=response.provenance)
+    noise = ["0 stands for rounding noise: below 1e-9 of the largest magnitude in its unit."] if any("0" in row for row in rows) else []
+    return make_table("Frequency responses", heads, rows, notes=[band, *noise], provenance=response.provenance)
 
 
-def _numbers(curve: Curve, frequencies: Array) -> Iterator[str]:
-    size = np.abs(curve.values)
+def _numbers(curve: Curve, frequencies: Array, noise: float) -> Iterator[str]:
+    """Input, gain, highest magnitude, where and the rise; magnitudes below `noise` are 0."""
+    size = np.where(np.abs(curve.values) < noise, 0.0, np.abs(curve.values))
     peak = int(np.argmax(size))
-    yield format_value(float(size[0]), curve.unit, 4)
+    if size[peak] == 0.0:
+        yield from ("-", "0", "0", "-", "-")
+        return
+    yield curve.input
+    yield format_value(float(size[0]), curve.unit, 4) if size[0] > 0.0 else "0"
     yield format_value(float(size[peak]), curve.unit, 4)
     yield number(float(frequencies[peak]), 5)
     yield number(float(size[peak] / size[0]), 4) if size[0] > 0.0 else "-"
