@@ -17,7 +17,7 @@ from flexstage.solid.fea.reducing import StoredJob
 from flexstage.solid.fea.store import to_bytes, versions
 from flexstage.solid.fea.worker import Call
 
-_USUAL_SECONDS = 2.5
+_USUAL_SECONDS = 1.0
 
 
 @dataclass(frozen=True, eq=False)
