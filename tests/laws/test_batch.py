@@ -22,7 +22,7 @@ from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
 from flexstage.models.batch.kernel import kernel
-from flexstage.models.batch.numbers import drawn_family, numbers_of, slopes_of
+from flexstage.models.batch.numbers import Family, drawn_family, numbers_and_slopes, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
 from flexstage.models.batch.units import _told
@@ -56,6 +56,29 @@ def one(family_plan: Plan, values: np.ndarray) -> Mechanism:
     for address, value in zip(family_plan.family.addresses, values, strict=True):
         result = set_value(result, address, float(value))
     return result
+
+
+def check_numbers(family: Family, values: np.ndarray) -> None:
+    """Real parts of what is stepped are what is not stepped, where a number is nought, too."""
+    with np.errstate(all="ignore"):
+        beside, alone = numbers_and_slopes(family, values)[0], numbers_of(family, values)
+    for place in family.topology.features:
+        scale = np.max(np.abs(alone[place.slots]), axis=0, where=np.isfinite(alone[place.slots]), initial=0.0)
+        assert np.array_equal(np.isfinite(beside[place.slots]), np.isfinite(alone[place.slots]))
+        assert not np.any(np.abs(beside[place.slots] - alone[place.slots]) > 1e-12 * scale)
+
+
+@given(st.one_of(mechanisms.fresh(), rosettes.fresh()))
+@examples(6, 400)
+def test_numbers_told_beside_derivatives_are_those_told_alone(mechanism: Mechanism) -> None:
+    family_plan = plan(mechanism, varied(mechanism))
+    check_numbers(family_plan.family, designs(family_plan, 3, 0.05))
+
+
+def test_numbers_told_beside_derivatives_are_those_of_designs_with_noughts() -> None:
+    names = ("parts.neck.thickness", "parts.stack_vertical.stiffness", "place.B4-B6.pattern.turn", "place.B1-B3.pattern.radius")
+    own = plan(double_triangle(), names).family
+    check_numbers(own, np.where(np.eye(5, len(names), k=-1), 0.0, own.nominal))
 
 
 def stage_of(family_plan: Plan, values: np.ndarray) -> Stage:

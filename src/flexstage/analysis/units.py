@@ -107,7 +107,7 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, 
     load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
     ideal_gain = direction @ kinematics.jacobian.values[:3, 0]
     lever = _lever(mechanism, copy)
-    channel = (_DISPLACEMENTS[int(np.argmax(np.abs(direction)))], copy)
+    output = _DISPLACEMENTS[int(np.argmax(np.abs(direction)))]
     return UnitResult(
         unit=unit,
         copy=copy,
@@ -119,14 +119,14 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, 
         load_compliance=float(load),
         series=_series(mechanism, copy),
         lever=lever,
-        omitted=None if lever is None or not omissions else _omitted(guided, unit, channel),
+        omitted=None if lever is None or not omissions else _omitted(guided, unit, output, copy),
     )
 
 
 @lru_cache(maxsize=8)
-def _omitted(guided: Mechanism, unit: str, channel: tuple[str, str]) -> Omitted:
+def _omitted(guided: Mechanism, unit: str, output: str, actuator: str) -> Omitted:
     """Most of the work on a unit, kept: designs that differ elsewhere have the same one."""
-    return omitted(guided, lever_theory(guided, unit), channel)
+    return omitted(guided, lever_theory(guided, unit), (output, actuator))
 
 
 def _series(mechanism: Mechanism, copy: str) -> float | None:

@@ -65,7 +65,10 @@ def freeze(value: Any) -> Any:
 def _frozen_array(value: Array) -> Any:
     if value.ndim == 0:
         return value.item()
-    copy = np.array(value, dtype=np.complex128 if np.iscomplexobj(value) else np.float64)
+    kind = np.complex128 if np.iscomplexobj(value) else np.float64
+    if value.base is None and not value.flags.writeable and value.dtype == kind:
+        return value
+    copy = np.array(value, dtype=kind)
     copy.flags.writeable = False
     return copy
 
@@ -101,6 +104,18 @@ def magnitude(value: Any) -> Any:
     [(2-1e-20j)]
     """
     return np.where(np.real(value) < 0.0, -np.asarray(value), value)
+
+
+def with_step(value: Array, slope: Array, number: Array) -> Array:
+    """f(x + ih) = f(x) + ih f'(x) of a number with a step, which is so small that no more counts, from f and f' at its real part.
+
+    Complex functions beyond products take many times as long.
+
+    >>> number = np.array([0.5 + 1e-20j])
+    >>> bool(with_step(np.sin(number.real), np.cos(number.real), number) == np.sin(number))
+    True
+    """
+    return value + 1j * (slope * np.imag(number)) if np.iscomplexobj(number) else value
 
 
 def first_design(values: Array, axes: int) -> Array:

@@ -81,15 +81,25 @@ def consistent_mass(beam: Beam) -> Array:
     weight = _weights(beam)
     entries: dict[tuple[int, int], Array] = {}
     for motions in _motions(beam):
-        heavy = {place: {row: weight[..., row] * moved for row, moved in rows.items()} for place, rows in motions.items()}
         for one, other in itertools.combinations_with_replacement(motions, 2):
-            shared = [moved * motions[other][row] for row, moved in heavy[one].items() if row in motions[other]]
-            entries[one, other] = entries[other, one] = np.sum(functools.reduce(np.add, shared), axis=-1)
+            shared = (_sum(weight[..., row], moved, motions[other][row]) for row, moved in motions[one].items() if row in motions[other])
+            entries[one, other] = entries[other, one] = functools.reduce(np.add, shared)
     batch = np.broadcast_shapes(*(entry.shape for entry in entries.values()))
     result = np.zeros((*batch, 12, 12), dtype=np.result_type(*entries.values()))
     for (one, other), entry in entries.items():
-        result[..., one, other] = entry
-    return _of_ends(np.swapaxes(_of_ends(result), -1, -2))
+        for (row, factor), (column, times) in itertools.product(_END_SHARES[one], _END_SHARES[other]):
+            result[..., row, column] += factor * times * entry
+    return result
+
+
+_END_SHARES = tuple(((place, 0.5), (place + 6, 0.5)) if place < 6 else ((place - 6, -1.0), (place, 1.0)) for place in range(12))
+"""What the mean (0 to 5) and the difference (6 to 11) of both ends' motions have of the first one's and of the second one's."""
+
+
+def _sum(*numbers: Array) -> Array:
+    """The sum over the stations (..., s) of a product; factors without stations are 1."""
+    factors = [each for each in numbers if each.ndim]
+    return np.einsum(",".join(["...s"] * len(factors)) + "->...", *factors)
 
 
 def _of_ends(rows: Array) -> Array:
@@ -145,16 +155,17 @@ def _motions(beam: Beam) -> Iterator[_Motions]:
     pulled, twisted, *bent = beam.points.runnings(f[..., 0], f[..., 3], *planes)
     for axis, grown in ((0, pulled), (3, twisted)):
         yield {axis: {axis: one}}
-        yield {6 + axis: {axis: grown / _whole(grown)}}
+        yield {6 + axis: {axis: grown * _per_whole(grown)}}
     for across, turn, sign, (moved, turned, odd) in ((1, 5, 1.0, bent[:3]), (2, 4, -1.0, bent[3:])):
         left = odd[..., -1:] - odd
-        yield {across: {across: one}, 6 + turn: {across: sign * (left + x * turned) / _whole(turned), turn: turned / _whole(turned)}}
+        by_turning, by_moving = _per_whole(turned), _per_whole(moved)
+        yield {across: {across: one}, 6 + turn: {across: (left + x * turned) * (sign * by_turning), turn: turned * by_turning}}
         yield {
             turn: {across: sign * x, turn: one},
-            6 + across: {across: (moved + x * left) / _whole(moved), turn: sign * left / _whole(moved)},
+            6 + across: {across: (moved + x * left) * by_moving, turn: left * (sign * by_moving)},
         }
 
 
-def _whole(grown: Array) -> Array:
-    """The whole (..., 1) of an even flexibility that has grown so far at the stations x."""
-    return 2.0 * grown[..., -1:]
+def _per_whole(grown: Array) -> Array:
+    """One over the whole (..., 1) of an even flexibility that has grown so far at the stations x."""
+    return 0.5 / grown[..., -1:]

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Legendre, legendre
 
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, with_step
 from flexstage.parts.profile import Circular, Elliptic, Filleted, FreeForm, Hyperbolic, Parabolic, Power, Profile, Straight, Vee
 
 _POINTS = 25
@@ -93,10 +93,12 @@ def _arc(along: Number, across: Number, thinnest: Number, last: Number = 0.5 * n
     scale = 2.0 * np.arcsinh(np.sqrt(np.asarray(thinnest)[..., None] / (4.0 * across)))
     span = np.arcsinh(np.asarray(last)[..., None] / scale)
     stretched = span * _points()
-    angle = scale * np.sinh(stretched)
-    rate = along * np.cos(angle) * scale * np.cosh(stretched) * span
-    growth = 2.0 * across * np.sin(0.5 * angle) ** 2
-    return Stations(along * np.sin(angle), rate, growth * np.ones_like(rate), _rule(1))
+    grown, slope = np.sinh(np.real(stretched)), np.cosh(np.real(stretched))
+    angle = scale * with_step(grown, slope, stretched)
+    sine, cosine = np.sin(np.real(angle)), np.cos(np.real(angle))
+    rate = along * with_step(cosine, -sine, angle) * scale * with_step(slope, grown, stretched) * span
+    growth = across * with_step(2.0 * np.sin(0.5 * np.real(angle)) ** 2, sine, angle)
+    return Stations(along * with_step(sine, cosine, angle), rate, growth * np.ones_like(rate), _rule(1))
 
 
 def _fillet_stations(profile: Filleted, thinnest: Number) -> Stations:

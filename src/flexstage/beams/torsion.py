@@ -27,7 +27,7 @@ from flexstage.beams.section import Section
 
 _LONG = 20.0
 """Decay lengths from the centre to an end from which stations do not resolve the ends: the equation at stations has their integral."""
-_TOGETHER = 16
+_TOGETHER = 32
 """Designs solved at once."""
 
 
@@ -76,21 +76,30 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     load = np.asarray(stiffness * skew / whole)
     spring = shear * stiffness * section.torsion / whole
     free, rigidity = 1.0 / (shear * whole), young * section.warping
-    wavenumber = np.sqrt(spring / rigidity)
-    equal = np.all(wavenumber == wavenumber[..., :1], axis=-1)
-    resolved = (equal & (np.real(wavenumber * points.position)[..., -1] < _LONG))[..., None]
+    resolved = _is_resolved(points, rigidity, spring)
     if np.all(resolved):
-        theta, bimoment = _in_closed_form(points, rigidity, load / spring, wavenumber)
+        theta, bimoment = _in_closed_form(points, rigidity, spring, load)
     else:
         theta, bimoment = _at_stations(points, rigidity, spring, load)
         if np.any(resolved):  # each design by itself: what is told of it does not depend on those beside it
-            closed, bending = _in_closed_form(points, rigidity, load / spring, wavenumber)
+            closed, bending = _in_closed_form(points, rigidity, spring, load)
             theta, bimoment = np.where(resolved, closed, theta), np.where(resolved, bending, bimoment)
     return Twisting(free + load * theta, bimoment)
 
 
-def _in_closed_form(points: Stations, rigidity: Array, rest: Array, wavenumber: Array) -> tuple[Array, Array]:
-    """theta, and E C_w theta', where the section stays the same; theta is `rest` f / g far from ends."""
+def _is_resolved(points: Stations, rigidity: Array, spring: Array) -> Array:
+    """In which designs (..., 1) the section stays the same, steps of it, too, and stations resolve its ends."""
+    square = np.real(spring) / np.real(rigidity)
+    if not np.any(np.all(square == square[..., :1], axis=-1)):  # what is cheap to tell
+        return np.zeros((*square.shape[:-1], 1), dtype=bool)
+    wavenumber = np.sqrt(spring / rigidity)
+    equal = np.all(wavenumber == wavenumber[..., :1], axis=-1)
+    return np.asarray(equal & (np.real(wavenumber * points.position)[..., -1] < _LONG))[..., None]
+
+
+def _in_closed_form(points: Stations, rigidity: Array, spring: Array, load: Array) -> tuple[Array, Array]:
+    """theta, and E C_w theta', where the section stays the same; theta is f / g far from ends."""
+    wavenumber, rest = np.sqrt(spring / rigidity), load / spring
     straight, sloping = decays(points, wavenumber)
     return rest * (1.0 - straight), -rigidity * rest * wavenumber * sloping
 

@@ -225,7 +225,7 @@ def expand(mechanism: Mechanism) -> Assembly:
     """
     assembly = lay_out(mechanism)
     for body in assembly.bodies.values():
-        _ = body.reference, body.mass  # what cannot be weighed is refused here
+        _ = [item.own.value for item in body.drawn], body.reference, body.mass  # what cannot be weighed is refused here
     return assembly
 
 
@@ -273,7 +273,9 @@ def _assembly(key: Same) -> Assembly:
     }
     require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
     require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
-    ground = _placed_solids(lent.get(GROUND, ()))
+    resting = lent.get(GROUND, ())
+    _ = [item.own.value for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
+    ground = _placed_solids(resting)
     drives = _actuators(links, {copy for copy, _, _ in placed})
     return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements, dict(_stops(mechanism)))
 
@@ -391,18 +393,32 @@ def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable
 
 
 @dataclass(frozen=True, eq=False)
+class _OwnMass:
+    """The mass of a body as it is drawn, weighed once for all its copies when it is first asked for."""
+
+    body: Body
+    materials: Mapping[str, Material]
+    name: str
+
+    @cached_property
+    def value(self) -> MassProperties | None:
+        """Mass properties in the frame it is drawn in; `None` without any."""
+        return mass_properties(self.body, self.materials, self.name)
+
+
+@dataclass(frozen=True, eq=False)
 class _DrawnBody:
-    """A body and its own mass properties, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
+    """A body and its own mass, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
 
     name: str
     body: Body
-    own: MassProperties | None
+    own: _OwnMass
     frame: Frame
     aligned: Frame
 
     def mass(self) -> MassProperties | None:
         """The mass properties in the stage's frame."""
-        return None if self.own is None else within(self.own, self.frame)
+        return None if self.own.value is None else within(self.own.value, self.frame)
 
     def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
         """The outlines by address, in the stage's frame."""
@@ -427,11 +443,11 @@ class _DrawnLink:
 
 def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
     for name, body in mechanism.bodies.items():
-        yield _DrawnBody(name, body, mass_properties(body, mechanism.materials, name), identity(), identity())
+        yield _DrawnBody(name, body, _OwnMass(body, mechanism.materials, name), identity(), identity())
     drawn = drawn_units(mechanism)
     units = {unit: drawn[unit].bodies for _, unit, _ in placed}
     masses = {
-        unit: {name: mass_properties(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
+        unit: {name: _OwnMass(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
         for unit, bodies in units.items()
     }
     meant = {copy: frame for copy, _, frame in copies(replace(mechanism, changes=Table({})))} if mechanism.changes else {}
@@ -526,7 +542,7 @@ def _inner_bodies(
     for whole in links:
         if (composition := compositions.get(id(whole.part))) is not None:
             for name, body in composition.bodies.items():
-                own = mass_properties(body, mechanism.materials, f"{whole.name}.{name}")
+                own = _OwnMass(body, mechanism.materials, f"{whole.name}.{name}")
                 yield _DrawnBody(f"{whole.name}.{name}", body, own, whole.frame, whole.frame)
 
 
@@ -609,7 +625,7 @@ def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> M
     A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost. A stated mass counts
     as it is, whatever is drawn of its body.
     """
-    weighed = [item for item in drawn if item.body.mass is None and item.own is not None]
+    weighed = [item for item in drawn if item.body.mass is None and item.body.solids]
     single = [item for item in drawn if item.body.mass is not None or len(weighed) == 1]
     masses = [mass for item in single if (mass := item.mass()) is not None]
     if len(weighed) > 1:

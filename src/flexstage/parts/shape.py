@@ -16,7 +16,7 @@ import numpy as np
 
 from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Array, Number, with_step
 from flexstage.base.quantity import LENGTH, RATIO, Bound, Quantity
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
@@ -77,11 +77,15 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
     """
     tall = np.real(width) < np.real(thickness)
     short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
-    decay = np.exp(-np.pi * (long / short))
-    square, series = decay * decay, _ODD_FIFTH_POWERS
+    ratio = long / short
+    decay = np.exp(-np.pi * np.real(ratio))
+    square, series, slope = decay * decay, _ODD_FIFTH_POWERS, 0.0
     for odd in (1.0, 3.0, 5.0, 7.0):
-        series = series - 2.0 / odd**5 * decay / (1.0 + decay)
+        share = decay / (1.0 + decay)
+        series = series - 2.0 / odd**5 * share
+        slope = slope + 2.0 * np.pi / odd**4 * share / (1.0 + decay)
         decay = decay * square
+    series = with_step(series, slope, ratio)
     return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
 
 

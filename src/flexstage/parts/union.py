@@ -81,16 +81,19 @@ class _Cell:
 
     def common(self, other: _Cell) -> _Cell:
         """The region of both."""
-        shape = np.broadcast_shapes(self.offsets.shape[:-1], other.offsets.shape[:-1])
-        normals = [np.broadcast_to(cell.normals, (*shape, *cell.normals.shape[-2:])) for cell in (self, other)]
-        offsets = [np.broadcast_to(cell.offsets, (*shape, cell.offsets.shape[-1])) for cell in (self, other)]
         return _Cell(
-            np.concatenate(normals, axis=-2),
-            np.concatenate(offsets, axis=-1),
+            _joined((self.normals, other.normals), 2),
+            _joined((self.offsets, other.offsets), 1),
             self.rounds + other.rounds,
             self.balls + other.balls,
             self.made + other.made,
         )
+
+
+def _joined(arrays: Sequence[Array], axes: int) -> Array:
+    """Arrays one after the other along the first of their own axes, their batch axes broadcast."""
+    shape = np.broadcast_shapes(*(each.shape[:-axes] for each in arrays))
+    return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-axes:])) for each in arrays], axis=-axes)
 
 
 _SYMMETRIC: Array = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])
@@ -130,7 +133,8 @@ class _Region:
         total = np.zeros((self.moments.volume.size, 10))
         for (kind, number), gain in (self.gains if turns else self.parallel_gains).items():
             if kind == PLANE:
-                rates = [np.imag(flat.offsets[:, number, None]), *([np.imag(flat.normals[:, number])] if turns else [])]
+                turning = [np.broadcast_to(np.imag(flat.normals[:, number]), (len(total), 3))] if turns else []
+                rates = [np.imag(flat.offsets[:, number, None]), *turning]
             else:
                 item = flat.rounds[number]
                 rates = [np.imag(item.radius)[:, None], np.imag(item.point), np.imag(item.axis)]
@@ -183,13 +187,14 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     if any(isinstance(drawn.solid, Sphere) for drawn in seen):
         yield from ((seen[number].density, _weighed(weight, region.moments)) for number, weight, region in _regions(seen))
         return
+    stepped = {number for number, drawn in enumerate(seen) if _is_stepped(drawn)}
     cells: dict[int, list[tuple[Number, _Cell]]] = {}
     for number, weight, region in _known(_Key(tuple(_real(drawn) for drawn in seen))):
-        for member, _ in region.cell.made:
-            if member not in cells:
-                cells[member] = _cells(seen[member])
-        cell = reduce(_Cell.common, (cells[member][place][1] for member, place in region.cell.made))
-        yield seen[number].density, _weighed(weight, region.moved(cell))
+        moments, members = region.moments, region.cell.made
+        if any(member in stepped for member, _ in members):
+            cells |= {member: _cells(seen[member]) for member, _ in members if member not in cells}
+            moments = region.moved(reduce(_Cell.common, (cells[member][place][1] for member, place in members)))
+        yield seen[number].density, _weighed(weight, moments)
 
 
 def _weighed(weight: Number, moments: Moments) -> Moments:
@@ -223,6 +228,11 @@ _Weighed: TypeAlias = tuple[int, Number, _Region]
 def _known(key: _Key) -> tuple[_Weighed, ...]:
     """The regions of some bodies, kept while numbers are stepped one after the other: their real parts stay."""
     return tuple(_regions(key.seen))
+
+
+def _is_stepped(drawn: Drawn) -> bool:
+    """Whether a number that places a face is stepped."""
+    return _real_part(drawn.solid) is not drawn.solid or any(map(np.iscomplexobj, (drawn.frame.rotation, drawn.frame.position)))
 
 
 def _real(drawn: Drawn) -> Drawn:
@@ -259,12 +269,14 @@ def _regions(seen: Sequence[Drawn]) -> Iterator[_Weighed]:
         if _is_apart(seen[pair[0]], seen[pair[1]]):
             continue
         try:
-            found = _product(*_beside(seen, cells, pair), where, scale)
+            found = _product(*_beside(seen, cells, *pair), where, scale)
         except _InexactError as crossing:
             problems += _refusals(seen, pair, crossing.volume)
             continue
         if found and _differ(seen[pair[0]], seen[pair[1]]):
-            volume = _volume_of(found) - sum(_volume_of(rest) for rest in _removed(seen, cells, pair, found, scale))
+            volume = _volume_of(found) - sum(
+                _volume_of(rest) for rest in _removed([seen[number] for number in pair], seen, cells, found, scale)
+            )
             problems += _mixtures(seen[pair[0]], seen[pair[1]], volume) if volume > _FLUSH * scale**3 else ()
         elif found:
             groups.append((pair, found))
@@ -277,10 +289,10 @@ def _numbered(number: int, cells: list[tuple[Number, _Cell]]) -> list[tuple[Numb
 
 
 def _beside(
-    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], pair: tuple[int, int]
+    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], one: int, two: int
 ) -> tuple[list[tuple[Number, _Cell]], list[tuple[Number, _Cell]]]:
     """The regions of two solids; a ball that keeps clear of the sides of an extrusion sees the planes of its height alone."""
-    for ball, other in (pair, pair[::-1]):
+    for ball, other in ((one, two), (two, one)):
         solid = seen[other].solid
         if isinstance(seen[ball].solid, Sphere) and isinstance(solid, Extrusion):
             frame = solid.frame.within(seen[other].frame)
@@ -292,7 +304,7 @@ def _beside(
             ):
                 upright = Frame(frame.rotation[..., :, [2, 0, 1]], frame.position)
                 return cells[ball], [(1.0, _box(upright, np.asarray(solid.height)[..., None]))]
-    return cells[pair[0]], cells[pair[1]]
+    return cells[one], cells[two]
 
 
 def _is_clear(centre: Array, diameter: Array, corners: Array) -> bool:
@@ -368,9 +380,9 @@ def _gaps(first: Boxes, second: Boxes) -> Array:
 
 
 def _flat(box: Boxes, shape: tuple[int, ...]) -> Boxes:
-    """A box with one batch axis."""
+    """A box with one batch axis; turns that are those of every design stand once."""
     return Boxes(
-        np.broadcast_to(box.turns, (*shape, 3, 3)).reshape(-1, 3, 3),
+        box.turns[None] if box.turns.ndim == 2 else np.broadcast_to(box.turns, (*shape, 3, 3)).reshape(-1, 3, 3),
         np.broadcast_to(box.centres, (*shape, 3)).reshape(-1, 3),
         np.broadcast_to(box.halves, (*shape, 3)).reshape(-1, 3),
     )
@@ -427,13 +439,8 @@ def _wedge(frame: Frame, sign: Number, trio: Array, height: Array) -> _Cell:
     turn = np.swapaxes(frame.rotation, -1, -2)
     sides = outward @ turn[..., :2, :]
     caps = turn[..., [2, 2], :] * np.array([[1.0], [-1.0]])
-    sides, caps = (
-        np.broadcast_to(each, (*np.broadcast_shapes(sides.shape[:-2], caps.shape[:-2]), *each.shape[-2:])) for each in (sides, caps)
-    )
-    normals = np.concatenate([sides, caps], axis=-2)
-    own = [np.sum(outward * trio, axis=-1), np.broadcast_to(0.5 * height[..., None], (*height.shape, 2))]
-    shape = np.broadcast_shapes(*(each.shape[:-1] for each in own))
-    offsets = np.concatenate([np.broadcast_to(each, (*shape, each.shape[-1])) for each in own], axis=-1)
+    normals = _joined((sides, caps), 2)
+    offsets = _joined((np.sum(outward * trio, axis=-1), np.broadcast_to(0.5 * height[..., None], (*height.shape, 2))), 1)
     return _Cell(normals, offsets + np.sum(normals * frame.position[..., None, :], axis=-1))
 
 
@@ -474,10 +481,10 @@ def _volume_of(regions: Sequence[_Region]) -> float:
 
 
 def _removed(
-    seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], pair: tuple[int, int], found: Sequence[_Region], scale: float
+    both: Sequence[Drawn], seen: Sequence[Drawn], cells: Mapping[int, list[tuple[Number, _Cell]]], found: Sequence[_Region], scale: float
 ) -> Iterator[list[_Region]]:
-    """What holes in one of two solids take away of the regions that both have in common."""
-    materials = {seen[number].solid.material for number in pair}
+    """What holes in one of two solids take away of the regions that `both` have in common."""
+    materials = {drawn.solid.material for drawn in both}
     for number, drawn in enumerate(seen):
         if drawn.solid.removes and drawn.solid.material in materials and number in cells:
             yield _product([(region.sign, region.cell) for region in found], cells[number], np.ones((), dtype=bool), scale)
@@ -526,7 +533,8 @@ def _moments(cell: _Cell, where: Array, scale: float) -> tuple[Moments, tuple[Su
     surfaces: list[Surface] = []
     pending = np.flatnonzero(np.broadcast_to(where, shape))
     if not (cell.balls or cell.rounds):
-        pending = pending[~_is_flat(np.real(flat.normals[pending]), np.real(flat.offsets[pending]), 2.0 * _FLUSH * scale)]
+        some = _pick(flat, pending)
+        pending = pending[~_is_flat(np.real(some.normals), np.real(some.offsets), 2.0 * _FLUSH * scale)]
     while pending.size:
         if cell.balls:
             done, values = pending[:1], _ball_moments(_pick(flat, pending[0]), scale)
@@ -540,7 +548,7 @@ def _moments(cell: _Cell, where: Array, scale: float) -> tuple[Moments, tuple[Su
 
 
 def _flat_cell(cell: _Cell, shape: tuple[int, ...]) -> _Cell:
-    """A region with one batch axis."""
+    """A region with one batch axis; normals that are those of every design stand once."""
 
     def flat(values: Array, axes: int) -> Array:
         own = values.shape[values.ndim - axes :]
@@ -548,14 +556,16 @@ def _flat_cell(cell: _Cell, shape: tuple[int, ...]) -> _Cell:
 
     rounds = tuple(_Round(flat(item.axis, 1), flat(item.point, 1), flat(item.radius, 0)) for item in cell.rounds)
     balls = tuple(_Ball(flat(item.point, 1), flat(item.radius, 0)) for item in cell.balls)
-    return _Cell(flat(cell.normals, 2), flat(cell.offsets, 1), rounds, balls)
+    normals = flat(cell.normals, 2) if cell.normals.ndim > 2 or cell.rounds or cell.balls else cell.normals[None]
+    return _Cell(normals, flat(cell.offsets, 1), rounds, balls)
 
 
 def _pick(cell: _Cell, designs: Array) -> _Cell:
     """One design, or some, of a region with one batch axis."""
     rounds = tuple(_Round(item.axis[designs], item.point[designs], item.radius[designs]) for item in cell.rounds)
     balls = tuple(_Ball(item.point[designs], item.radius[designs]) for item in cell.balls)
-    return _Cell(cell.normals[designs], cell.offsets[designs], rounds, balls)
+    normals = cell.normals if len(cell.normals) < len(cell.offsets) else cell.normals[designs]
+    return _Cell(normals, cell.offsets[designs], rounds, balls)
 
 
 class _Alike:
@@ -611,7 +621,8 @@ def _empty_alike(normals: Array, offsets: Array) -> Array:
 
     Farkas' lemma: there is no r with N r <= b where weights w >= 0 have N^T w = 0 and b . w < 0.
     """
-    planes, wanted = np.concatenate([normals, offsets[..., None]], axis=-1), np.array([0.0, 0.0, 0.0, -1.0])
+    normals, wanted = np.broadcast_to(normals, (*offsets.shape, 3)), np.array([0.0, 0.0, 0.0, -1.0])
+    planes = np.concatenate([normals, offsets[..., None]], axis=-1)
     used = np.swapaxes(planes[:, scipy.optimize.nnls(planes[0].T, wanted)[0] > 0.0], -1, -2)
     weights = np.linalg.pinv(used) @ wanted
     miss = _lengths((used @ weights[..., None])[..., 0] - wanted)

@@ -139,7 +139,7 @@ def distance(first: Array, second: Array) -> float:
 
 
 def separations(ones: Boxes, others: Boxes) -> Array:
-    """A lower bound (k,) [m] of the distances of k boxes from k others; below 0: they meet.
+    """A lower bound (k,) [m] of the distances of k boxes from k others; below 0: they meet. Turns may be those of all, (1, 3, 3).
 
     >>> box = Boxes(np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5))
     >>> other = Boxes(np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5))
@@ -147,7 +147,7 @@ def separations(ones: Boxes, others: Boxes) -> Array:
     [1.0]
     """
     turn, face = ones.turns, others.turns
-    own_axes, other_axes = np.swapaxes(turn, -1, -2), np.swapaxes(face, -1, -2)
+    own_axes, other_axes = (np.swapaxes(each, -1, -2) for each in np.broadcast_arrays(turn, face))
     edges = np.cross(own_axes[:, :, None], other_axes[:, None]).reshape(-1, 9, 3)
     directions = np.concatenate([own_axes, other_axes, edges], axis=1)
     lengths = np.linalg.norm(directions, axis=-1, keepdims=True)

@@ -23,7 +23,7 @@ from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
-from flexstage.models.batch.numbers import Family, Slopes, family, numbers_of, slopes_of
+from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of
 from flexstage.models.batch.planes import Planes, no_planes, planes
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
@@ -295,17 +295,20 @@ def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
 
 def _stage(plan_: Plan, values: Array, *, slopes: bool, wide: bool) -> Stage:
     if plan_.surface is None or wide:
-        numbers = numbers_of(plan_.family, values)
-        derivatives = slopes_of(plan_.family, values, numbers, wide=wide) if slopes else None
+        numbers, derivatives = _described(plan_, values, slopes=slopes, wide=wide)
     else:
         numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
         outside = np.flatnonzero(~plan_.surface.holds(values))
         if len(outside):
-            numbers[:, outside] = numbers_of(plan_.family, values[outside])
-            if derivatives is not None:
-                there = slopes_of(plan_.family, values[outside])
+            numbers[:, outside], there = _described(plan_, values[outside], slopes=slopes)
+            if derivatives is not None and there is not None:
                 derivatives.values[:, outside], derivatives.missed[outside] = there.values, there.missed
     return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives)
+
+
+def _described(plan_: Plan, values: Array, *, slopes: bool, wide: bool = False) -> tuple[Array, Slopes | None]:
+    """The features of designs that are described, and their derivatives where these are asked for."""
+    return numbers_and_slopes(plan_.family, values, wide=wide) if slopes else (numbers_of(plan_.family, values), None)
 
 
 def _tame(stage: Stage, finite: Array) -> Stage:

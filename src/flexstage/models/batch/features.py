@@ -22,7 +22,7 @@ from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part
 
-_BLOCK = 128
+_BLOCK = 512
 """Designs whose parts are integrated at once."""
 
 GROUNDED = -1
@@ -47,6 +47,11 @@ class Feature:
     kind: str
     owner: int
     start: int
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """Kind and owner."""
+        return self.kind, self.owner
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -173,24 +178,25 @@ def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[st
     >>> features(double_triangle())["inertia", 0].diagonal()[:3].round(3).tolist()  # the platform's mass
     [13.997, 13.997, 13.997]
     """
-    return next(stepped_features([mechanism], [wanted]))
+    return {key: array for _, found in stepped_features([mechanism], [wanted]) for key, array in found.items()}
 
 
-def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) -> Iterator[dict[tuple[str, int], Array]]:
-    """The features of one description with several steps in its numbers; each part is integrated once for all of them.
+def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) -> Iterator[tuple[int, dict[tuple[str, int], Array]]]:
+    """Features of one description with several steps in its numbers, some at a time, with the place of the description they are of.
+
+    Each part is integrated once for all of them. What is used at once is still in the processor's cache.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> [len(found) for found in stepped_features([double_triangle()], [lambda kind, owner: kind == "mass" and owner == 0])]
-    [29]
+    >>> [len(found) for _, found in stepped_features([double_triangle()], [lambda kind, owner: kind == "mass" and owner == 0])]
+    [1, 1, 27]
     """
     assemblies = [lay_out(mechanism) for mechanism in mechanisms]
-    found: list[dict[tuple[str, int], Array]] = [{} for _ in assemblies]
     for number, links in enumerate(zip(*map(distinct_links, assemblies), strict=True)):
         own = [place for place, asked in enumerate(wanted) if asked("stiffness", number) or asked("mass", number)]
         for kind, arrays in _in_blocks([(links[place].part, links[place].material) for place in own]).items():
-            for place, array in zip(own, arrays, strict=True):
-                found[place][kind, number] = array
-    for mechanism, assembly, asked, result in zip(mechanisms, assemblies, wanted, found, strict=True):
+            yield from ((place, {(kind, number): array}) for place, array in zip(own, arrays, strict=True))
+    for place, (mechanism, assembly, asked) in enumerate(zip(mechanisms, assemblies, wanted, strict=True)):
+        result: dict[tuple[str, int], Array] = {}
         for number, link in enumerate(assembly.links.values()):
             result["turn", number] = link.frame.rotation
             for kind, body in zip(("first", "second"), link.joins, strict=True):
@@ -200,7 +206,7 @@ def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) 
             if asked("inertia", number):
                 inertia = moving_inertia(mechanism, assembly.bodies[body])
                 result["inertia", number] = np.zeros((6, 6)) if inertia is None else inertia
-        yield result
+        yield place, result
 
 
 def _in_blocks(parts: list[tuple[Part, Material | None]]) -> dict[str, list[Array]]:
@@ -271,7 +277,18 @@ def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], co
     """
     result = empty_rows(places[-1].slots.stop, count)
     for place in places:
-        values = np.real(found[place.kind, place.owner])
-        flat = values.reshape(*values.shape[: values.ndim - len(place.shape)], -1)
-        result[place.slots] = flat.T if flat.ndim == 2 else flat[:, None]
+        put(result, place, found[place.key])
     return result
+
+
+def put(numbers: Array, place: Feature, array: Array) -> None:
+    """Write the real numbers (..., *shape) of a feature among all (numbers, designs).
+
+    >>> numbers = np.zeros((3, 2))
+    >>> put(numbers, Feature("first", 0, 0), np.arange(3.0))
+    >>> numbers.tolist()
+    [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
+    """
+    values = np.real(array)
+    flat = values.reshape(*values.shape[: values.ndim - len(place.shape)], -1)
+    numbers[place.slots] = flat.T if flat.ndim == 2 else flat[:, None]

@@ -18,7 +18,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
-from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, stepped_features, topology
+from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, put, stepped_features, topology
 from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
@@ -44,7 +44,7 @@ class Change:
     @property
     def key(self) -> Key:
         """The feature by kind and owner."""
-        return self.place.kind, self.place.owner
+        return self.place.key
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,16 +68,20 @@ class Family:
         """Every change there can be, by variable."""
         places = self.topology.features
         return tuple(
-            Change(number, place, _upper(place))
-            for number, keys in enumerate(self.touched)
-            for place in places
-            if (place.kind, place.owner) in keys
+            Change(number, place, _upper(place)) for number, keys in enumerate(self.touched) for place in places if place.key in keys
         )
 
     @cached_property
     def located(self) -> tuple[Place, ...]:
         """Where the addresses point."""
         return tuple(locate(self.mechanism, address) for address in self.addresses)
+
+    @cached_property
+    def dividing(self) -> list[int]:
+        """Numbers that formulas may divide by: those of parts, of drawn families all."""
+        return [
+            at for at, keys in enumerate(self.touched) if self.draw is not None or any(kind in {"stiffness", "mass"} for kind, _ in keys)
+        ]
 
     @cached_property
     def told(self) -> Mapping[Key, tuple[Told, ...]]:
@@ -259,8 +263,8 @@ class Slopes:
         return Slopes(self.changes, self.values[:, designs], self.missed[designs])
 
 
-def slopes_of(family_: Family, values: Array, numbers: Array | None = None, *, wide: bool = False) -> Slopes:
-    """Derivatives of the features by every number that varies; `numbers` are those of the features, if they are known already.
+def slopes_of(family_: Family, values: Array, *, wide: bool = False) -> Slopes:
+    """Derivatives of the features by every number that varies.
 
     With `wide` all that can change of bodies and their places, not what changes near the nominal design only: where outlines overlap
     otherwise, more does.
@@ -272,20 +276,34 @@ def slopes_of(family_: Family, values: Array, numbers: Array | None = None, *, w
     >>> bool(np.allclose(slopes.values[:6] * 200e9, numbers_of(found, value)[:36:7]))
     True
     """
+    return numbers_and_slopes(family_, values, wide=wide)[1]
+
+
+def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) -> tuple[Array, Slopes]:
+    """The features' numbers, as `numbers_of` gives them to rounding, and their derivatives, as `slopes_of` does.
+
+    What is stepped has its number as its real part and is not computed once more, but where a number of a part is nought.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found, value = family(double_triangle(), ("parts.neck.thickness",)), np.array([[1e-3]])
+    >>> bool(np.allclose(numbers_and_slopes(found, value)[0], numbers_of(found, value), rtol=1e-12, atol=0.0))
+    True
+    """
     changes = family_.wide if wide else family_.changes
-    found, missed = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
-    if family_.told:
-        _follow(family_, (values, numbers_of(family_, values) if numbers is None else numbers), changes, found)
+    found, missed, numbers = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
+    nought = np.flatnonzero((values[:, family_.dividing] == 0.0).any(axis=1))  # a quotient by a step alone is not that by nought
+    if len(nought):
+        numbers[:, nought] = numbers_of(family_, values[nought])
+    _follow(family_, values, numbers, Slopes(changes, found, missed))
     lost = np.flatnonzero((values[:, [item.variable for told in family_.told.values() for item in told]] == 0.0).any(axis=1))
     if len(lost):
         found[:, lost] = _slopes(family_, values[lost], changes, {}, {})[0]
-    return Slopes(changes, found, missed)
+    return numbers, Slopes(changes, found, missed)
 
 
-def _follow(family_: Family, known: tuple[Array, Array], changes: tuple[Change, ...], slopes: Array) -> None:
-    """Write the derivatives that follow from others by units; `known` are the values and the numbers of the features."""
-    values, numbers = known
-    places = {(change.variable, *change.key): (at, change) for at, change in _starts(changes)}
+def _follow(family_: Family, values: Array, numbers: Array, slopes: Slopes) -> None:
+    """Write the derivatives that follow from others by units."""
+    places = {(change.variable, *change.key): (at, change) for at, change in _starts(slopes.changes)}
     for key, told in family_.told.items():
         for item in told:
             at, change = places.get((item.variable, *key), (0, None))
@@ -296,8 +314,8 @@ def _follow(family_: Family, known: tuple[Array, Array], changes: tuple[Change, 
                 start, stepped = places.get((other, *key), (0, None))
                 if stepped is not None:
                     _, to, of = np.intersect1d(change.rows, stepped.rows, assume_unique=True, return_indices=True)
-                    found[to] -= factor * values[:, other] * slopes[start + of]
-            slopes[at : at + len(change.rows)] = found / np.where(values[:, item.variable] != 0.0, values[:, item.variable], np.nan)
+                    found[to] -= factor * values[:, other] * slopes.values[start + of]
+            slopes.values[at : at + len(change.rows)] = found / np.where(values[:, item.variable] != 0.0, values[:, item.variable], np.nan)
 
 
 def _starts(changes: tuple[Change, ...]) -> Iterator[tuple[int, Change]]:
@@ -313,34 +331,50 @@ def _slopes(
     changes: tuple[Change, ...],
     told: Mapping[Key, tuple[Told, ...]],
     dropped: Mapping[int, tuple[Change, ...]],
-) -> tuple[Array, Array]:
-    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes."""
-    mechanism = describe(family_, values)
-    missed = np.zeros(len(values), dtype=bool)
+) -> tuple[Array, Array, Array]:
+    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers."""
+    features_ = {place.key: place for place in family_.topology.features}
+    numbers, missed = empty_rows(family_.topology.count, len(values)), np.zeros(len(values), dtype=bool)
     result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     for start, change in _starts(changes):
         if all(change.variable != item.variable for item in told.get(change.key, ())):
             places.setdefault(change.variable, []).append((start, change))
-    asked: list[tuple[tuple[int, ...], Mechanism, set[Key]]] = []
-    for group in family_.together:
-        wanted = {change.key for number in group for _, change in places.get(number, [])}
-        if wanted:
-            wanted |= {key for number in group for change in dropped.get(number, ()) if (key := change.key)[0] != "inertia"}
-            asked.append((group, step_numbers(family_, mechanism, values, group), wanted))
-    keys = [lambda kind, owner, wanted=wanted: (kind, owner) in wanted for _, _, wanted in asked]
-    for (group, _, _), arrays in zip(asked, stepped_features([stepped for _, stepped, _ in asked], keys), strict=True):
+    wanted = {number: {change.key for _, change in own} for number, own in places.items()}
+    for number, others in dropped.items():
+        if any(number in group and any(other in wanted for other in group) for group in family_.together):
+            wanted.setdefault(number, set()).update(change.key for change in others if change.key[0] != "inertia")
+    for group, arrays in _stepped_features(family_, values, wanted):
+        for key, array in arrays.items():
+            put(numbers, features_[key], array)
         for number in group:
-            for at, change in places.get(number, []):
-                flat = _flat(arrays[change.key], change)[..., change.rows]
-                result[at : at + len(change.rows)] = (np.imag(flat) / width(family_, number)).reshape(-1, len(change.rows)).T
-            for change in dropped.get(number, ()):
-                array = arrays.get(change.key)
-                if array is not None and np.iscomplexobj(array):
-                    flat = _flat(array, change)
-                    rate = np.abs(np.imag(flat[..., change.rows])) / (width(family_, number) / abs(family_.nominal[number] or 1.0))
-                    missed |= np.any(rate > _NOUGHT * np.max(np.abs(np.real(flat)), axis=-1, keepdims=True), axis=-1)
-    return result, missed
+            for at, change in (each for each in places.get(number, ()) if each[1].key in arrays):
+                rates = np.imag(_flat(arrays[change.key], change)).T[change.rows]
+                np.divide(rates.reshape(len(change.rows), -1), width(family_, number), out=result[at : at + len(change.rows)])
+            for change in (each for each in dropped.get(number, ()) if np.iscomplexobj(arrays.get(each.key, 0.0))):
+                missed |= _does_change(arrays[change.key], change, width(family_, number) / abs(family_.nominal[number] or 1.0))
+    return result, missed, numbers
+
+
+def _does_change(array: Array, change: Change, step: float) -> Array:
+    """In which designs a feature changes by a `step` of a number, over its nominal value, by more than rounding."""
+    flat = _flat(array, change)
+    rate = np.abs(np.imag(flat[..., change.rows])) / step
+    return np.asarray(np.any(rate > _NOUGHT * np.max(np.abs(np.real(flat)), axis=-1, keepdims=True), axis=-1))
+
+
+def _stepped_features(family_: Family, values: Array, wanted: Mapping[int, set[Key]]) -> Iterator[tuple[tuple[int, ...], dict[Key, Array]]]:
+    """By group of numbers stepped together features that are wanted, some at a time; with the first group those that are wanted of none."""
+    mechanism = describe(family_, values)
+    groups = [group for group in family_.together if not wanted.keys().isdisjoint(group)]
+    asked = [set().union(*(wanted.get(number, ()) for number in group)) for group in groups]
+    if not groups:
+        yield (), features(mechanism)
+        return
+    asked[0] |= {place.key for place in family_.topology.features}.difference(*asked)
+    stepped = [step_numbers(family_, mechanism, values, group) for group in groups]
+    keys = [lambda kind, owner, own=own: (kind, owner) in own for own in asked]
+    yield from ((groups[place], arrays) for place, arrays in stepped_features(stepped, keys))
 
 
 def _flat(array: Array, change: Change) -> Array:
