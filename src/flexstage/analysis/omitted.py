@@ -11,7 +11,7 @@ from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.linear.static import static_gain
-from flexstage.models.lumped import lumped
+from flexstage.models.lumped import Masses, lumped
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Joint
 
@@ -98,4 +98,4 @@ def _with(kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedo
 
 
 def _gain(mechanism: Mechanism, channel: tuple[str, str]) -> float:
-    return float(static_gain(lumped(mechanism), channel[:1], channel[1:]).values[0, 0])
+    return float(static_gain(lumped(mechanism, Masses.PLATFORM), channel[:1], channel[1:]).values[0, 0])

@@ -21,4 +21,9 @@ def printable(text: str, keep: str = "") -> str:
     >>> printable("a\x1b[31m\u202e b\u00e9\n"), printable("two\nlines", keep="\n")
     ('a\\x1b[31m\\u202e bé\\n', 'two\nlines')
     """
+    rest = text
+    for sign in keep:
+        rest = rest.replace(sign, "")
+    if rest.isprintable():  # most texts are: a twentieth of the search
+        return text
     return _STEERING.sub(lambda found: found[0] if found[0] in keep else found[0].encode("unicode_escape").decode("ascii"), text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -176,6 +177,7 @@ def _size_text(name: str, size: Sequence[float]) -> str:
     return f"{name} {number(size[0])} × {number(size[1])}"
 
 
+@lru_cache(maxsize=4)
 def _outline_middle(mechanism: Mechanism) -> Array:
     """Middle (x, y) [mm] of the box around all outlines: an envelope says how much room there is, not where."""
     found = outlines(expand(mechanism))

@@ -62,14 +62,15 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
         figure = canvas(FULL, 0.5 + top + 0.27 * len(shares))
         axes = panels(figure, 1, 1, Margins(left=0.15 + text_width(shares), top=top))[0, 0]
         left, right = np.zeros(len(shares)), np.zeros(len(shares))
-        names = list(shares)
+        names, rows = list(shares), np.arange(len(shares))
         for part in parts:
             widths = 100.0 * np.array([_share(shares[name], part, parts) for name in names])
             starts = np.where(widths >= 0.0, right, left)
-            axes.barh(names, widths, left=starts, height=0.62, color=colours[part], label=part, linewidth=0.0)
+            _bars(axes, rows, starts, widths, height=0.62, color=colours[part], label=part)
             right, left = right + np.maximum(widths, 0.0), left + np.minimum(widths, 0.0)
         for row, name in enumerate(names):
             _place_beside(axes, (right[row], row), totals[name], INK)
+        axes.set_yticks(rows, names)
         _format_axes(axes, label)
         _widen_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
@@ -115,7 +116,21 @@ def _tinted(colour: str, white: float) -> str:
     return "#" + "".join(f"{round(part + white * (255 - part)):02x}" for part in parts)
 
 
+def _bars(axes: Any, rows: Array, starts: Array, widths: Array, **look: Any) -> None:
+    """Bars of one `color`, `height` and `label` as one artist: of as many as the bars matplotlib would make ten times the work."""
+    from matplotlib.collections import PolyCollection
+
+    half = 0.5 * look.pop("height")
+    x, y = (starts, starts, starts + widths, starts + widths), (rows - half, rows + half, rows + half, rows - half)
+    corners = np.stack([x, y], axis=-1).swapaxes(0, 1)
+    drawn = PolyCollection(list(corners[widths != 0.0]), linewidths=0.0, **look)
+    drawn.sticky_edges.x.append(0.0)
+    axes.add_collection(drawn, autolim=False)
+    axes.update_datalim(corners.reshape(-1, 2))
+
+
 def _format_axes(axes: Any, label: str) -> None:
+    axes.autoscale_view()
     axes.invert_yaxis()
     axes.set_xlabel(label)
     axes.grid(visible=False, axis="y")
@@ -155,8 +170,8 @@ def _error_panel(axes: Any, budget: ErrorBudget, rows: slice, unit: str) -> None
         start = np.zeros(3)
         for index, source in enumerate(budget.ideal.columns):
             widths = form.factor * values[:, index]
-            label = source if name == "ideal" else None
-            axes.barh(places + offset, widths, left=start, height=0.32, color=SERIES[index % len(SERIES)], label=label, linewidth=0.0)
+            label = source if name == "ideal" else ""
+            _bars(axes, places + offset, start, widths, height=0.32, color=SERIES[index % len(SERIES)], label=label)
             start = start + widths
         _bar_texts(axes, places + offset, start, name)
     axes.set_yticks(places, list(budget.ideal.rows[rows]))

@@ -51,7 +51,8 @@ def directional_figure(statics: Statics) -> Any:
 
 
 def _along(stiffness: DirectionalStiffness) -> Array:
-    return np.array([float(np.real(np.ravel(stiffness.along(float(angle)))[0])) for angle in _ANGLES])
+    angles = _ANGLES.reshape(-1, *(1,) * (np.ndim(stiffness.principal) - 1))
+    return np.real(stiffness.along(angles).reshape(len(_ANGLES), -1)[:, 0])
 
 
 def _values(stiffness: DirectionalStiffness) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -18,6 +19,7 @@ from flexstage.show.tables.workspace import unit_of
 
 _PAIRS = (("x", "y"), ("x", "z"), ("z", "rx"), ("rx", "ry"), ("y", "z"), ("x", "rz"))
 _PANELS = 4
+_CROSS: Mapping[str, Any] = {"color": SERIES[1], "markersize": 5, "linewidth": 1.2}
 
 
 def workspace_figure(workspace: Workspace) -> Any | None:
@@ -40,7 +42,7 @@ def workspace_figure(workspace: Workspace) -> Any | None:
         figure = canvas(FULL, 2.25 if len(pairs) > 2 else 2.6)
         row = panels(figure, 1, len(pairs), Margins(left=0.6, top=0.3, across=0.62))[0]
         for axes, pair in zip(row, pairs, strict=True):
-            _panel(axes, workspace, pair)
+            _panel(axes, workspace, *pair)
         handles, labels = row[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper left", ncols=3, handlelength=1.3, borderaxespad=0.0)
     return figure
@@ -51,41 +53,51 @@ def _pairs(coordinates: tuple[str, ...]) -> list[tuple[str, str]]:
     return known[:_PANELS] or list(combinations(coordinates, 2))[:_PANELS]
 
 
-def _panel(axes: Any, workspace: Workspace, pair: tuple[str, str]) -> None:
+@dataclass(frozen=True)
+class _Shown:
+    """A coordinate along one side of a panel, and the unit that it is shown in."""
+
+    name: str
+    unit: DisplayUnit
+
+    @property
+    def title(self) -> str:
+        return to_typography(f"{self.name} [{self.unit.unit}]")
+
+
+def _panel(axes: Any, workspace: Workspace, across: str, up: str) -> None:
     polytope = workspace.polytope
     if polytope is None:
         return
-    indices = [polytope.coordinates.index(name) for name in pair]
+    indices = [polytope.coordinates.index(name) for name in (across, up)]
     vertices = first_design(polytope.vertices, 2)[:, indices]
     vertices = vertices[np.all(np.isfinite(vertices), axis=1)]
-    forms = [display_unit_of(unit_of(name), float(np.max(np.abs(vertices[:, side])))) for side, name in enumerate(pair)]
-    outline = hull(vertices * [form.factor for form in forms])
+    x, y = (
+        _Shown(name, display_unit_of(unit_of(name), float(largest)))
+        for name, largest in zip((across, up), np.max(np.abs(vertices), axis=0), strict=True)
+    )
+    outline = hull(vertices * [x.unit.factor, y.unit.factor])
     closed = np.vstack([outline, outline[:1]])
     axes.fill(*closed.T, color=SERIES[0], alpha=0.12, linewidth=0.0)
     axes.plot(*closed.T, color=SERIES[0], label="reachable, others free to follow", linewidth=1.0)
-    _single(axes, workspace, pair, forms)
-    _command(axes, workspace.command, pair, forms)
-    axes.set_xlabel(to_typography(f"{pair[0]} [{forms[0].unit}]"))
-    axes.set_ylabel(to_typography(f"{pair[1]} [{forms[1].unit}]"), labelpad=1.0)
+    axes.plot(_strokes(workspace, x), [0.0, 0.0], marker="|", label="one axis at a time", **_CROSS)
+    axes.plot([0.0, 0.0], _strokes(workspace, y), marker="_", **_CROSS)
+    _command(axes, workspace.command, x, y)
+    axes.set_xlabel(x.title)
+    axes.set_ylabel(y.title, labelpad=1.0)
     axes.locator_params(nbins=5)
     axes.tick_params(labelsize=7)
 
 
-def _single(axes: Any, workspace: Workspace, pair: tuple[str, str], forms: list[DisplayUnit]) -> None:
-    """The single-axis strokes as a cross."""
-    low, high = (first_design(values, 1) for values in (workspace.single.low, workspace.single.high))
-    for side, name in enumerate(pair):
-        index = workspace.single.coordinates.index(name)
-        ends = forms[side].factor * np.array([low[index], high[index]])
-        points: list[Array] = [ends, np.zeros(2)]
-        x, y = points if side == 0 else points[::-1]
-        label = "one axis at a time" if side == 0 else None
-        axes.plot(x, y, color=SERIES[1], marker="|" if side == 0 else "_", markersize=5, linewidth=1.2, label=label)
+def _strokes(workspace: Workspace, shown: _Shown) -> Array:
+    """Both ends of the single-axis stroke of a coordinate."""
+    index = workspace.single.coordinates.index(shown.name)
+    return shown.unit.factor * np.array([first_design(each, 1)[index] for each in (workspace.single.low, workspace.single.high)])
 
 
-def _command(axes: Any, command: Mapping[str, Number], pair: tuple[str, str], forms: list[DisplayUnit]) -> None:
-    if not set(pair) <= set(command):
+def _command(axes: Any, command: Mapping[str, Number], x: _Shown, y: _Shown) -> None:
+    if not {x.name, y.name} <= set(command):
         return
-    half = [form.factor * float(np.real(np.ravel(command[name])[0])) for name, form in zip(pair, forms, strict=True)]
-    x, y = half[0] * np.array([-1, 1, 1, -1, -1]), half[1] * np.array([-1, -1, 1, 1, -1])
-    axes.plot(x, y, color=MUTED, linestyle="--", linewidth=0.9, label="commanded box")
+    across, up = (each.unit.factor * float(np.real(np.ravel(command[each.name])[0])) for each in (x, y))
+    ends = across * np.array([-1, 1, 1, -1, -1]), up * np.array([-1, -1, 1, 1, -1])
+    axes.plot(*ends, color=MUTED, linestyle="--", linewidth=0.9, label="commanded box")

@@ -35,23 +35,26 @@ def are_visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]
     places = (everything - low) * ((_PIXELS - 1) / (float((everything - low).max()) or 1.0))
     starts = [0, *accumulate(len(each) for each in polygons)]
     drawn = [places[start:end] for start, end in pairwise(starts)]
-    nearest = Image.new("I", (_PIXELS, _PIXELS), -1)
+    nearest = Image.new("I", tuple(np.ceil(places.max(axis=0)).astype(int) + 1), 0)
     pen = ImageDraw.Draw(nearest)
-    for index, polygon in enumerate(drawn):
-        if opaque[index] and len(polygon) > 2:
-            pen.polygon(polygon.ravel().tolist(), fill=index)
+    for number, polygon in enumerate(drawn, 1):
+        if opaque[number - 1] and len(polygon) > 2:
+            pen.polygon(polygon.ravel().tolist(), fill=number)
     last = np.asarray(nearest)
-    shows = np.bincount(last.ravel() + 1, minlength=len(polygons) + 1)[1:] > 0
+    shows = np.zeros(len(polygons) + 1, dtype=bool)
+    shows[last] = True
     small = np.all(np.maximum.reduceat(places, starts[:-1]) - np.minimum.reduceat(places, starts[:-1]) < 2.0, axis=1)
-    always = (shows | small | (np.diff(starts) < 3)).tolist()
+    always = (shows[1:] | small | (np.diff(starts) < 3)).tolist()
     return [always[index] or (not opaque[index] and _is_before(polygon, last, index)) for index, polygon in enumerate(drawn)]
 
 
-def _is_before(polygon: Array, last: Array, index: int) -> bool:
-    """Whether some point of the raster that the polygon covers shows what was drawn before it: it lies before that."""
+def _is_before(polygon: Array, last: Array, count: int) -> bool:
+    """Whether some point of the raster that the polygon covers shows one of the first `count` facets, or none: it lies before that."""
     left, top = np.floor(polygon.min(axis=0)).astype(int)
     right, bottom = np.ceil(polygon.max(axis=0)).astype(int) + 1
+    behind = last[top:bottom, left:right] <= count
+    if behind.all() or not behind.any():
+        return bool(behind.all())
     mask = Image.new("1", (right - left, bottom - top))
     ImageDraw.Draw(mask).polygon((polygon - (left, top)).ravel().tolist(), fill=1)
-    window = last[top:bottom, left:right]
-    return bool(np.any((window < index) & np.asarray(mask)[: window.shape[0], : window.shape[1]]))
+    return bool(np.any(behind & np.asarray(mask)[: behind.shape[0], : behind.shape[1]]))

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.show.scene.facet import Edge, Facet
 
-_CANDIDATES = 6
+_CANDIDATES = 8
 _TOLERANCE = 1e-6
 
 
@@ -72,12 +72,13 @@ def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], 
     starts = [0, *accumulate(len(facet.points) for facet in facets)]
     flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
     tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
-    normals, origins = np.array([facets[index].normal for index in tried]), np.array([facets[index].points[0] for index in tried])
-    distances = ((points - origins[:, None]) @ normals[..., None])[..., 0]
+    normals = np.array([facets[index].normal for index in tried])
+    offsets = np.sum([facets[index].points[0] for index in tried] * normals, axis=1)
+    distances = normals @ points.T - offsets[:, None]
     ahead = np.maximum.reduceat(distances, starts[:-1], axis=1) > tolerance
     back = np.minimum.reduceat(distances, starts[:-1], axis=1) < -tolerance
     first, second, both = (each.sum(axis=1) for each in (ahead, back, ahead & back))
-    best = int(np.argmin(4 * both + np.abs(first - second)))
+    best = int(np.argmin(8 * both + np.abs(first - second)))
     sides = np.where(ahead[best] & back[best], 2, ahead[best].astype(int) - back[best])
     sides[tried[best]] = 0  # also where rounding says otherwise: every step takes at least one facet away
     return normals[best], sides.tolist(), [distances[best, start:end] for start, end in pairwise(starts)]

@@ -59,13 +59,13 @@ def _corners(points: Array) -> list[int]:
 
 
 def _chain(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The points in their order, without those at which the way from the one before to the one after does not turn left."""
     chain: list[tuple[float, float]] = []
     for x, y in points:
-        while len(chain) > 1 and _cross_product(chain[-2], chain[-1], (x, y)) <= 0.0:
+        while len(chain) > 1:
+            (x0, y0), (x1, y1) = chain[-2:]
+            if (x1 - x0) * (y - y0) > (y1 - y0) * (x - x0):
+                break
             chain.pop()
         chain.append((x, y))
     return chain
-
-
-def _cross_product(first: tuple[float, float], second: tuple[float, float], third: tuple[float, float]) -> float:
-    return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
