@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 from flexstage.base.text import printable
@@ -15,6 +16,7 @@ _PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
 _STRAIGHT = re.compile(r"[MLz\d.\s-]+")
 _STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
 _GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
+_GROUP = re.compile(r"<g>([^<]*(?:<(?!/?g\b)[^<]*)*)</g>")
 _STYLE = re.compile(r' style="([^"]+)"')
 _MARKS = re.compile(
     r'<use href="#(?P<mark>[^"]+)" x="[^"]*" y="[^"]*"(?P<look>[^>]*)/>(?:<use href="#(?P=mark)" x="[^"]*" y="[^"]*"(?P=look)/>){2,}'
@@ -201,6 +203,7 @@ def _round(number: str, decimals: int) -> str:
     return "0" if text == "-0" else text
 
 
+@lru_cache(maxsize=256)
 def _styling(style: str) -> str:
     """A style with the page's colours and font, without blanks."""
     style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
@@ -223,7 +226,7 @@ def _drop_empty(body: str) -> str:
     before = ""
     while before != body:
         before = body
-        body = re.sub(r"<g>((?:(?!</?g\b).)*)</g>", r"\1", body, flags=re.DOTALL)
+        body = _GROUP.sub(r"\1", body)
         body = re.sub(r"<defs>\s*</defs>|<defs/>|<g/>", "", body)
     return body
 

@@ -105,23 +105,18 @@ def loft(rings: Array, paint: Paint, *, round_section: bool = False, closed: boo
     count, sides = rings.shape[:2]
     share = np.linspace(0.0, 1.0, count) if shares is None else shares
     facets: list[Facet] = []
+    after = np.roll(rings, -1, axis=1)
     for level in range(count - 1):
-        quads = [_quad(rings, level, side) for side in range(sides)]
-        normals = [cross(quad[2] - quad[0], quad[3] - quad[1]) for quad in quads]
+        quads = np.stack([rings[level], after[level], after[level + 1], rings[level + 1]], axis=1)
+        normals = cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
         for side, quad in enumerate(quads):
             ends = (SHARP if level == 0 else None, SHARP if level == count - 2 else None)
-            after, before = (normals[(side + step) % sides] if round_section else SHARP for step in (1, -1))
-            weights = share[[level, level, level + 1, level + 1]]
-            facets.append(Facet(quad, (ends[0], after, ends[1], before), paint, weights))
+            right, left = (normals[(side + step) % sides] if round_section else SHARP for step in (1, -1))
+            facets.append(Facet(quad, (ends[0], right, ends[1], left), paint, share[[level, level, level + 1, level + 1]]))
     if closed:
         facets.append(Facet(rings[0, ::-1], (SHARP,) * sides, paint, np.zeros(sides)))
         facets.append(Facet(rings[-1], (SHARP,) * sides, paint, np.ones(sides)))
     return facets
-
-
-def _quad(rings: Array, level: int, side: int) -> Array:
-    after = (side + 1) % rings.shape[1]
-    return np.stack([rings[level, side], rings[level, after], rings[level + 1, after], rings[level + 1, side]])
 
 
 def pierce(outer: Array, inner: Array, paint: Paint, *, round_section: bool = False) -> list[Facet]:

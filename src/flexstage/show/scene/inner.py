@@ -60,6 +60,5 @@ def _subtract(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
 
 def _sides(cover: Facet) -> Iterator[tuple[Array, Array]]:
     """A point of each side of a facet and the unit direction out of it, in its plane."""
-    for start, end in zip(cover.points, np.roll(cover.points, -1, axis=0), strict=True):
-        outward = cross(end - start, cover.normal)
-        yield start, outward / np.sqrt(outward @ outward)
+    outward = cross(np.roll(cover.points, -1, axis=0) - cover.points, cover.normal)
+    yield from zip(cover.points, outward / np.sqrt(np.sum(outward**2, axis=1, keepdims=True)), strict=True)

@@ -100,8 +100,7 @@ def _write(axes: Paper, place: Array, name: str, colour: str) -> None:
 
 def _paper(facets: list[Facet], seen: View, width: float) -> Paper:
     """Paper that the facets fill, as high as they need."""
-    points = [seen.project(facet.points) for facet in facets] or [np.zeros((1, 2))]
-    flat = np.concatenate(points)
+    flat = seen.project(np.concatenate([facet.points for facet in facets] or [np.zeros((1, 3))]))
     low, high = flat.min(axis=0), flat.max(axis=0)
     gap = 0.05 * float(max(high - low)) or 1.0
     extent = high - low + 2.0 * gap

@@ -88,11 +88,9 @@ def order_facets(scene: Scene, seen: View) -> list[Facet]:
     """
     if scene.is_large:
         return rejoin(silhouettes(scene.facets, seen.axes), seen)
-    return rejoin([facet for facet in sort_by_depth(scene.order, seen.axes[2]) if _faces(facet, seen)], seen)
-
-
-def _faces(facet: Facet, seen: View) -> bool:
-    return len(facet.points) == 2 or float(facet.normal @ seen.axes[2]) > 1e-6
+    ordered = list(sort_by_depth(scene.order, seen.axes[2]))
+    towards = np.array([facet.normal for facet in ordered]).reshape(-1, 3) @ seen.axes[2] > 1e-6
+    return rejoin([facet for facet, faces in zip(ordered, towards.tolist(), strict=True) if faces or len(facet.points) == 2], seen)
 
 
 def rejoin(facets: list[Facet], seen: View) -> list[Facet]:
@@ -107,7 +105,9 @@ def rejoin(facets: list[Facet], seen: View) -> list[Facet]:
         return facets
     points = np.concatenate([facet.points for facet in opaque])
     starts = np.cumsum([0, *(len(facet.points) for facet in opaque)])[:-1]
-    free = {key for key, whole in wholes.items() if not np.any(_are_in_front(whole, points, starts, seen))}
+    flat = seen.project(points)
+    low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
+    free = {key for key, whole in wholes.items() if not np.any(_are_in_front(whole, points, starts) & _is_box_met(whole, low, high, seen))}
     return [facet for facet in facets if id(facet.whole or facet) not in free] + [wholes[key] for key in wholes if key in free]
 
 
@@ -115,14 +115,15 @@ def _is_translucent(facet: Facet) -> bool:
     return _COLOURS[facet.paint.kind][1] < 1.0
 
 
-def _are_in_front(whole: Facet, points: Array, starts: Array, seen: View) -> Array:
-    """Which of the facets whose points start at `starts` reach before a facet's plane, in the picture's box around it."""
-    ahead = np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
-    if len(whole.points) < 3:
-        return ahead
-    flat, own = seen.project(points), seen.project(whole.points)
-    low, high = np.minimum.reduceat(flat, starts, axis=0), np.maximum.reduceat(flat, starts, axis=0)
-    return ahead & np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1)
+def _are_in_front(whole: Facet, points: Array, starts: Array) -> Array:
+    """Which of the facets whose points start at `starts` reach before a facet's plane."""
+    return np.maximum.reduceat((points - whole.points[0]) @ whole.normal, starts) > 1e-5
+
+
+def _is_box_met(whole: Facet, low: Array, high: Array, seen: View) -> Array:
+    """Which boxes in the picture, from `low` to `high` (n, 2), meet the one around a facet; all meet a line."""
+    own = seen.project(whole.points)
+    return np.all((high > own.min(axis=0)) & (low < own.max(axis=0)), axis=1) | (len(own) < 3)
 
 
 def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
