@@ -19,7 +19,7 @@ def main() -> None:
     for number in ENDINGS:
         if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _end)
-    gc.set_threshold(100_000, 50, 50)  # a twentieth of a command's time went into looking for cycles that are not there
+    gc.set_threshold(500_000, 50, 50)  # a twentieth of a command's time goes into looking for cycles that are not there
     code = run(sys.argv[1:])
     gc.freeze()  # nor does Python look for them when it ends
     sys.exit(code)
