@@ -69,7 +69,7 @@ def eigenvalues(model: LinearModel) -> Array:
     [110.91, 110.91, 135.15]
     """
     lower, scaled = _scaled(model.stiffness_matrix, model.inertia_matrix)
-    inverse_values = _massive(np.linalg.eigvalsh(scaled)[..., ::-1], lower)
+    inverse_values = _massive(np.linalg.eigvalsh(scaled)[..., ::-1], lower, model.inertia_matrix)
     return np.where(np.isnan(lower[..., 0, 0])[..., None], np.nan, 1.0 / inverse_values)
 
 
@@ -97,7 +97,7 @@ def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
     """
     lower, scaled = _scaled(stiffness, inertia)
     inverse_values, vectors = np.linalg.eigh(scaled)
-    inverse_values = _massive(inverse_values[..., ::-1], lower)
+    inverse_values = _massive(inverse_values[..., ::-1], lower, inertia)
     vectors = vectors[..., ::-1][..., : inverse_values.shape[-1]]
     shapes = np.linalg.solve(np.swapaxes(lower, -1, -2), vectors) / np.sqrt(inverse_values)[..., None, :]
     failed = np.isnan(lower[..., 0, 0])
@@ -124,15 +124,30 @@ def _forward(lower: Array, right: Array) -> Array:
     return np.stack([scipy.linalg.solve_triangular(*pair, lower=True, check_finite=False) for pair in pairs]).reshape(right.shape)
 
 
-def _massive(inverse_values: Array, lower: Array) -> Array:
-    """Those (..., k), descending, of modes with inertia: as many in every design that has a factor `lower`."""
+def _massive(inverse_values: Array, lower: Array, inertia: Array) -> Array:
+    """Those (..., k), descending, of modes with inertia: as many in every design that has a factor `lower`.
+
+    Near instability one value dwarfs the others and what is left of the smallest is rounding: NaN there. How many modes there are is not in
+    doubt, it is the rank of the inertia.
+    """
     counts = np.sum(inverse_values > _MASSLESS * np.max(inverse_values, axis=-1, keepdims=True, initial=0.0), axis=-1)
     sound = np.ravel(~np.isnan(lower[..., 0, 0]))
-    first = int(np.ravel(counts)[np.argmax(sound)])
-    others = np.flatnonzero((np.ravel(counts) != first) & sound)
-    if len(others):
-        raise unlike(int(others[0]), "has another number of modes than the first")
-    return inverse_values[..., :first]
+    counts = np.ravel(counts)
+    first = int(counts[np.argmax(sound)])
+    if np.any(others := (counts != first) & sound):
+        ranks = np.ravel(np.broadcast_to(_rank(inertia), inverse_values.shape[:-1]))
+        if np.any(unequal := others & (ranks != ranks[np.argmax(sound)])):
+            raise unlike(int(np.argmax(unequal)), "has another number of modes than the first")
+        first = int(np.max(counts[sound]))
+    kept = inverse_values[..., :first]
+    return np.where(kept > 0.0, kept, np.nan)
+
+
+def _rank(inertia: Array) -> Array:
+    """Rank of each matrix, its coordinates weighted to equal inertia of their own."""
+    own = np.sqrt(np.diagonal(inertia, axis1=-2, axis2=-1))
+    weights = np.divide(1.0, own, out=np.zeros_like(own), where=own > 0.0)
+    return np.linalg.matrix_rank(inertia * weights[..., :, None] * weights[..., None, :], tol=_MASSLESS * own.shape[-1], hermitian=True)
 
 
 def cholesky(matrix: Array) -> Array:
