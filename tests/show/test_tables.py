@@ -118,13 +118,21 @@ def test_budgets_add_up_in_print(name: str) -> None:
         assert abs(sum(shares[:-1]) - shares[-1]) <= 2e-3 * max(1.0, abs(shares[-1])) * len(shares), actuator
 
 
-def test_every_value_of_a_description_is_listed_once() -> None:
-    stage = double_triangle()
-    names = [row[0].text for table in value_tables(stage) for row in table.rows]
-    assert len(names) == len(set(names))
-    listed = {row[0].text: row for table in value_tables(stage) for row in table.rows}
-    assert [cell.text for cell in listed["neck.thickness"]] == ["neck.thickness", "1.54", "mm", "stated", "paper 2.2"]
-    assert listed["steel.young"][3].text == "assumed"
+def _values(name: str) -> list[list[str]]:
+    return [[cell.text for cell in row] for table in value_tables(case(name)) for row in table.rows]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_value_of_a_description_is_listed_once(name: str) -> None:
+    names = [row[0] for row in _values(name)]
+    assert len(names) == len(set(names)) > 0
+
+
+def test_values_are_listed_with_their_unit_and_where_they_come_from() -> None:
+    listed = {row[0]: row[1:] for row in _values("double-triangle")}
+    assert listed["neck.thickness"] == ["1.54", "mm", "stated", "paper 2.2"]
+    assert listed["steel.young"][2] == "assumed"
+    assert {"N/mm", "ohm"} <= {row[2] for row in _values("z-stage")}
 
 
 @pytest.mark.parametrize("name", [seldom(name) for name in NAMES])

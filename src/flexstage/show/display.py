@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from flexstage.base.quantity import Quantity
+from flexstage.base.unit import convert
 
 DIGITS = 5
 NO_VALUE = "-"
@@ -77,32 +78,6 @@ _PREFERRED = {
     "rad/K": "nrad/K",
     "m/V": "um/V",
 }
-_FIELD_UNITS = {
-    "mN/Hz^0.5": 1e3,
-    "mm": 1e3,
-    "um": 1e6,
-    "urad": 1e6,
-    "mH": 1e3,
-    "deg": 180.0 / math.pi,
-    "MPa": 1e-6,
-    "GPa": 1e-9,
-    "N/um": 1e-6,
-    "uF": 1e6,
-    "nm/Hz^0.5": 1e9,
-    "nrad/Hz^0.5": 1e9,
-    "uA/Hz^0.5": 1e6,
-    "uV/Hz^0.5": 1e6,
-    "um/s/Hz^0.5": 1e6,
-    "um/s^2/Hz^0.5": 1e6,
-    "mm/s": 1e3,
-    "ms": 1e3,
-    "V/ms": 1e-3,
-    "nm/V": 1e9,
-    "um/N": 1e6,
-    "urad/N": 1e6,
-    "urad/(N m)": 1e6,
-    "%": 100.0,
-}
 
 
 def display_unit_of(unit: str, largest: float = 1.0) -> DisplayUnit:
@@ -132,14 +107,15 @@ def preferred_unit(unit: str) -> DisplayUnit:
     return display_unit_of(unit, 0.0)
 
 
+@lru_cache(maxsize=256)
 def field_unit(quantity: Quantity) -> DisplayUnit:
-    """The unit a description's field is shown in.
+    """The unit a description's field is shown in: its quantity's, whichever unit of it that is, as of named numbers.
 
     >>> from flexstage.base.quantity import ANGLE, LENGTH
     >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
     (DisplayUnit(unit='mm', factor=1000.0), 57.29578)
     """
-    return DisplayUnit(quantity.shown, 1.0 if quantity.shown == quantity.si else _FIELD_UNITS[quantity.shown])
+    return DisplayUnit(quantity.shown, float(convert(1.0, quantity)))
 
 
 def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:

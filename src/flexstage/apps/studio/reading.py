@@ -178,10 +178,7 @@ def _text(bits: str, quantity: Quantity) -> str:
 @lru_cache(maxsize=256)
 def _shown(quantity: Quantity) -> tuple[str, float]:
     """The unit that a quantity is shown in, and what one is in SI."""
-    try:
-        form = field_unit(quantity)
-    except KeyError:
-        return quantity.si, 1.0
+    form = field_unit(quantity)
     return ("", 1.0) if form.unit == "1" else (form.unit, 1.0 / form.factor)
 
 

@@ -101,10 +101,7 @@ def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)
     ('17 N/um', '420 N/m')
     """
-    try:
-        form = field_unit(quantity)
-    except KeyError:
-        return format_value(value, quantity.si, digits)
+    form = field_unit(quantity)
     if 0.0 < abs(value * form.factor) < _LEAST:
         return format_value(value, quantity.si, digits)
     text = number(value * form.factor, digits)
