@@ -154,7 +154,10 @@ def test_modes_apart_are_damped_as_if_alone(name):
 
 @pytest.mark.parametrize("name", ["scanner", *full_of(["bridge", "tip-tilt", "hexapod"])])
 def test_to_first_order_modes_are_damped_by_their_strain_energy_in_the_legs(name):
-    """g/(2 w) times its share, also where modes change their shape without the stacks, and z of one mode does not tell it alone."""
+    """g/(2 w) times its share, also where modes change their shape without the stacks, and z of one mode does not tell it alone.
+
+    Modes that symmetry repeats are damped alike, and are no neighbours of each other, whether or not rounding tells them apart.
+    """
     law = ForceFeedback(1.0, 1e-3, order=1)
     model, felt, _, closed = damped_by(case(name), law)
     found, poles, compared = eigen(model), closed.system.poles, 0
@@ -164,7 +167,7 @@ def test_to_first_order_modes_are_damped_by_their_strain_energy_in_the_legs(name
             axial = float(np.asarray(model.stiffness[leg.link].law)[0, 0])
             share += (axial * float(np.asarray(model.stiffness[leg.link].operator)[0] @ shape)) ** 2 / (leg.stiffness * value)
         near = np.abs(np.sqrt(found.values) / w - 1.0)
-        if share > 0.02 and np.min(near[near > 0.0], initial=1.0) > 1e-2:
+        if share > 0.02 and np.min(near[near > 1e-9], initial=1.0) > 1e-2:
             pole = poles[np.argmin(np.abs(poles - w * (1j - model.damping.ratio)))]
             gained = -pole.real / np.abs(pole) - model.damping.ratio
             assert gained == pytest.approx(0.5 * share / w, rel=1e-2), (name, w / (2.0 * np.pi))
