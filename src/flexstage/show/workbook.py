@@ -22,6 +22,7 @@ PROVENANCE = "provenance"
 _LONGEST_NAME = 31
 _FORBIDDEN = re.compile(r"[\[\]:*?/\\]")
 _MOST_ROWS, _MOST_COLUMNS, _LONGEST_TEXT = 1_048_576, 16_384, 32_767
+_LARGEST = 9.99999999999999e307  # that a cell takes; 16 digits of the largest float are beyond all floats
 _WIDEST = 40
 _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone; equal results are equal files)
 
@@ -39,8 +40,9 @@ class _Grid:
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     """Every part of a result as a sheet of an XLSX file: heads, SI units below them, then names and numbers of 16 digits.
 
-    What is not known is an empty cell, infinity a text. The last sheet says where the numbers come from: flexstage's version and what is
-    said in `about`. Equal results are equal bytes. Raises `DesignError` for tables that are longer or wider than a sheet.
+    What is not known is an empty cell, infinity and what a cell does not take (1e308) a text. The last sheet says where the numbers come
+    from: flexstage's version and what is said in `about`. Equal results are equal bytes. Raises `DesignError` for tables that are longer or
+    wider than a sheet.
 
     >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
     b'PK'
@@ -80,7 +82,7 @@ def _write_cell(sheet: Any, row: int, column: int, value: Any) -> None:
         return
     if isinstance(value, bool):
         sheet.write_boolean(row, column, value)
-    elif isinstance(value, (int, float)) and math.isfinite(value):
+    elif isinstance(value, (int, float)) and abs(value) <= _LARGEST:
         sheet.write_number(row, column, value + 0.0 if isinstance(value, float) else value)
     else:
         sheet.write_string(row, column, _text(str(value)))
