@@ -14,7 +14,7 @@ from hypothesis import given
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import assign, provenance, tag_of
+from flexstage.mechanism.address import assign, get, provenance, set_text, tag_of
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -53,6 +53,18 @@ def test_shipped_cases_survive_their_files_and_pass_the_checks(name: str, tmp_pa
     assert check(read) == ()
     assert list(expand(read).links) == list(expand(mechanism).links)
     assert list(expand(read).actuators) == list(expand(mechanism).actuators)
+
+
+def test_a_formula_under_change_is_the_departures_not_the_units() -> None:
+    """The unit's own place stays; what the formula is worked out of moves the departure."""
+    text = dumps(CASES["double-triangle"].build())
+    text = text.replace("\n[materials", '\n[numbers]\narm = "10 mm"\n\n[materials', 1) + '\n[change]\n"horizontal/front.at.x" = "2 * arm"\n'
+    stage = loads(text)
+    assert dict(stage.formulas) == {"horizontal/front.at.x": "2 * arm"}
+    assert loads(dumps(stage)) == stage
+    moved = set_text(stage, "numbers.arm", "20 mm")
+    assert get(moved, "B1/front.at.x") == 0.04
+    assert moved.units == stage.units
 
 
 @pytest.mark.parametrize("name", CASES)

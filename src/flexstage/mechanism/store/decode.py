@@ -155,9 +155,10 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         formulas, reader.tags = dict(mechanism.formulas), dict(mechanism.tags) | _tags_above(raw)
     values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
     sources = reader.sources | dict(mechanism.sources)
-    formulas |= reader.formulas
-    values, tags = {**mechanism.changes, **values}, {**mechanism.tags, **reader.tags}
-    return replace(mechanism, changes=values, tags=Table(tags), sources=Table(sources), formulas=Table(formulas))
+    tags = {**mechanism.tags, **reader.tags}
+    mechanism = replace(mechanism, changes={**mechanism.changes, **values}, tags=Table(tags), sources=Table(sources))
+    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # a departure, where it is one by now
+    return replace(mechanism, formulas=Table(formulas))
 
 
 def _with_own_values(
@@ -202,10 +203,9 @@ def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[
             reader.refuse(where, "this is no address", "Tags of changes stand in [tags], by address")
             continue
         try:
-            place = locate(mechanism, address)
-            values[address] = reader.read(place.node, value, where)
+            values[address] = reader.read(locate(mechanism, address).node, value, where)
             for key in [key for key in reader.formulas if key.startswith(where)]:
-                reader.formulas[place.address + key.removeprefix(where)] = reader.formulas.pop(key)
+                reader.formulas[address + key.removeprefix(where)] = reader.formulas.pop(key)
         except DesignError as error:
             reader.note(replace(finding, where=where) for finding in error.findings)
     return values
