@@ -321,6 +321,23 @@ def test_designs_that_fail_stop_no_other() -> None:
     assert platform_modes(family_plan, values[:0], slopes=True).slopes.shape == (0, 2, 6, 6)
 
 
+def test_designs_that_cannot_be_weighed_stop_no_other() -> None:
+    """A side of another metal touches a pole's top: some designs near the nominal one reach into it, and who fills it nobody knows."""
+    metals = set_value(double_triangle(), "units.vertical.bodies.pole.solids.left.material", "light")
+    metals = replace(metals, materials={**metals.materials, "light": replace(metals.materials["steel"], density=2700.0)})
+    names = ("units.vertical.bodies.pole.solids.left.at.y", "units.vertical.bodies.pole.solids.left.size.z")
+    family_plan = plan(metals, names)
+    values = family_plan.family.nominal * np.array([[1.0, 1.0], [1.01, 1.01], [1.01, 0.99], [1.0, 1.02]])
+    found = platform_modes(family_plan, values, slopes=True)
+    assert [Status(status).name for status in found.status] == ["ITERATED", "REFUSED", "ITERATED", "REFUSED"]
+    assert np.isnan(found.frequencies[[1, 3]]).all()
+    for design in (0, 2):
+        alone = fs.modes(lumped(one(family_plan, values[design]))).platform_frequencies
+        np.testing.assert_allclose(found.frequencies[design], alone, rtol=1e-6)
+    exact = fs.sensitivities(one(family_plan, values[2]), names, modes=6)
+    assert np.max(np.abs(found.gradient[2] - exact.frequency) * values[2][:, None] / exact.frequencies) < 1e-6
+
+
 def test_a_limit_leaves_modes_out_as_for_one_design() -> None:
     for limit in (150.0, 300.0, 1000.0):
         family_plan = plan(double_triangle(), ("parts.neck.thickness",), Choice(limit=limit))

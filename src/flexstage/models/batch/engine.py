@@ -7,13 +7,13 @@ design is computed by itself: results do not depend on the others beside it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import Enum, IntEnum
 from functools import cached_property
 
 import numpy as np
 
+from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.base.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
@@ -62,6 +62,8 @@ class Status(IntEnum):
     """It has fewer platform modes below the limit than asked for: no frequencies."""
     CUT = 5
     """By dense matrices, and the last of the wanted modes is one of a cluster that has more: some of them are left out."""
+    REFUSED = 6
+    """It cannot be described, as where outlines overlap that cannot be weighed: no frequencies. Reading it by itself tells why."""
 
 
 class Method(Enum):
@@ -88,9 +90,14 @@ class Plan:
     surface: Surface | None = None
 
     @cached_property
-    def tables(self) -> Mapping[bool, Tables]:
-        """What the kernel is told of the topology, without and with derivatives."""
-        return {False: Tables(self.scheme, (), self.planes), True: Tables(self.scheme, self.family.changes, self.planes)}
+    def tables(self) -> Tables:
+        """What the kernel is told of the topology."""
+        return Tables(self.scheme, (), self.planes)
+
+    @cached_property
+    def slope_tables(self) -> Tables:
+        """What it is told with derivatives."""
+        return Tables(self.scheme, self.family.changes, self.planes)
 
     @cached_property
     def wide_tables(self) -> Tables:
@@ -197,8 +204,7 @@ def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: 
     """The platform's modes of designs given by the numbers (b, P) at the plan's addresses, and with `slopes` their derivatives by these.
 
     Frequencies agree with those of `models.lumped` solved whole within 1e-6 (relative), proved design by design. Numbers that are not
-    finite and stiffness that is not positive stop no other design. Raises `DesignError` for all where one cannot be described, as where its
-    outlines overlap so that it cannot be weighed: studies look for such designs first.
+    finite, stiffness that is not positive and outlines that cannot be weighed stop no other design: its `Status` says what is wrong.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))
@@ -207,9 +213,25 @@ def platform_modes(plan_: Plan, values: Array, *, slopes: bool = False, method: 
     """
     values = np.asarray(values, dtype=float)
     starts = range(0, max(len(values), 1), _CHUNK)
-    pieces = [_piece(plan_, values[start : start + _CHUNK], slopes=slopes, method=method) for start in starts]
+    return _joined([_apart(plan_, values[start : start + _CHUNK], slopes=slopes, method=method) for start in starts])
+
+
+def _joined(pieces: list[PlatformModes]) -> PlatformModes:
     columns = [[getattr(piece, field.name) for piece in pieces] for field in fields(PlatformModes)]
     return PlatformModes(*(np.concatenate(column) for column in columns))
+
+
+def _apart(plan_: Plan, values: Array, *, slopes: bool, method: Method) -> PlatformModes:
+    """The designs of one chunk; halves of what cannot be described together, down to the design that cannot be at all."""
+    try:
+        return _piece(plan_, values, slopes=slopes, method=method)
+    except DesignError:
+        if len(values) > 1:
+            halves = np.array_split(values, 2)
+            return _joined([_apart(plan_, half, slopes=slopes, method=method) for half in halves])
+    refused = _nothing(plan_, 1, slopes=slopes)
+    refused.status[:] = Status.REFUSED
+    return refused
 
 
 def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method, wide: bool = False) -> PlatformModes:
@@ -276,9 +298,9 @@ def _from(plan_: Plan, stage: Stage, start: Start, method: Method) -> Solution:
 
 
 def _tables(plan_: Plan, slopes: Slopes | None) -> Tables:
-    if slopes is None or slopes.changes is plan_.family.changes:
-        return plan_.tables[slopes is not None]
-    return plan_.wide_tables
+    if slopes is None:
+        return plan_.tables
+    return plan_.slope_tables if slopes.changes is plan_.family.changes else plan_.wide_tables
 
 
 def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:

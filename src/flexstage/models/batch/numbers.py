@@ -6,12 +6,15 @@ comes out complex knows whose step that is, as the type of an array says what it
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.expand import expand
@@ -23,6 +26,8 @@ from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_unit
 
 _STEP = 1e-20
 _OF_BODIES = frozenset({"first", "second", "inertia"})
+_TRIALS = 12
+"""Designs near the nominal one that are tried at most."""
 _NOUGHT = 1e-12
 """What a feature changes by, over its largest number, that counts as rounding."""
 
@@ -130,19 +135,34 @@ class Family:
 
     @cached_property
     def changes(self) -> tuple[Change, ...]:
-        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas."""
-        shift = np.where(self.nominal != 0.0, 0.01 * self.nominal, 1e-4) * np.cos(np.arange(len(self.nominal)) + 1.0)
-        values = self.nominal + np.array([[0.0], [1.0], [-0.7]]) * shift
-        found: list[Change] = []
-        start = 0
-        slopes = _slopes(self, values, self.widest, {}, {})[0]
-        for change in self.widest:
-            own = slopes[start : start + len(change.rows)]
-            start += len(change.rows)
-            rows = change.rows[(own != 0.0).any(axis=1)]
-            if len(rows):
-                found.append(replace(change, rows=rows))
-        return tuple(found)
+        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas.
+
+        Every one there can be where no three of them can be described.
+        """
+        own = _near_slopes(self)
+        if own.shape[1] < 3:
+            return self.widest
+        moves = np.split((own != 0.0).any(axis=1), np.cumsum([len(change.rows) for change in self.widest], dtype=int))[:-1]
+        return tuple(replace(change, rows=change.rows[rows]) for change, rows in zip(self.widest, moves, strict=True) if rows.any())
+
+
+def _near_slopes(family_: Family) -> Array:
+    """Derivatives (rows, n) of all that may change, at three designs near the nominal one, or at fewer where no more can be described."""
+    number = np.arange(len(family_.nominal)) + 1.0
+    scale = np.where(family_.nominal != 0.0, 0.01 * family_.nominal, 1e-4)
+    steps = np.stack([0.0 * number, np.cos(number), -0.7 * np.cos(number), *(np.cos(turns * number) for turns in range(2, _TRIALS))])
+    trials = family_.nominal + steps * scale
+    try:
+        return _slopes(family_, trials[:3], family_.widest, {}, {})[0]
+    except DesignError:
+        told = (slopes for trial in trials for slopes in _told_slopes(family_, trial))
+        return np.concatenate(list(itertools.islice(told, 3)), axis=1)
+
+
+def _told_slopes(family_: Family, design: Array) -> Iterator[Array]:
+    """Those of one design, if it can be described."""
+    with contextlib.suppress(DesignError):
+        yield _slopes(family_, design[None], family_.widest, {}, {})[0]
 
 
 def _upper(place: Feature) -> Array:
