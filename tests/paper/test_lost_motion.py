@@ -14,7 +14,9 @@ from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, SM_REF_B, TABL
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate, restrict
 from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import variants
 from flexstage.models.mapped import LeverStiffness, lever_stiffness
+from flexstage.parts.freedom import Freedom
 
 COMMANDS = np.array([0.0, 120.0, 240.0, 360.0, 480.0, 600.0])
 THEORY = np.array([0.0, 117.0, 234.0, 351.0, 468.0, 585.0])
@@ -68,6 +70,21 @@ def test_theory_column_of_table_2(parameters: DoubleTriangle) -> None:
 def test_fea_column_of_table_2_with_front_and_pole_bending(parameters: DoubleTriangle) -> None:
     gain = static_gain(_unit(parameters, TABLE_2_FEA), ("platform.z",), ("B4",)).values[0, 0]
     np.testing.assert_allclose(gain / 3.0 * COMMANDS, FEA, atol=0.1)
+
+
+@pytest.mark.parametrize("name", ["foot_notch", "lever_notch", "pole_neck"])
+def test_variants_are_the_models_of_a_stage_that_is_restricted_anew(name: str) -> None:
+    unit = isolate(double_triangle(), "B4", guide=UP)
+    simple = restrict(unit, {part: kept for part, kept in EQUATION_3.items() if part in unit.parts})
+    kept = {name: ((Freedom.X, Freedom.RY), (Freedom.RZ,))}
+    anew = fs.lumped(restrict(simple, kept))
+    one = next(variants(simple, [kept]))
+    assert one.coordinates == anew.coordinates
+    assert np.array_equal(one.stiffness_matrix, anew.stiffness_matrix)
+    assert np.array_equal(one.inertia_matrix, anew.inertia_matrix)
+    assert np.array_equal(one.input_matrix, anew.input_matrix)
+    assert np.array_equal(one.output, anew.output)
+    assert one.unknown == anew.unknown
 
 
 @BOTH

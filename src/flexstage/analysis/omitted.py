@@ -9,13 +9,14 @@ from typing import Annotated
 from flexstage.base.quantity import RATIO
 from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.restrict import restrict
+from flexstage.mechanism.restrict import Freedoms, restrict
+from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
-from flexstage.models.lumped import Masses, lumped
+from flexstage.models.lumped import Masses, lumped, variants
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.given import Joint
 
-Restrictions = Mapping[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]]
+Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 
 
 @dataclass(frozen=True)
@@ -63,14 +64,11 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
         if "/" in name or (name in parts and not isinstance(mechanism.parts[name], Joint))
     }
     simplified = restrict(mechanism, known)
-    base = _gain(simplified, channel)
-    changes = {
-        f"{name}.{freedom.value}": _gain(restrict(simplified, {name: _with(known[name], freedom)}), channel) - base
-        for name in known
-        for freedom in ALL
-        if freedom not in known[name][0]
-    }
-    return Omitted(*channel, base, _gain(mechanism, channel), changes)
+    given = [(name, freedom) for name in known for freedom in ALL if freedom not in known[name][0]]
+    kept = [{}, *({_part(simplified, name): _with(known[name], freedom)} for name, freedom in given)]
+    base, *gains = (_gain(model, channel) for model in variants(simplified, kept, Masses.PLATFORM))
+    changes = {f"{name}.{freedom.value}": gain - base for (name, freedom), gain in zip(given, gains, strict=True)}
+    return Omitted(*channel, base, _gain(lumped(mechanism, Masses.PLATFORM), channel), changes)
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
@@ -82,7 +80,7 @@ def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
     """
     links = drawn_units(mechanism)[name].links
     joined = [body for link in links.values() for body in link.bodies]
-    known: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
+    known: dict[str, tuple[Freedoms, Freedoms]] = {}
     for key, link in links.items():
         part = mechanism.parts[link.part]
         intended = link.free if link.free is not None else part.intended
@@ -92,10 +90,16 @@ def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
     return known
 
 
-def _with(kept: tuple[tuple[Freedom, ...], tuple[Freedom, ...]], freedom: Freedom) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
+def _part(simplified: Mechanism, name: str) -> str:
+    """The restricted part of a part's name or a link's address."""
+    unit, _, link = name.rpartition("/")
+    return drawn_units(simplified)[unit].links[link].part if "/" in name else name
+
+
+def _with(kept: tuple[Freedoms, Freedoms], freedom: Freedom) -> tuple[Freedoms, Freedoms]:
     elastic, free = kept
     return (*elastic, freedom), tuple(item for item in free if item is not freedom)
 
 
-def _gain(mechanism: Mechanism, channel: tuple[str, str]) -> float:
-    return float(static_gain(lumped(mechanism, Masses.PLATFORM), channel[:1], channel[1:]).values[0, 0])
+def _gain(model: LinearModel, channel: tuple[str, str]) -> float:
+    return float(static_gain(model, channel[:1], channel[1:]).values[0, 0])

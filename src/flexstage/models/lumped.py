@@ -6,7 +6,7 @@ equal and opposite wrenches H^T w on the two bodies of theirs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TypeVar, cast
@@ -26,6 +26,7 @@ from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.incidence import LARGE, Layout, end_twists, is_single, layout, require_room, twist_at, with_ground
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
+from flexstage.mechanism.restrict import Freedoms
 from flexstage.models.linear.channels import (
     Motions,
     absolute,
@@ -110,7 +111,47 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     >>> len(lumped(double_triangle()).coordinates)
     114
     """
-    stage = _stage_without_zeros(mechanism) or _stage(mechanism)
+    return _model(mechanism, _stage_without_zeros(mechanism) or _stage(mechanism), masses)
+
+
+def variants(
+    mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
+) -> Iterator[LinearModel]:
+    """The models of a stage whose restricted parts, by name, keep and free other (elastic, free) freedoms: it is placed once for all.
+
+    Each names the stage itself as its origin. Raises `DesignError` as `lumped` does.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.models.linear.static import static_gain
+    >>> stage = restrict(double_triangle(), {"lever_notch": ((), (Freedom.RZ,))})
+    >>> models = variants(stage, [{}, {"lever_notch": ((Freedom.RZ,), ())}])
+    >>> [round(static_gain(model, ("platform.z",), ("B4",)).values.item(), 3) for model in models]
+    [0.993, 0.969]
+    """
+    stage = _stage(mechanism)
+    return (_model(mechanism, _restricted(stage, each), masses) for each in kept)
+
+
+def _restricted(stage: _Stage, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> _Stage:
+    """The stage with other freedoms of the restricted parts that are named."""
+    links = dict(stage.assembly.links)
+    for name, link in links.items():
+        if link.link.part in kept:
+            elastic, free = kept[link.link.part]
+            links[name] = replace(link, part=replace(cast("Restricted", link.part), elastic=elastic, free=free))
+    laws = {name: law(link.part, link.material) for name, link in links.items() if link.link.part in kept}
+    strains = {name: replace(stage.strains[name], law=item.stiffness) for name, item in laws.items()}
+    locked = {name: laws[name].locked if name in laws else stage.freedoms.get(name, ()) for name in links}
+    return replace(
+        stage,
+        assembly=replace(stage.assembly, links=links),
+        strains={**stage.strains, **strains},
+        freedoms={name: freedoms for name, freedoms in locked.items() if freedoms},
+    )
+
+
+def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
     inertia = _inertia(mechanism, stage, masses)
     carried = _carrier_forces(stage, inertia)
     kept = _keep(stage, inertia)
@@ -470,8 +511,10 @@ def _softest(stiffness: Array) -> tuple[Array, Array]:
 
 def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[int, ...], named: list[int]) -> None:
     """Refuse designs of a batch with other motions without stiffness than the first, or whose `named` coordinates hardly tell them."""
+    if stage.order.sparse or all(item.operator.ndim == item.law.ndim == 2 for item in stage.strains.values()):
+        return
     laws = (np.diagonal(np.real(item.law), axis1=-2, axis2=-1) for item in stage.strains.values())
-    if stage.order.sparse or all(np.all(law > 0.0) for law in laws):
+    if all(np.all(law > 0.0) for law in laws):
         return
     stiffness = assemble(_strains(stage, basis, np.real), stage.order.size if basis is None else basis.shape[-1])
     designs = stiffness.reshape(-1, *stiffness.shape[-2:])

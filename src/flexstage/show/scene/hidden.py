@@ -42,7 +42,8 @@ def are_visible(polygons: Sequence[Array], opaque: Sequence[bool]) -> list[bool]
             pen.polygon(polygon.ravel().tolist(), fill=number)
     last = np.asarray(nearest)
     shows = np.zeros(len(polygons) + 1, dtype=bool)
-    shows[last] = True
+    shows[last[:, 0]] = True
+    shows[last[:, 1:][last[:, 1:] != last[:, :-1]]] = True  # where a row's colour changes: many times fewer than all points
     small = np.all(np.maximum.reduceat(places, starts[:-1]) - np.minimum.reduceat(places, starts[:-1]) < 2.0, axis=1)
     always = (shows[1:] | small | (np.diff(starts) < 3)).tolist()
     return [always[index] or (not opaque[index] and _is_before(polygon, last, index)) for index, polygon in enumerate(drawn)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -25,10 +26,11 @@ def outer(facets: Sequence[Facet]) -> list[Facet]:
     >>> len(low + high), len(outer(low + high))
     (12, 10)
     """
-    covers: list[list[Facet]] = [[] for _ in facets]
+    covers: list[list[Array]] = [[] for _ in facets]
+    sides = cache(lambda index: _sides(facets[index]))
     for one, other in np.argwhere(_are_back_to_back(facets)).tolist():
         if facets[one].paint.name != facets[other].paint.name:
-            covers[one].append(facets[other])
+            covers[one].append(sides(other))
     return [piece for facet, own in zip(facets, covers, strict=True) for piece in _subtract(facet, own)]
 
 
@@ -39,14 +41,18 @@ def _are_back_to_back(facets: Sequence[Facet]) -> Array:
     return (normals @ normals.T < -1.0 + 1e-9) & (np.abs(offsets[:, None] + offsets) < _FLUSH)
 
 
-def _subtract(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
-    """What is left of a facet, in convex pieces."""
+def _subtract(facet: Facet, covers: Sequence[Array]) -> Iterator[Facet]:
+    """What is left of a facet, in convex pieces, where the `_sides` of covers are these."""
     if not covers:
         yield facet
         return
     rest, pieces = facet, list[Facet]()
-    for start, outward in _sides(covers[0]):
-        distance = (rest.points - start) @ outward
+    starts, outward = covers[0]
+    if np.any(np.min(facet.points @ outward.T - np.sum(starts * outward, axis=1), axis=0) > -_FLUSH):
+        yield from _subtract(facet, covers[1:])
+        return
+    for start, out in zip(starts, outward, strict=True):
+        distance = (rest.points - start) @ out
         if np.all(distance < _FLUSH):
             continue
         if np.all(distance > -_FLUSH):
@@ -58,7 +64,7 @@ def _subtract(facet: Facet, covers: Sequence[Facet]) -> Iterator[Facet]:
         yield from _subtract(piece, covers[1:])
 
 
-def _sides(cover: Facet) -> Iterator[tuple[Array, Array]]:
-    """A point of each side of a facet and the unit direction out of it, in its plane."""
+def _sides(cover: Facet) -> Array:
+    """A point of each side of a facet, and the unit direction out of it in its plane (2, k, 3)."""
     outward = cross(np.roll(cover.points, -1, axis=0) - cover.points, cover.normal)
-    yield from zip(cover.points, outward / np.sqrt(np.sum(outward**2, axis=1, keepdims=True)), strict=True)
+    return np.stack([cover.points, outward / np.sqrt(np.sum(outward**2, axis=1, keepdims=True))])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import accumulate, pairwise
+from itertools import accumulate
 
 import numpy as np
 
@@ -37,15 +37,17 @@ def partition(facets: Sequence[Facet], size: float) -> Partition | None:
         return None
     if len(facets) == 1 or all(len(facet.points) < 3 for facet in facets) or _are_of_convex(facets, _TOLERANCE * size):
         return Partition(facets[0].normal, tuple(facets), None, None)
-    normal, sides, distances = _best(facets, _TOLERANCE * size)
+    normal, sides, distance = _best(facets, _TOLERANCE * size)
     here: list[Facet] = []
     before: list[Facet] = []
     behind: list[Facet] = []
-    for facet, side, distance in zip(facets, sides, distances, strict=True):
+    stop = 0
+    for facet, side in zip(facets, sides, strict=True):
+        start, stop = stop, stop + len(facet.points)
         if side == 0:
             here.append(facet)
         elif side == 2:
-            first, second = split(facet, distance)
+            first, second = split(facet, distance[start:stop])
             before.append(first)
             behind.append(second)
         else:
@@ -63,25 +65,25 @@ def _are_of_convex(facets: Sequence[Facet], tolerance: float) -> bool:
     return bool(np.all(heights <= np.sum([facet.points[0] for facet in facets] * normals, axis=1) + tolerance))
 
 
-def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], list[Array]]:
-    """The candidate plane that splits least; the side of each facet (0 in the plane, 1 before, -1 behind, 2 split), and distances.
+def _best(facets: Sequence[Facet], tolerance: float) -> tuple[Array, list[int], Array]:
+    """The candidate plane that splits least; the side of each facet (0 in the plane, 1 before, -1 behind, 2 split), all points' distances.
 
     Splits are dear, imbalance is cheap.
     """
     points = np.concatenate([facet.points for facet in facets])
-    starts = [0, *accumulate(len(facet.points) for facet in facets)]
+    starts = [0, *accumulate(len(facet.points) for facet in facets[:-1])]
     flat = [index for index, facet in enumerate(facets) if len(facet.points) > 2]
     tried = flat[:: max(1, len(flat) // _CANDIDATES)][:_CANDIDATES]
     normals = np.array([facets[index].normal for index in tried])
     offsets = np.sum([facets[index].points[0] for index in tried] * normals, axis=1)
     distances = normals @ points.T - offsets[:, None]
-    ahead = np.maximum.reduceat(distances, starts[:-1], axis=1) > tolerance
-    back = np.minimum.reduceat(distances, starts[:-1], axis=1) < -tolerance
+    ahead = np.maximum.reduceat(distances, starts, axis=1) > tolerance
+    back = np.minimum.reduceat(distances, starts, axis=1) < -tolerance
     first, second, both = (each.sum(axis=1) for each in (ahead, back, ahead & back))
     best = int(np.argmin(8 * both + np.abs(first - second)))
     sides = np.where(ahead[best] & back[best], 2, ahead[best].astype(int) - back[best])
     sides[tried[best]] = 0  # also where rounding says otherwise: every step takes at least one facet away
-    return normals[best], sides.tolist(), [distances[best, start:end] for start, end in pairwise(starts)]
+    return normals[best], sides.tolist(), distances[best]
 
 
 def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache, lru_cache
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.show.figures.style import DRIVE, GAUGE, INK, MUTED, PAPER
-from flexstage.show.scene.facet import Facet, Kind
+from flexstage.show.scene.facet import SHARP, Facet, Kind
 from flexstage.show.scene.hidden import are_visible
 from flexstage.show.scene.order import sort_by_depth
 from flexstage.show.scene.silhouette import silhouettes
@@ -139,34 +140,45 @@ def draw(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     """
     from flexstage.show.figures.scenery import Scenery  # loads matplotlib
 
-    flats = [seen.project(facet.points) for facet in facets]
-    solid = [_COLOURS[facet.paint.kind][1] == 1.0 for facet in facets]
-    shown = zip(facets, flats, are_visible(flats, solid), strict=True)
-    strokes = [stroke for facet, flat, shows in shown if shows for stroke in _strokes(facet, flat, seen)]
+    flats, edges, tones = _flats(facets, seen), _edges(facets, seen), _tones(facets, seen)
+    shows = are_visible(flats, [not _is_translucent(facet) for facet in facets])
+    drawn = (each for each, shown in zip(zip(facets, flats, edges, tones, strict=True), shows, strict=True) if shown)
+    strokes = [stroke for facet, flat, ends, tone in drawn for stroke in _strokes(facet.paint.kind, flat, ends, tone)]
     if strokes:
         axes.add_artist(Scenery(strokes))
 
 
-def _strokes(facet: Facet, flat: Array, seen: View) -> Iterator[Stroke]:
+def _strokes(kind: Kind, flat: Array, ends: list[tuple[int, int]], tone: int) -> Iterator[Stroke]:
     """A facet's area and its drawn edges; where all of an opaque one are drawn they are the area's own."""
     from flexstage.show.figures.scenery import Stroke
 
-    ends = _edges(facet, seen)
-    closed = len(ends) == len(flat) > 2 and not _is_translucent(facet)
+    closed = len(ends) == len(flat) > 2 and _COLOURS[kind][1] == 1.0
     if len(flat) > 2:
-        yield Stroke(flat, _fill_style(facet.paint.kind, _tone(facet, seen), edged=closed))
+        yield Stroke(flat, _fill_style(kind, tone, edged=closed))
     if ends and not closed:
         yield Stroke(flat, _line_style(), ends)
 
 
-def _edges(facet: Facet, seen: View) -> list[tuple[int, int]]:
-    count = len(facet.points)
-    return [(index, (index + 1) % count) for index, edge in enumerate(facet.edges) if edge is not None and edge @ seen.axes[2] <= 0.0]
+def _flats(facets: Sequence[Facet], seen: View) -> list[Array]:
+    """Every facet's points in the picture (n, 2)."""
+    flat = seen.project(np.concatenate([facet.points for facet in facets] or [np.zeros((0, 3))]))
+    return [flat[start:stop] for start, stop in pairwise(accumulate((len(facet.points) for facet in facets), initial=0))]
 
 
-def _tone(facet: Facet, seen: View) -> int:
-    """How light a facet is: less the more it turns away from a light above the viewer's left shoulder."""
-    return round((0.62 + 0.38 * max(0.0, float(facet.normal @ (_LIGHT @ seen.axes)))) * _SHADES)
+def _edges(facets: Sequence[Facet], seen: View) -> list[list[tuple[int, int]]]:
+    """The drawn edges of every facet, between which of its points."""
+    edges = [SHARP if edge is None else edge for facet in facets for edge in facet.edges]
+    away = iter((np.array(edges).reshape(-1, 3) @ seen.axes[2] <= 0.0).tolist())
+    return [
+        [(index, (index + 1) % len(facet.edges)) for index, edge in enumerate(facet.edges) if next(away) and edge is not None]
+        for facet in facets
+    ]
+
+
+def _tones(facets: Sequence[Facet], seen: View) -> list[int]:
+    """How light each facet is: less the more it turns away from a light above the viewer's left shoulder."""
+    turned = np.array([facet.normal for facet in facets]).reshape(-1, 3) @ (_LIGHT @ seen.axes)
+    return np.rint((0.62 + 0.38 * np.maximum(0.0, turned)) * _SHADES).astype(int).tolist()
 
 
 @cache
@@ -197,7 +209,7 @@ def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:
     from flexstage.show.figures.scenery import Scenery, Stroke
 
     style = _line_style(MUTED, 0.5, dashed=True)
-    lines = [Stroke(seen.project(facet.points), style, ends) for facet in facets if (ends := _edges(facet, seen))]
+    lines = [Stroke(flat, style, ends) for flat, ends in zip(_flats(facets, seen), _edges(facets, seen), strict=True) if ends]
     if lines:
         axes.add_artist(Scenery(lines))
 
