@@ -247,6 +247,13 @@ def test_interruption_is_told(flexstage: Command, monkeypatch: pytest.MonkeyPatc
     assert ended.err.startswith("Interrupted; nothing was written.")
 
 
+def test_leaving_runs_what_is_registered_for_the_end_and_keeps_the_code() -> None:
+    work = "atexit.register(print, 'last', flush=False) and print('first', end=' ') or 3"
+    words = f"import atexit; from flexstage.apps import cli; cli.run = lambda _: {work}; cli.main()"
+    ended = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (3, "first last\n")
+
+
 def test_the_entry_point_exits_with_the_code(tmp_path: Path) -> None:
     done = subprocess.run([*PROCESS, "modes", "nowhere.toml"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
