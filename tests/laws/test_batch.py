@@ -6,6 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
+import psutil
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,6 +21,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
+from flexstage.models.batch.compiled import Tables, by_kernel
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import Family, drawn_family, numbers_and_slopes, numbers_of, slopes_of
@@ -249,6 +251,22 @@ def test_the_kernel_is_numpy(slopes: bool) -> None:
         assert np.max(np.abs(fast.gradient - plain.gradient) / largest) < 1e-6  # the bound of the vectors' angles
         exact = fs.sensitivities(one(family_plan, values[7]), family_plan.family.addresses, modes=6)
         assert np.max(np.abs(fast.gradient[7] - exact.frequency) / largest) < 1e-9
+
+
+def test_the_kernel_gives_back_all_the_memory_that_it_takes() -> None:
+    """Where its table of links stayed, the calls would keep seven times as much."""
+    if (library := kernel()) is None:
+        pytest.skip("no compiler of C")
+    family_plan = plan(double_triangle(), ())
+    assert family_plan.start is not None
+    stage = Stage(family_plan.scheme, numbers_of(family_plan.family, np.zeros((1, 0))))
+    tables = Tables(family_plan.scheme, (), family_plan.planes)
+    taken: list[int] = []
+    for _ in range(3):  # the first calls settle what stays with the process
+        for _ in range(700):
+            by_kernel(library, stage, family_plan.start, tables)
+        taken.append(psutil.Process().memory_info().rss)
+    assert taken[-1] - taken[0] < 8e6
 
 
 @pytest.mark.parametrize("method", METHODS)

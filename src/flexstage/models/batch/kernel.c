@@ -1143,7 +1143,7 @@ int64_t flexstage_modes(const Task *t)
     w.law = malloc(sizeof(Law) * t->parts);
     w.fills = 0;
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
-    const int short_of = !memory || !varying || !filled || !w.law;
+    const int short_of = !memory || !varying || !filled || !crossing || !w.law;
     if (!short_of) {
         const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
         const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
@@ -1164,6 +1164,6 @@ int64_t flexstage_modes(const Task *t)
             }
         }
     }
-    free(memory), free(varying), free(filled), free(w.law);
+    free(memory), free(varying), free(filled), free(crossing), free(w.law);
     return short_of;
 }
