@@ -144,7 +144,8 @@ def _with_departures(draw: st.DrawFn, stage: Mechanism) -> Mechanism:
     link = draw(values(RecordNode(Link)))
     link = dataclasses.replace(link, part=part, at=link.at or (0.0, 0.0, 0.0))
     stage = dataclasses.replace(stage, units={"zz": Unit({}, {"link": link})}, place=draw(_placements()))
-    wanted = draw(st.lists(st.sampled_from(_departures(stage)), max_size=3, unique=True))
+    drawn = draw(st.lists(st.sampled_from(_departures(stage)), max_size=3, unique=True))
+    wanted = [key for key in drawn if not any(key.startswith(f"{other}.") for other in drawn)]  # `at` beside `at.x` is refused
     return dataclasses.replace(stage, changes=Table({key: draw(values(locate(stage, key).node)) for key in wanted}))
 
 
