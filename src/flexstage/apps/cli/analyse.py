@@ -23,7 +23,6 @@ from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
-from flexstage.show.matlab import as_mat
 from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
@@ -61,6 +60,8 @@ def analyse(  # noqa: PLR0913 (its options)
     whole = full or csv is not None or any(each is not None for _, each in outputs)
     analysis, compared = _worked_out(design, model, changes or [], outputs, whole=whole)
     if mat is not None:
+        from flexstage.show.matlab import as_mat
+
         save(mat, as_mat(analysis), "--mat")
     if report is not None:
         from flexstage.show.report import report as whole_report

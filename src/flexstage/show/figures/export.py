@@ -188,6 +188,7 @@ def _step(sign: str, across: int, up: int, decimals: int) -> str:
     return f"{start}{first}{'' if second.startswith('-') else ' '}{second}"
 
 
+@lru_cache(maxsize=1 << 12)
 def _decimal(value: int, decimals: int) -> str:
     """An integer number of units of the last decimal, as short as it goes.
 
