@@ -67,6 +67,11 @@ def test_a_formula_under_change_is_the_departures_not_the_units() -> None:
     assert moved.units == stage.units
 
 
+def test_changes_that_are_no_table_are_told() -> None:
+    with pytest.raises(DesignError, match="change: found 5 where a table is expected"):
+        loads(f"{START}change = 5\n")
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_a_tidied_case_is_the_same_stage_in_short_texts(name: str) -> None:
     mechanism = CASES[name].build()

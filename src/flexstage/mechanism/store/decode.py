@@ -154,6 +154,8 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         mechanism, changes = _with_own_values(reader, stated, changes, included)
         formulas, reader.tags = dict(mechanism.formulas), dict(mechanism.tags) | _tags_above(raw)
     values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
+    if not isinstance(values, dict):
+        return BAD
     sources = reader.sources | dict(mechanism.sources)
     tags = {**mechanism.tags, **reader.tags}
     mechanism = replace(mechanism, changes={**mechanism.changes, **values}, tags=Table(tags), sources=Table(sources))
