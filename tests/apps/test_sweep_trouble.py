@@ -6,6 +6,7 @@ import sys
 
 import h5py
 import numpy as np
+import psutil
 import pytest
 
 from flexstage.base.finding import DesignError
@@ -135,7 +136,7 @@ def test_a_cluster_gives_the_same_file_though_a_worker_dies(tmp_path, whole, wor
 
         def kill(done, _):
             if 0 < done < 700 and doomed:
-                doomed.pop().process.process.kill()
+                psutil.Process(doomed.pop().pid).kill()
 
         sweep(loads_study(STUDY), tmp_path / "r.h5", Run(scheduler=cluster.scheduler_address), kill)
     assert (tmp_path / "r.h5").read_bytes() == whole
