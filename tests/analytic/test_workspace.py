@@ -21,6 +21,7 @@ from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import CASES
 from flexstage.mechanism.expand import expand
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -188,6 +189,15 @@ def test_euler_columns():
     assert alone.ends == (Ends.FREE,)
     assert alone.critical[0] == pytest.approx(0.25 * found.critical[rod])
     assert alone.compression[0] == pytest.approx(9.80665, rel=1e-3)
+
+
+def test_what_only_bears_weight_across_it_is_not_pressed():
+    """Leaves that stand upright under carriages: what rounding leaves along them is no compression, on no processor."""
+    stage = CASES["voice-coil-xy"].build()
+    found = buckling(stage, lumped(stage), stroke_limits(stage))
+    assert (len(found.links), found.weakest) == (40, None)
+    assert not found.compression.any()
+    assert np.isinf(found.factor).all()
 
 
 def test_loads_against_limits():

@@ -65,11 +65,11 @@ class Buckling(InNotebook):
 
     @property
     def weakest(self) -> Annotated[str | None, VIEW]:
-        """The link with the least factor of its own on the first design; None without columns."""
-        if not self.links:
+        """The link with the least factor of its own on the first design; None where no column is pressed."""
+        if not np.size(self.factor):
             return None
-        first = self.factor.reshape(-1, len(self.links))[0]
-        return self.links[int(index_of_largest(1.0 / first))]
+        first = 1.0 / self.factor.reshape(-1, len(self.links))[0]
+        return self.links[int(index_of_largest(first))] if np.any(first > 0.0) else None
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
@@ -82,8 +82,8 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     """Euler's loads of leaves, rods, notches, necks and stacks against their compression over the corners of the strokes and dead load.
 
     P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated.
-    The whole stage's own factor knows how ends are really held. Forces of less than a billionth of the largest one
-    are rounding, and none.
+    The whole stage's own factor knows how ends are really held. Compressions of less than a billionth of the largest
+    force in any part, along or across it, are rounding, and none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -100,9 +100,9 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     length_ = _join([column[1] for column in columns.values()])
     ends = tuple(column[2] for column in columns.values())
     effective = length_ * np.array([2.0 if end is Ends.FREE else 1.0 for end in ends])
-    axial = wrenches[..., 0]
-    compression = np.max(-axial, axis=0)
-    compression = np.where(np.abs(compression) > _ROUNDING * np.max(np.abs(axial), axis=(0, -1), initial=0.0)[..., None], compression, 0.0)
+    compression = np.max(-wrenches[..., 0], axis=0)
+    largest = np.max(np.abs(wrenches[..., :3]), axis=(0, -2, -1), initial=0.0)
+    compression = np.where(np.abs(compression) > _ROUNDING * largest[..., None], compression, 0.0)
     critical = np.broadcast_to(np.pi**2 * rigidity / effective**2, compression.shape)
     return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance, whole)
 
