@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,25 +11,36 @@ from netgen import occ
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.parts.body import Imported
-from flexstage.solid.fea.component import Component, Interface, Joint
+from flexstage.parts.body import Cylinder, Imported, Pierced, Sphere
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.component import Component, Interface, Joint, groups
 from flexstage.solid.fea.content import KEPT
 from flexstage.solid.fea.draw import draw_form, move_solid
-from flexstage.solid.fea.piece import MILLIMETRES, Medium, Piece
+from flexstage.solid.fea.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
+from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, is_mirrored
 
 _TOLERANCE = 1e-3
 """Faces match within this distance [mm]."""
 _AREA = 1e-4
 """... and within this share of their area."""
+_WITHIN, _ALONG = 1e-9, 1.0 - 1e-9
+"""How far from a plane [m] what lies on it may be, and the least cosine between directions that are one."""
+
+_PLATE = 0.22
+"""Cylinders thinner than this share of their diameter are plates: elements as usual are smaller than their curvature asks for."""
 
 
 @dataclass(frozen=True)
 class Cad:
-    """A component drawn: the shape [mm] whose faces carry the names of `faces`, its solids the names `medium 0`, ... of `media`."""
+    """A component drawn: the shape [mm] whose faces carry the names of `faces`, its solids the names `medium 0`, ... of `media`.
+
+    Of what is cut at `mirrors` it is the positive side.
+    """
 
     shape: occ.TopoDS_Shape
     media: tuple[Medium, ...]
     faces: tuple[str, ...]
+    mirrors: Mirrors = Mirrors()
 
 
 def cad(component: Component) -> Cad:
@@ -53,6 +64,65 @@ def cad(component: Component) -> Cad:
     joints = [*(item.joint for item in component.interfaces), *component.fixed]
     require(finding for joint in joints if (finding := _name_face(shape, joint)) is not None)
     return Cad(shape, media, tuple(joint.name for joint in joints))
+
+
+def cut_component(component: Component, drawing: Cad) -> Cad:
+    """The positive side of a drawing of a component, across the planes that it is symmetric about.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> round(cut_component(bar(), cad(bar())).shape.mass, 6)  # mm^3
+    2500.0
+    """
+    mirrors = mirrors_of(component)
+    return replace(drawing, shape=cut_at_mirrors(drawing.shape, mirrors), mirrors=mirrors) if mirrors.axes else drawing
+
+
+def mirrors_of(component: Component) -> Mirrors:
+    """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
+
+    Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut through their thickness: their
+    elements, flat already, would be flatter. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates: their roundness
+    alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too little.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> mirrors_of(bar())
+    Mirrors(axes=(1, 2))
+    """
+    is_one = len({piece.medium for piece in component.pieces}) == 1
+    return Mirrors(tuple(axis for axis in MIRRORS if is_one and _is_mirrored(component, axis)))
+
+
+def _is_mirrored(component: Component, axis: int) -> bool:
+    """Whether a component without round pieces is symmetric across an axis, joint by joint, link by link and body by body."""
+    joints = [*(item.joint for item in component.interfaces), *component.fixed]
+    links = [piece for piece in component.pieces if piece.body is None]
+    frames = [*(joint.frame for joint in joints), *(piece.frame for piece in links)]
+    slender = any(isinstance(piece.form, Shaped) and piece.form.slender and abs(piece.frame.rotation[axis, 1]) > _ALONG for piece in links)
+    return (
+        not (slender or any(_is_round(piece.form) for piece in component.pieces))
+        and is_mirrored(component.pieces[0].medium, axis)
+        and all(abs(point[axis]) < _WITHIN for point in (*(frame.position for frame in frames), *component.bodies.values()))
+        and all(np.max(np.abs(frame.rotation[axis, 1:])) > _ALONG for frame in frames)
+        and all(is_symmetric(solids, axis) for solids in _solids(component))
+    )
+
+
+def _is_round(form: Form) -> bool:
+    """Whether it is round, and not so thin that this does not matter to the size of its elements."""
+    if isinstance(form, Pierced):
+        return any(map(_is_round, (form.solid, *form.holes)))
+    if isinstance(form, Cylinder):
+        return float(np.real(form.length)) > _PLATE * float(np.real(form.diameter if form.bore is None else form.bore))
+    return isinstance(form, Sphere) or (isinstance(form, Shaped) and form.is_round and form.is_prismatic)
+
+
+def _solids(component: Component) -> Iterator[list[occ.TopoDS_Shape]]:
+    """The solids of each link, of each body, and those that print each foreign joint."""
+    for members in groups(component).values():
+        yield [move_solid(draw_form(piece.form), piece.frame) for piece in (component.pieces[number] for number in members)]
+    for item in component.interfaces:
+        if item.footprint is not None and item.stamp is not None:
+            yield [move_solid(draw_form(item.footprint), item.stamp)]
 
 
 def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:

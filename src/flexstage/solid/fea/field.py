@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,6 +14,7 @@ from scipy import sparse
 from flexstage.base.number import Array
 from flexstage.solid.fea.frontal import Fronts, Grid, Matrix, dissect, factorise_fronts
 from flexstage.solid.fea.mesh import PieceMesh, centroids
+from flexstage.solid.fea.mirror import MIRRORS, Mirrors
 from flexstage.solid.fea.piece import MILLIMETRES, Medium
 from flexstage.spatial.frame import Frame
 
@@ -39,6 +40,13 @@ class Field:
     def size(self) -> int:
         """Number of degrees of freedom."""
         return self.space.ndof
+
+    @property
+    def whole_size(self) -> int:
+        """Number of degrees of freedom of the whole that its mesh is one side of: those on a mirror are their own images."""
+        mirrors = self.meshed.mirrors
+        own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
+        return 3 * int(np.sum(mirrors.copies >> own))
 
     @property
     def free(self) -> Array:
@@ -281,6 +289,18 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
     return _interpolated(space, [turn * ngsolve.CoefficientFunction(each) for each in local], faces)
 
 
+def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
+    """The kinds (12,) of these motions of a face about a mesh's mirrors.
+
+    >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
+    [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
+    """
+    terms = np.array([(1, 1, 0), (2, 0, 1), (1, 0, 1), *((axis, *powers) for axis in range(3) for powers in ((2, 0), (1, 1), (0, 2)))])
+    across = [int(np.argmax(np.abs(frame.rotation[axis]))) for axis in mirrors.axes]
+    odd = [(terms[:, 0] == column) ^ (terms[:, column] % 2 == 1) for column in across]
+    return mirrors.kinds(np.reshape(odd, (len(across), len(terms))))
+
+
 def _rigid_motion(frame: Frame, axis: int) -> ngsolve.CoefficientFunction:
     direction = frame.rotation[:, axis % 3]
     if axis < 3:
@@ -422,13 +442,80 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
     return form.Assemble()
 
 
+def held_at_mirrors(space: Field, kind: int) -> Array:
+    """Which degrees of freedom (n,) motions of a kind do not move at the mesh's mirrors: those across even ones, those along odd ones.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> held_at_mirrors(field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2), 0).any()  # it is whole
+    np.False_
+    """
+    mirrors, held = space.meshed.mirrors, np.zeros((3, space.size // 3), dtype=bool)
+    for axis in mirrors.axes:
+        across = np.arange(3) == axis
+        held[across != mirrors.is_odd(np.array(kind), axis)] |= nodes_on(space, MIRRORS[axis])
+    return held.ravel()
+
+
 Solver = Callable[[Array], Array]
 
 
-def factorise(space: Field, form: ngsolve.BilinearForm, held: Array | None = None) -> Solver:
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Motions or forces (n, k) side by side, and their `kinds` (k,) about the mesh's mirrors."""
+
+    values: Array
+    kinds: Array
+
+    @staticmethod
+    def of(values: Array) -> Columns:
+        """Of what is whole: of one kind."""
+        return Columns(values, np.zeros(values.shape[1], dtype=np.int64))
+
+    def kind(self, kind: int) -> Array:
+        """Those of one kind."""
+        return self.values[:, self.kinds == kind]
+
+
+def beside(columns: Sequence[Columns]) -> Columns:
+    """Columns side by side.
+
+    >>> beside([Columns.of(np.zeros((3, 2))), Columns.of(np.ones((3, 1)))]).values[0].tolist()
+    [0.0, 0.0, 1.0]
+    """
+    return Columns(np.hstack([each.values for each in columns]), np.concatenate([each.kinds for each in columns]))
+
+
+KindSolver = Callable[[Columns], Array]
+"""Displacements (n, k) that forces make."""
+
+
+def factorise_kinds(space: Field, form: ngsolve.BilinearForm) -> KindSolver:
+    """Solve for forces of all kinds, by a factor each.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
+    >>> factorise_kinds(space, stiffness(space))(Columns(np.zeros((space.size, 4)), np.arange(4))).shape == (space.size, 4)
+    True
+    """
+    solvers = [factorise(space, form, kind) for kind in range(space.meshed.mirrors.copies)]
+
+    def solve(forces: Columns) -> Array:
+        result = np.empty_like(forces.values)
+        for kind in np.unique(forces.kinds):
+            result[:, forces.kinds == kind] = solvers[kind](forces.kind(kind))
+        return result
+
+    return solve
+
+
+def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
     """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
 
-    Beside those of the field, degrees of freedom of the mask `held` (n,) are.
+    Beside those of the field, those are held that motions of a `kind` do not move at its mirrors.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
@@ -441,9 +528,9 @@ def factorise(space: Field, form: ngsolve.BilinearForm, held: Array | None = Non
     """
     values, columns, starts = form.mat.CSR()
     whole = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values))
-    also = np.zeros(space.size, dtype=bool) if held is None else held
+    also = held_at_mirrors(space, kind)
     try:
-        solve = factorise_fronts(space.fronts, whole.without(also) if also.any() else whole).solve
+        solve = factorise_fronts(space.fronts, whole, also).solve
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
         inverse = form.mat.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky")
         solve = functools.partial(_apply_by_columns, inverse.Mult)

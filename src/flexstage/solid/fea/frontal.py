@@ -56,12 +56,6 @@ class Matrix:
     columns: Array
     values: Array
 
-    def without(self, held: Array) -> Matrix:
-        """The same without what couples some degrees of freedom (mask) to the others: each stands for itself."""
-        rows = np.repeat(np.arange(len(held)), np.diff(self.starts))
-        kept = ~(held[rows] | held[self.columns]) | (rows == self.columns)
-        return Matrix(self.starts, self.columns, np.where(kept, self.values, 0.0))
-
 
 @dataclass(frozen=True, eq=False)
 class _Front:
@@ -199,11 +193,12 @@ class Factorised:
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrix: Matrix) -> Factorised:
-    """Factorise a matrix that is positive definite on the free nodes.
+def factorise_fronts(order: Fronts, matrix: Matrix, held: Array) -> Factorised:
+    """Factorise a matrix that is positive definite on the free nodes; degrees of freedom `held` (mask) are coupled to no other.
 
     Raises `numpy.linalg.LinAlgError` where it is not.
     """
+    by_node = held.reshape(3, -1).T[order.nodes]
     entries, local = _Entries.of(order, matrix), np.empty(len(order.nodes), dtype=np.int64)
     traces: dict[int, Array] = {}
     factors: list[_Factor] = []
@@ -212,6 +207,7 @@ def factorise_fronts(order: Fronts, matrix: Matrix) -> Factorised:
         local[front.first : front.last], local[front.beyond] = np.arange(own), np.arange(own, size)
         panel, trace = np.zeros((3 * size, 3 * own), order="F"), np.zeros((3 * (size - own), 3 * (size - own)), order="F")
         entries.add(panel, front, local)
+        _uncouple(panel, np.flatnonzero(np.concatenate([by_node[front.first : front.last], by_node[front.beyond]])))
         for child in front.children:
             met, left = local[order.fronts[child].beyond], traces.pop(child)
             cut = int(np.searchsorted(met, own))
@@ -220,6 +216,14 @@ def factorise_fronts(order: Fronts, matrix: Matrix) -> Factorised:
         factor, traces[number] = _eliminate(panel, trace)
         factors.append(factor)
     return Factorised(order, tuple(factors))
+
+
+def _uncouple(panel: Array, held: Array) -> None:
+    """Leave of some rows of a front, and of the same of its own columns, the diagonal alone."""
+    own = held[held < panel.shape[1]]
+    diagonal = panel[own, own]
+    panel[held], panel[:, own] = 0.0, 0.0
+    panel[own, own] = diagonal
 
 
 def _add_trace(law: Array, rows: Array, trace: Array, columns: Array) -> None:

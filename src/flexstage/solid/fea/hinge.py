@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import pairwise
 from typing import Any
 
 import ngsolve
@@ -23,15 +23,16 @@ from flexstage.parts.profile import Contour, Filleted
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.draw import specimen
 from flexstage.solid.fea.estimate import Accuracy, change, remaining
-from flexstage.solid.fea.field import Field, apply_form, factorise, field, hooke, nodes_on, rigid, stiffness, times
+from flexstage.solid.fea.field import Field, apply_form, factorise, field, rigid, stiffness, times
 from flexstage.solid.fea.fineness import Fineness
 from flexstage.solid.fea.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
 from flexstage.solid.fea.memory import Counts
 from flexstage.solid.fea.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
-from flexstage.solid.fea.piece import Medium, medium, span
+from flexstage.solid.fea.mirror import MIRRORS, Mirrors
+from flexstage.solid.fea.piece import Medium, is_mirrored, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.roots import Roots, own_roots, rises
-from flexstage.solid.fea.specimen import END, MIRRORS, START, Specimen, cut_at_mirrors, own_stub
+from flexstage.solid.fea.specimen import END, START, Specimen, own_stub
 from flexstage.solid.fea.stub import beam, circle, rectangle
 from flexstage.spatial.frame import identity, transport
 
@@ -101,21 +102,16 @@ class _Subject:
 
     def draw(self, size: float) -> Specimen:
         """As a specimen, cut where hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
-        across = [axis for axis in _mirrors(self.medium) if not (axis == 1 and self.part.slender)]
-        return cut_at_mirrors(specimen(self.part, (self.first, self.second), size), across)
+        across = [axis for axis in MIRRORS if is_mirrored(self.medium, axis) and not (axis == 1 and self.part.slender)]
+        return specimen(self.part, (self.first, self.second), size).cut(across)
 
 
 @dataclass(frozen=True, eq=False)
 class _Mesh:
-    """A mesh [mm], and the planes, by the axis across them, of which it is one side."""
+    """A mesh [mm], and the planes of which it is one side."""
 
     mesh: ngsolve.Mesh
-    mirrors: tuple[int, ...]
-
-    @property
-    def copies(self) -> int:
-        """How many of it the hinge consists of."""
-        return 2 ** len(self.mirrors)
+    mirrors: Mirrors
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,22 +221,22 @@ def _solves(subject: _Subject, asked: Accuracy, told: Listener) -> Iterator[_Sol
         told.report(Stage.MESHING, 0.0)
         cut = _mesh(subject, asked.shrink**refinement, highest)
         if refinement == 0:
-            if cut.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
+            if cut.mirrors.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
                 lowest, cut = 2, _mesh(subject, _COARSER, highest)
             mesh = cut.mesh
             told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
         for order in range(lowest if refinement == 0 else highest, highest + 1):
             space = _space(subject, cut, order)
-            if cut.copies * space.size > asked.freedoms:
+            if cut.mirrors.copies * space.size > asked.freedoms:
                 return
             told.report(Stage.FACTORISING, 0.0)
-            yield _Solve(_law(subject.part, space, cut), cut.copies * space.size, cut.copies * cut.mesh.ne, order)
+            yield _Solve(_law(subject.part, space, cut), cut.mirrors.copies * space.size, cut.mirrors.copies * cut.mesh.ne, order)
 
 
 def _space(subject: _Subject, cut: _Mesh, order: int) -> Field:
     cut.mesh.Curve(order)
     owner, finer = np.zeros(cut.mesh.ne, dtype=int), np.zeros(cut.mesh.ne, dtype=bool)
-    return field(PieceMesh(cut.mesh, (subject.medium,), (START, END), owner, finer), [START, END], order)
+    return field(PieceMesh(cut.mesh, (subject.medium,), (START, END), owner, finer, cut.mirrors), [START, END], order)
 
 
 def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
@@ -250,34 +246,13 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
     """
     form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
     strained, forces = stiffness(space, assemble=False), times(form, motion)  # by strains: the rounding of K u drowns a thin leaf
-    for odd in product((False, True), repeat=len(cut.mirrors)):
-        signs = dict(zip(cut.mirrors, odd, strict=True))
-        alike = [column for column in range(6) if all(_is_odd(column, axis) == sign for axis, sign in signs.items())]
-        own = motion[:, alike] - factorise(space, form, _held_on_mirrors(space, signs))(forces[:, alike])
-        law[np.ix_(alike, alike)] = cut.copies * (own.T @ apply_form(strained, own))
+    kinds = cut.mirrors.twist_kinds(np.eye(3))
+    for kind in range(cut.mirrors.copies):
+        alike = np.flatnonzero(kinds == kind)
+        own = motion[:, alike] - factorise(space, form, kind)(forces[:, alike])
+        law[np.ix_(alike, alike)] = cut.mirrors.copies * (own.T @ apply_form(strained, own))
     _require_symmetric(part, law)
     return _symmetrise(law)
-
-
-def _is_odd(column: int, axis: int) -> bool:
-    """Whether a rigid motion turns round in a mirror across an axis: along it, or about another axis."""
-    return column == axis if column < 3 else column != 3 + axis
-
-
-def _held_on_mirrors(space: Field, signs: Mapping[int, bool]) -> Array:
-    """Which degrees of freedom (n,) planes hold, by the axis across them: that across it of even motions, those along it of odd ones."""
-    held = np.zeros((3, space.size // 3), dtype=bool)
-    for axis, odd in signs.items():
-        across = np.arange(3) == axis
-        held[across != odd] |= nodes_on(space, MIRRORS[axis])
-    return held.ravel()
-
-
-def _mirrors(own: Medium) -> tuple[int, ...]:
-    """The axes, y or z, across which a medium is symmetric: no stress that turns round in a mirror there with a strain that does not."""
-    law = hooke(own)
-    turned = {1: np.array([1, 1, 1, -1, 1, -1]), 2: np.array([1, 1, 1, -1, -1, 1])}
-    return tuple(axis for axis, sign in turned.items() if np.max(np.abs(law - law * np.outer(sign, sign))) < _SYMMETRY * np.max(law))
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
@@ -300,7 +275,9 @@ def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
     for shrink, grading, curvature in _ATTEMPTS:
         drawn = subject.draw(factor * shrink)
         sizes = {
-            "mp": restrict_sizes((drawn.within(points), size) for points, size in core_points(subject.part, _NECK * factor * shrink)),
+            "mp": restrict_sizes(
+                (drawn.mirrors.within(points), size) for points, size in core_points(subject.part, _NECK * factor * shrink)
+            ),
             "grading": grading,
             "curvaturesafety": curvature / factor,
         }

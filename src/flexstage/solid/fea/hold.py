@@ -7,7 +7,7 @@ stacks and faces on rigid bodies stay plane always.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import ngsolve
 import numpy as np
@@ -15,7 +15,20 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.component import Component, Interface
-from flexstage.solid.fea.field import Field, Inertia, Solver, factorise, mean_motion, rigid, shift_stiffness, times, warping_motion
+from flexstage.solid.fea.field import (
+    Columns,
+    Field,
+    Inertia,
+    KindSolver,
+    beside,
+    factorise_kinds,
+    mean_motion,
+    rigid,
+    shift_stiffness,
+    times,
+    warp_kinds,
+    warping_motion,
+)
 from flexstage.solid.fea.fineness import Hold
 from flexstage.spatial.frame import Frame
 
@@ -27,9 +40,9 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 class Support:
     """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
 
-    faces: Array
-    warps: Array
-    solve: Solver
+    faces: Columns
+    warps: Columns
+    solve: KindSolver
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
@@ -52,7 +65,7 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> elastic = stiffness(space)
-    >>> faces = support(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces
+    >>> faces = support(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces.values
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
@@ -60,23 +73,33 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
         return _afloat(component, space, mass)
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    plain = factorise(space, shift_stiffness(space, _SHIFT) if unsupported else elastic)
+    plain = factorise_kinds(space, shift_stiffness(space, _SHIFT) if unsupported else elastic)
     if not loose:
-        faces = _face_motions(component.interfaces, space, elastic, plain)
-        return Support(faces, _face_warpings([item for item in component.interfaces if item.yields], space, elastic, plain), plain)
+        yielding = [item for item in component.interfaces if item.yields]
+        return Support(
+            _static_motions([_face_motion(item, space) for item in component.interfaces], space, elastic, plain),
+            _static_motions([_face_warping(item, space) for item in yielding], space, elastic, plain),
+            plain,
+        )
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
     held, solve = _held(plain, means)
     free = np.split(held, len(loose), axis=1)
-    columns = [free[loose.index(item)] if item in loose else _face_motions([item], space, elastic, solve) for item in component.interfaces]
-    return Support(np.hstack(columns), np.zeros((space.size, 0)), solve)
+    columns = [
+        free[loose.index(item)] if item in loose else _static_motions([_face_motion(item, space)], space, elastic, solve).values
+        for item in component.interfaces
+    ]
+    return Support(Columns.of(np.hstack(columns)), Columns.of(np.zeros((space.size, 0))), solve)
 
 
-def _held(plain: Solver, means: Array) -> tuple[Array, Solver]:
-    """Motions (n, m) that make one of some means (m, n) a unit and the others nought, and the solver with all of them nought."""
-    carried = plain(means.T)
+def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
+    """Motions (n, m) that make one of some means (m, n) a unit and the others nought, and the solver with all of them nought.
+
+    Of what is whole: all is of one kind.
+    """
+    carried = plain(Columns.of(means.T))
     gain = np.linalg.inv(means @ carried)
 
-    def solve(forces: Array) -> Array:
+    def solve(forces: Columns) -> Array:
         motion = plain(forces)
         return motion - carried @ (gain @ (means @ motion))
 
@@ -97,25 +120,23 @@ def middle(component: Component) -> Array:
 def _afloat(component: Component, space: Field, mass: Inertia) -> Support:
     """What nothing holds: it moves rigidly, and all else has neither momentum nor angular momentum."""
     motion = rigid(space, Frame(np.eye(3), middle(component)))
-    plain = factorise(space, shift_stiffness(space, _SHIFT))
-    return Support(motion, np.zeros((space.size, 0)), _held(plain, mass.times(motion).T)[1])
+    plain = factorise_kinds(space, shift_stiffness(space, _SHIFT))
+    return Support(Columns.of(motion), Columns.of(np.zeros((space.size, 0))), _held(plain, mass.times(motion).T)[1])
 
 
-def _face_motions(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
-    return _static_motions(space, [rigid(space, _frame(item), faces=item.joint.name) for item in interfaces], elastic, solve)
+def _face_motion(item: Interface, space: Field) -> Columns:
+    return Columns(rigid(space, _frame(item), faces=item.joint.name), space.meshed.mirrors.twist_kinds(np.eye(3)))
 
 
-def _face_warpings(interfaces: Sequence[Interface], space: Field, elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
-    moved = [warping_motion(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name) for item in interfaces]
-    return _static_motions(space, moved, elastic, solve)
+def _face_warping(item: Interface, space: Field) -> Columns:
+    motions = warping_motion(space, item.joint.frame, float(np.sqrt(item.joint.area)), item.joint.name)
+    return Columns(motions, warp_kinds(space.meshed.mirrors, item.joint.frame))
 
 
-def _static_motions(space: Field, moved: Sequence[Array], elastic: ngsolve.BilinearForm, solve: Solver) -> Array:
+def _static_motions(moved: Sequence[Columns], space: Field, elastic: ngsolve.BilinearForm, solve: KindSolver) -> Columns:
     """One face moved and all others held: u = R - K_ff^-1 K R."""
-    if not moved:
-        return np.zeros((space.size, 0))
-    motions = np.hstack(moved)
-    return motions - solve(times(elastic, motions))
+    motions = beside([Columns.of(np.zeros((space.size, 0))), *moved])
+    return replace(motions, values=motions.values - solve(replace(motions, values=times(elastic, motions.values))))
 
 
 def _frame(interface: Interface) -> Frame:

@@ -31,21 +31,22 @@ _COARSER, _COARSEST = 1.25, 12.0
 
 @dataclass(frozen=True)
 class Counts:
-    """What a tetrahedral mesh consists of."""
+    """What a tetrahedral mesh consists of, and of how many sides like it the whole does."""
 
     vertices: float
     edges: float
     faces: float
     elements: float
+    sides: int = 1
 
     @staticmethod
-    def of(elements: float) -> Counts:
+    def of(elements: float, sides: int = 1) -> Counts:
         """The usual counts of a mesh with so many elements.
 
         >>> Counts.of(1000.0)
-        Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0)
+        Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0, sides=1)
         """
-        return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements)
+        return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
         """Roughly the counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
@@ -64,7 +65,7 @@ class Counts:
         return self._times(1.0 + share * (freedoms(self, order + 1) / freedoms(self, order) - 1.0))
 
     def _times(self, factor: float) -> Counts:
-        return Counts(*(value * factor for value in (self.vertices, self.edges, self.faces, self.elements)))
+        return Counts(self.vertices * factor, self.edges * factor, self.faces * factor, self.elements * factor, self.sides)
 
 
 def freedoms(counts: Counts, order: int) -> float:
@@ -92,9 +93,10 @@ def entries(counts: Counts, order: int) -> float:
 
 
 def needed(counts: Counts, order: int, columns: int) -> float:
-    """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factor, basis.
+    """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
 
-    Within -15 and +30 % of what was measured at orders two to four with modes; without them up to 65 % more.
+    One side of what is symmetric has a factor for every kind of its motions, as many as there are sides. Within -15 and +30 % of what was
+    measured at orders two to four with modes; without them up to 65 % more.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -102,7 +104,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
     size, full = freedoms(counts, order), entries(counts, order)
     growth = max(1.0, size / _FACTOR_FREEDOMS) ** _FACTOR_GROWTH
     vectors = 8.0 * size * (_COPIES * columns + _LANCZOS)
-    return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + _FACTOR * growth) + vectors
+    return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + counts.sides * _FACTOR * growth) + vectors
 
 
 def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
@@ -124,12 +126,15 @@ def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit:
     'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are there'
     >>> found.advice
     'Ask for order 2, about 0.363 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
+    >>> refusal("half a lever", Counts(1416, 7258, 10580, 4737, sides=2), Fineness(), 24, 0.5e9).what
+    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are there'
     """
     wanted = needed(counts, fineness.order, columns)
     if wanted <= limit:
         return None
     what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
-    what += f" ({freedoms(counts, fineness.order):,.0f} degrees of freedom), and {gigabytes(limit)} are there"
+    size = f"{freedoms(counts, fineness.order):,.0f} degrees of freedom{' of one side' if counts.sides > 1 else ''}"
+    what += f" ({size}), and {gigabytes(limit)} are there"
     smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
     remedy = f"Ask for {', or for '.join(smaller)}" if smaller else "Free memory, or read its parts one by one"
     return Finding(where, what, remedy)

@@ -15,10 +15,11 @@ from netgen.meshing import MeshingParameters
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.cad import Cad, cad, half_extents, region
+from flexstage.solid.fea.cad import Cad, cad, cut_component, half_extents, region
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
+from flexstage.solid.fea.mirror import Mirrors
 from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, bends_both_ways, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.straighten import straighten
@@ -57,7 +58,8 @@ _AT_HAND = 8
 class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to.
 
-    Elements that are `finer` (mask) take one order more than the others: those of notches.
+    Elements that are `finer` (mask) take one order more than the others: those of notches. Where it is the positive side of what is
+    symmetric about `mirrors`, `images` (copies - 1, elements) are the pieces that the mirror images of its elements belong to.
     """
 
     mesh: ngsolve.Mesh
@@ -65,10 +67,14 @@ class PieceMesh:
     faces: tuple[str, ...]
     owner: Array
     finer: Array
+    mirrors: Mirrors = Mirrors()
+    images: tuple[Array, ...] = ()
 
 
-def mesh_component(component: Component, fineness: Fineness, report: Report = silent, first: int = 0) -> PieceMesh:
-    """Draw and mesh a component.
+def mesh_component(
+    component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
+) -> PieceMesh:
+    """Draw and mesh a component; `by_symmetry` the positive side alone where it is symmetric.
 
     Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
     turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
@@ -83,7 +89,7 @@ def mesh_component(component: Component, fineness: Fineness, report: Report = si
     """
     require(_thin_findings(component, fineness))
     report(Stage.DRAWING, 0.0)
-    subject = _Subject.of(component)
+    subject = _Subject.of(component, by_symmetry=by_symmetry)
     drawing = _drawing(subject)
     failure = "the mesher was not asked"
     for number in range(first, len(ATTEMPTS)):
@@ -115,17 +121,19 @@ class _Subject:
 
     content: str
     faces: tuple[str, ...]
+    by_symmetry: bool
     component: Component = field(compare=False)
 
     @staticmethod
-    def of(component: Component) -> _Subject:
+    def of(component: Component, *, by_symmetry: bool) -> _Subject:
         joints = [*(item.joint for item in component.interfaces), *component.fixed]
-        return _Subject(content(component), tuple(joint.name for joint in joints), component)
+        return _Subject(content(component), tuple(joint.name for joint in joints), by_symmetry, component)
 
 
 @lru_cache(maxsize=_AT_HAND)
 def _drawing(subject: _Subject) -> Cad:
-    return cad(subject.component)
+    whole = cad(subject.component)
+    return cut_component(subject.component, whole) if subject.by_symmetry else whole
 
 
 @lru_cache(maxsize=_AT_HAND)
@@ -134,7 +142,7 @@ def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolv
     component, drawing = subject.component, _drawing(subject)
     shrink, grading, curvature = ATTEMPTS[number]
     sizes = {
-        "mp": _refine_necks(component.pieces, shrink * fineness.neck),
+        "mp": _refine_necks(component.pieces, shrink * fineness.neck, drawing.mirrors),
         "maxh": _set_sizes(component, drawing, fineness, shrink),
         "grading": grading * fineness.grading,
         "curvaturesafety": curvature * _CURVATURE,
@@ -175,7 +183,8 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
             within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
             necks |= within & (owner == number)
     finer = np.isin(owner, [number for number, piece in enumerate(pieces) if _is_notch(piece.form)])
-    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer)
+    images = tuple(owners(pieces, places * signs) for signs in drawing.mirrors.images)
+    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer, drawing.mirrors, images)
 
 
 def _is_notch(form: Form) -> bool:
@@ -183,10 +192,10 @@ def _is_notch(form: Form) -> bool:
     return isinstance(form, Shaped) and form.has_arc and not (form.throat.is_round or form.slender)
 
 
-def _refine_necks(pieces: tuple[Piece, ...], neck: float) -> MeshingParameters:
+def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> MeshingParameters:
     """Smaller elements where the strain of hinges changes most from one to the next."""
     return restrict_sizes(
-        (points @ piece.frame.rotation.T + piece.frame.position, size)
+        (mirrors.within(points @ piece.frame.rotation.T + piece.frame.position), size)
         for piece in pieces
         if isinstance(piece.form, Shaped)
         for points, size in _fine_points(piece.form, neck)

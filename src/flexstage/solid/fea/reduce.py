@@ -7,7 +7,7 @@ held, to a wrench on each body and to each stroke: statics under these loads is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import ngsolve
 import numpy as np
@@ -19,11 +19,13 @@ from flexstage.solid.fea.cad import region
 from flexstage.solid.fea.component import Component, groups
 from flexstage.solid.fea.contribution import contributions
 from flexstage.solid.fea.field import (
+    Columns,
     Field,
     Inertia,
-    Solver,
+    beside,
     degrees_of,
     field,
+    held_at_mirrors,
     inertia,
     rigid,
     seat_motion,
@@ -32,7 +34,7 @@ from flexstage.solid.fea.field import (
     times,
 )
 from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hold import is_rigid, middle, support
+from flexstage.solid.fea.hold import Support, is_rigid, middle, support
 from flexstage.solid.fea.krylov import lowest_modes
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.piece import span, thinnest
@@ -53,9 +55,7 @@ class _Problem:
     field: Field
     stiffness: ngsolve.BilinearForm
     inertia: Inertia
-    faces: Array
-    warps: Array
-    solve: Solver
+    held: Support
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class _Motions:
     component: Component
     field: Field
     inertia: Inertia
-    basis: Array
+    basis: Columns
     faces: int
     warps: int
     strokes: Mapping[int, Array]
@@ -98,18 +98,21 @@ def reduce_mesh(
 def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None, report: Report) -> _Motions:
     problem = _problem(component, mesh, reduction, report)
     report(Stage.REDUCING, 0.0)
+    held, twist = problem.held, mesh.mirrors.twist_kinds(np.eye(3))
     strokes = _strokes(problem)
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
-    loads = [_wrenches(problem, body) for body in loaded] + [force[:, None] for force in strokes.values()]
-    loads += [rows.T for rows in seats.values()]
+    loads = [Columns(_wrenches(problem, body), twist) for body in loaded]
+    loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
+    loads += [Columns.of(rows.T) for rows in seats.values()]
     if reduction.residual:
-        loads.append(problem.inertia.times(problem.faces))
-    inner = _independent_columns(
-        problem, [_modes(problem, reduction.modes, springs), *([problem.solve(np.hstack(loads))] if loads else [])]
-    )
-    basis = np.hstack([problem.faces, problem.warps, inner])
-    faces, warps = problem.faces.shape[1], problem.warps.shape[1]
+        loads.append(replace(held.faces, values=problem.inertia.times(held.faces.values)))
+    inner = [_modes(problem, reduction.modes, springs)]
+    if loads:
+        forces = beside(loads)
+        inner.append(replace(forces, values=held.solve(forces)))
+    basis = beside([held.faces, held.warps, _independent_columns(problem, beside(inner))])
+    faces, warps = len(held.faces.kinds), len(held.warps.kinds)
     return _Motions(component, problem.field, problem.inertia, basis, faces, warps, strokes, seats)
 
 
@@ -119,8 +122,7 @@ def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report
     space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
     elastic, mass = stiffness(space), inertia(space)
     report(Stage.FACTORISING, 0.0)
-    interfaces = support(component, space, elastic, mass, reduction.hold)
-    return _Problem(component, space, elastic, mass, interfaces.faces, interfaces.warps, interfaces.solve)
+    return _Problem(component, space, elastic, mass, support(component, space, elastic, mass, reduction.hold))
 
 
 def _strokes(problem: _Problem) -> dict[int, Array]:
@@ -138,9 +140,10 @@ def _elements(problem: _Problem | _Motions, name: str) -> Array:
 def _wrenches(problem: _Problem, body: str) -> Array:
     """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
     frame = Frame(np.eye(3), problem.component.bodies[body])
-    motion = rigid(problem.field, frame)
+    motion, mirrors = rigid(problem.field, frame), problem.field.meshed.mirrors
     momentum = inertia(problem.field, _elements(problem, body)).times(motion)
-    return momentum @ np.linalg.inv(motion.T @ momentum)
+    kinds = mirrors.twist_kinds(np.eye(3))
+    return momentum @ np.linalg.inv(mirrors.whole(motion.T @ momentum, kinds, kinds))
 
 
 def _seat(problem: _Problem, end: End) -> Array:
@@ -152,13 +155,26 @@ def _seat(problem: _Problem, end: End) -> Array:
     return seat_motion(problem.field, end.point, _REACH * thinnest(nearest.form), faces)
 
 
-def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
-    """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs.
+def _modes(problem: _Problem, count: int, springs: Array | None) -> Columns:
+    """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs."""
+    copies = problem.field.meshed.mirrors.copies
+    found = [_modes_of_kind(problem, count, springs, kind) for kind in range(copies)]
+    modes = beside([Columns(each, np.full(each.shape[1], kind)) for kind, each in enumerate(found)])
+    if copies == 1:
+        return modes
+    stiffnesses = np.einsum("ij,ij->j", modes.values, times(problem.stiffness, modes.values))  # of modes of unit mass
+    lowest = np.sort(np.argsort(stiffnesses, kind="stable")[:count])
+    return Columns(modes.values[:, lowest], modes.kinds[lowest])
+
+
+def _modes_of_kind(problem: _Problem, count: int, springs: Array | None, kind: int) -> Array:
+    """The lowest modes (n, count) of a kind.
 
     Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
     """
-    free = np.flatnonzero(problem.field.free)
-    joined = problem.faces if springs is not None else problem.faces[:, :0]
+    faces = problem.held.faces.values
+    free = np.flatnonzero(problem.field.free & ~held_at_mirrors(problem.field, kind))
+    joined = faces if springs is not None else faces[:, :0]
     boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
     size = len(free) + joined.shape[1]
     count = min(count, size)
@@ -175,44 +191,54 @@ def _modes(problem: _Problem, count: int, springs: Array | None) -> Array:
     def inverse(force: Array) -> Array:
         full = np.zeros((problem.field.size, force.shape[1]))
         full[free] = force[: len(free)]
-        return np.vstack([problem.solve(full)[free], np.linalg.solve(boundary, force[len(free) :])])
+        moved = problem.held.solve(Columns(full, np.full(force.shape[1], kind)))
+        return np.vstack([moved[free], np.linalg.solve(boundary, force[len(free) :])])
 
     found = lowest_modes(weighed, inverse, size, count)
     result[free, : found.shape[1]] = found[: len(free)]
     return result
 
 
-def _independent_columns(problem: _Problem, motions: list[Array]) -> Array:
-    """An independent set spanning the motions, orthonormal in strain energy."""
-    everything = np.hstack(motions)
-    energy = everything.T @ times(problem.stiffness, everything)
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(energy), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
-    kept = values > _DEPENDENT
-    return everything @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept]))
+def _independent_columns(problem: _Problem, motions: Columns) -> Columns:
+    """An independent set spanning the motions, kind by kind, orthonormal in strain energy."""
+    copies = problem.field.meshed.mirrors.copies
+    found: list[Columns] = []
+    for kind in range(copies):
+        own = motions.kind(kind)
+        energy = copies * (own.T @ times(problem.stiffness, own))
+        scale = 1.0 / np.sqrt(np.maximum(np.diag(energy), np.finfo(float).tiny))
+        values, vectors = np.linalg.eigh(0.5 * (energy + energy.T) * scale * scale[:, None])
+        kept = values > _DEPENDENT
+        found.append(Columns(own @ (scale[:, None] * vectors[:, kept] / np.sqrt(values[kept])), np.full(int(kept.sum()), kind)))
+    return beside(found)
 
 
 def _project(found: _Motions, report: Report) -> Superelement:
-    component, space, basis = found.component, found.field, found.basis
+    component, space, basis, kinds = found.component, found.field, found.basis.values, found.basis.kinds
     elastic: dict[str, Array] = {}
     mass: dict[str, Array] = {}
     bodies: dict[str, Array] = {}
     moving: dict[str, Array] = {}
     resultants: dict[str, Array] = {}
-    names = groups(component)
+    names, mirrors = groups(component), space.meshed.mirrors
+    twist = mirrors.twist_kinds(np.eye(3))
     wholes = {name: _elements(found, name) for name in names}
     for number, part in enumerate(contributions(space, wholes, basis)):
         report(Stage.PROJECTING, number / len(names))
         name = part.name
-        elastic[name], mass[name] = _symmetrise(part.strained.T @ part.forces), _symmetrise(part.motions.T @ part.momenta)
+        elastic[name] = _symmetrise(mirrors.whole(part.strained.T @ part.forces, kinds, kinds))
+        mass[name] = _symmetrise(mirrors.whole(part.motions.T @ part.momenta, kinds, kinds))
         if name in component.bodies:
             motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
-            own = motion.T @ inertia(space, wholes[name]).times(motion)
-            bodies[name], moving[name] = np.linalg.solve(own, motion[part.rows].T @ part.momenta), _symmetrise(own)
+            own = mirrors.whole(motion.T @ inertia(space, wholes[name]).times(motion), twist, twist)
+            bodies[name] = np.linalg.solve(own, mirrors.whole(motion[part.rows].T @ part.momenta, twist, kinds))
+            moving[name] = _symmetrise(own)
         else:
-            resultants[name] = _sections(found, names[name][0])[part.rows].T @ part.forces
+            link = names[name][0]
+            across = mirrors.twist_kinds(component.pieces[link].frame.rotation)
+            resultants[name] = mirrors.whole(_sections(found, link)[part.rows].T @ part.forces, across, kinds)
     everything = rigid(space, identity())
-    carried = basis.T @ found.inertia.times(everything)
+    carried = mirrors.whole(basis.T @ found.inertia.times(everything), kinds, twist)
     projected = {number: basis.T @ force for number, force in found.strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces) + component.floats,
@@ -226,9 +252,9 @@ def _project(found: _Motions, report: Report) -> Superelement:
         free_strokes={component.pieces[number].name: _free_stroke(found, number, force) for number, force in projected.items()},
         rigid=_rigid_coordinates(component, basis.shape[1]),
         carried=carried,
-        skin=skin(space, basis),
-        freedoms=space.size,
-        elements=space.meshed.mesh.ne,
+        skin=skin(space, found.basis),
+        freedoms=space.whole_size,
+        elements=mirrors.copies * space.meshed.mesh.ne,
         seats={number: rows @ basis for number, rows in found.seats.items()},
     )
 

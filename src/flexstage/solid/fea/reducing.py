@@ -13,7 +13,7 @@ from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
-from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Reduction
+from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Hold, Reduction
 from flexstage.solid.fea.memory import Counts, needed, reduction_seconds, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.store import to_bytes
@@ -104,6 +104,12 @@ class Reduce(ComponentJob):
             residual + 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
         )
 
+    @property
+    def _is_plain(self) -> bool:
+        """Whether faces alone hold it, plane or as they warp: then motions about a plane of symmetry are told apart by what moves them."""
+        part = self.component
+        return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
+
     def seconds(self, counts: Counts | None = None) -> float:
         """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
         found = counts or self.expected(self.reduction.fineness)
@@ -118,14 +124,16 @@ class Reduce(ComponentJob):
         return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
 
     def work(self, call: Call) -> bytes:
-        """Ask for what the surface alone takes, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
+        """Ask for what the surface alone takes, or one side of it, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
+        from flexstage.solid.fea.cad import mirrors_of
         from flexstage.solid.fea.mesh import mesh_component
         from flexstage.solid.fea.reduce import reduce_mesh
 
-        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness)))
-        mesh = mesh_component(self.component, self.reduction.fineness, call.report, call.attempt)
+        sides = mirrors_of(self.component).copies if self._is_plain else 1
+        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / sides, sides))
+        mesh = mesh_component(self.component, self.reduction.fineness, call.report, call.attempt, by_symmetry=self._is_plain)
         size = mesh.mesh
         share = float(np.mean(mesh.finer))
-        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne).enriched(share, self.reduction.fineness.order))
+        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne, sides).enriched(share, self.reduction.fineness.order))
         element = reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
         return to_bytes(element, self.key, call.made)

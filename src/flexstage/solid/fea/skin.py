@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import ngsolve
@@ -9,7 +10,8 @@ import numpy as np
 from scipy import sparse
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.field import Field, hooke
+from flexstage.solid.fea.field import Columns, Field, hooke
+from flexstage.solid.fea.mirror import MIRRORS
 from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.solid.fea.superelement import Skin
 
@@ -24,10 +26,12 @@ _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
 _CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
 """Values at the corners of what is linear, from those at the points within: 5/3 of the own less 1/3 of the others."""
 _LEAST_WEIGHT = 1e-12
+_NEAR = 1e-9
+"""Relative to the drawing's size: what counts as lying in a plane."""
 
 
-def skin(space: Field, basis: Array) -> Skin:
-    """The surface of a field's mesh with the basis motions (n, k) on it.
+def skin(space: Field, motions: Columns) -> Skin:
+    """The surface of a field's mesh with motions on it: of a mesh with mirrors the surface of the whole.
 
     Stresses are taken within each triangle and continued to its corners; at a vertex they are means over its triangles, weighted by the
     Jacobian: where an element is nearly folded, strains have no meaning.
@@ -37,16 +41,19 @@ def skin(space: Field, basis: Array) -> Skin:
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> skin(space, np.zeros((space.size, 1))).motion.max().item()
+    >>> skin(space, Columns.of(np.zeros((space.size, 1)))).motion.max().item()
     0.0
     """
-    mesh = space.meshed.mesh
-    corners = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.BND)])
+    mesh, basis = space.meshed.mesh, motions.values
+    elements = list(mesh.Elements(ngsolve.BND))
+    outside = np.array([element.mat not in MIRRORS.values() for element in elements])
+    corners = np.array([[vertex.nr for vertex in element.vertices] for element in elements])[outside]
     used, triangles = np.unique(corners, return_inverse=True)
     triangles = triangles.reshape(corners.shape)
     places = np.array([mesh.vertices[int(number)].point for number in used]) / MILLIMETRES
-    behind = np.array([mesh[face.faces[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)], dtype=int)
+    behind = np.array([mesh[element.faces[0]].elements[0].nr for element in elements], dtype=int)[outside]
     within = mesh.MapToAllElements(ngsolve.IntegrationRule(_WITHIN, [0.0, 0.0, 0.0]), ngsolve.BND)
+    within = within.reshape(len(elements), -1)[outside].ravel()
     gradient = _gradient(space, corners, behind, within)
     laws = np.array([hooke(medium) for medium in space.meshed.media])[_media(space)[behind]]
     weights = _weights(within)
@@ -62,7 +69,27 @@ def skin(space: Field, basis: Array) -> Skin:
         found = np.einsum("tij,tpjc->tpic", laws, strains.reshape(len(behind), 3, 6, -1))
         ends = np.einsum("ab,tbic->taic", _CONTINUED, found)[:, :, _FROM_VOIGT]
         stress[..., first : first + _AT_ONCE] = (average @ ends.reshape(points, -1)).reshape(len(used), 6, -1)
-    return Skin(places, triangles, motion, stress, surface_owners(mesh, space.meshed.owner))
+    found, meshed = Skin(places, triangles, motion, stress, space.meshed.owner[behind]), space.meshed
+    for axis in meshed.mirrors.axes:
+        found = _with_image(found, axis, meshed.mirrors.is_odd(motions.kinds, axis))
+    return replace(found, owner=np.concatenate([owner[behind] for owner in (meshed.owner, *meshed.images)]))
+
+
+def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
+    """A surface and its mirror image across an axis, motions that are `odd` (k,) turned round there."""
+    signs, turn = np.where(np.arange(3) == axis, -1.0, 1.0), np.where(odd, -1.0, 1.0)
+    apart = np.abs(side.vertices[:, axis]) > _NEAR * np.max(np.abs(side.vertices))
+    images = np.where(apart, len(apart) + np.cumsum(apart) - 1, np.arange(len(apart)))
+    motion = (side.motion * (signs[:, None] * turn)).astype(np.float32)
+    stress = (side.stress * (np.array([signs[i] * signs[j] for i, j in _VOIGT])[_FROM_VOIGT, None] * turn)).astype(np.float32)
+    mean = np.where(apart[:, None, None], side.stress, 0.5 * (side.stress + stress))
+    return Skin(
+        np.vstack([side.vertices, (side.vertices * signs)[apart]]),
+        np.vstack([side.triangles, images[side.triangles][:, ::-1]]),
+        np.concatenate([side.motion, motion[apart]]),
+        np.concatenate([mean, stress[apart]]),
+        np.tile(side.owner, 2),
+    )
 
 
 def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> sparse.csr_matrix:

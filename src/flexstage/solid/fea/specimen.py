@@ -15,19 +15,17 @@ from itertools import pairwise
 import numpy as np
 from netgen import occ
 
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Number
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
 from flexstage.parts.shape import Profiled, Section, Shaped
 from flexstage.solid.fea.contour import contour_edges
+from flexstage.solid.fea.mirror import Mirrors, cut_at_mirrors, is_symmetric
 from flexstage.solid.fea.piece import MILLIMETRES, bends_both_ways
 from flexstage.solid.fea.roots import rises
 
 START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
-
-MIRRORS = {1: "across y", 2: "across z"}
-"""Names of the faces in the planes y = 0 and z = 0 that a specimen is cut at, by the axis across them."""
 
 BLUNTED = 0.06
 """How thick the wedge between an arc and a rigid face is where it ends, over the arc's lesser axis."""
@@ -36,8 +34,6 @@ _NEAR = 1e-6
 """Relative to the hinge's length: what counts as lying in a plane."""
 _SAME = 1e-9
 """Distance [mm] below which two points are one."""
-_FAR = 4.0
-"""How far the half space reaches that a specimen is cut by, over its furthest corner."""
 _LONG = 3.0
 """Elements of a rod over its radius."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
@@ -52,45 +48,16 @@ _Curve = list[occ.TopoDS_Shape]
 
 @dataclass(frozen=True)
 class Specimen:
-    """A drawn hinge with its stubs [mm]: the solid with faces `start` and `end`, sizes set on its edges, and the `largest` element.
-
-    Across the axes `mirrors` it is the positive side of what is symmetric.
-    """
+    """A drawn hinge with its stubs [mm]: the solid with faces `start` and `end`, sizes set on its edges, and the `largest` element."""
 
     solid: occ.TopoDS_Shape
     largest: float
-    mirrors: tuple[int, ...] = ()
+    mirrors: Mirrors = Mirrors()
 
-    def within(self, points: Array) -> Array:
-        """Those of the points (n, 3) that are on its side of the mirrors."""
-        return points[np.all(points[:, list(self.mirrors)] >= 0.0, axis=1)]
-
-
-def cut_at_mirrors(whole: Specimen, across: Iterable[int]) -> Specimen:
-    """The positive side of a specimen across those of some axes (1: y, 2: z) that it is symmetric across, the faces there named.
-
-    >>> from flexstage.parts.leaf import Leaf
-    >>> quarter = cut_at_mirrors(bar(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0), (1, 2))
-    >>> round(quarter.solid.mass, 9), sorted(face.name for face in quarter.solid.faces if face.name)
-    (0.5, ['across y', 'across z', 'end', 'start'])
-    """
-    mirrors = tuple(axis for axis in across if _is_symmetric(whole.solid, axis))
-    solid = whole.solid
-    far = _FAR * max(abs(each) for vertex in solid.vertices for each in (vertex.p.x, vertex.p.y, vertex.p.z))
-    for axis in mirrors:
-        half = occ.Box(occ.Pnt(-far, *(0.0 if axis == each else -far for each in MIRRORS)), occ.Pnt(far, far, far))
-        half.faces.Min(occ.Y if axis == 1 else occ.Z).name = MIRRORS[axis]
-        solid = solid * half
-    solid.mat("medium 0")
-    return replace(whole, solid=solid, mirrors=mirrors)
-
-
-def _is_symmetric(solid: occ.TopoDS_Shape, axis: int) -> bool:
-    """Whether for every face there is one of the same area with its centre on the other side of the plane across an axis."""
-    faces = np.array([(face.center.x, face.center.y, face.center.z, face.mass) for face in solid.faces])
-    mirrored = faces * np.where(np.arange(4) == axis, -1.0, 1.0)
-    apart = np.abs(faces[:, None] - mirrored) / np.repeat([np.max(np.abs(faces[:, :3])), np.max(faces[:, 3])], (3, 1))
-    return bool(np.all(np.min(np.max(apart, axis=2), axis=1) < _NEAR))
+    def cut(self, across: Iterable[int]) -> Specimen:
+        """Its positive side across those of some axes (1: y, 2: z) that it is symmetric across."""
+        mirrors = Mirrors(tuple(axis for axis in across if is_symmetric([self.solid], axis)))
+        return replace(self, solid=cut_at_mirrors(self.solid, mirrors), mirrors=mirrors)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,96 @@
+"""Planes of symmetry: the positive side of what is symmetric across some, and motions that are even or odd about each.
+
+What is symmetric moves, under loads that are even or odd about a plane, evenly or oddly: a side does, held accordingly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.number import Array
+
+MIRRORS = {1: "across y", 2: "across z"}
+"""Names of the faces in the planes y = 0 and z = 0 that a drawing is cut at, by the axis across them."""
+
+_NEAR = 1e-6
+"""Relative to the drawing's size: what counts as lying in a plane."""
+_FAR = 4.0
+"""How far the half space reaches that a drawing is cut by, over its furthest corner."""
+
+
+@dataclass(frozen=True)
+class Mirrors:
+    """Planes through the origin, by the axes across them (1: y, 2: z), of which a drawing is the positive side; of what is whole none.
+
+    Motions are of a kind, a number: its bits tell across which of the axes, in order, they are odd.
+
+    >>> both = Mirrors((1, 2))
+    >>> both.copies, both.twist_kinds(np.eye(3)).tolist()  # x, y, z, rx, ry, rz
+    (4, [0, 1, 2, 3, 2, 1])
+    """
+
+    axes: tuple[int, ...] = ()
+
+    @property
+    def copies(self) -> int:
+        """How many of it the whole consists of; as many kinds of motion there are."""
+        return 2 ** len(self.axes)
+
+    @property
+    def images(self) -> Array:
+        """Signs (copies - 1, 3) that mirror a point of it: across the first axis, the second, both."""
+        odd = np.arange(1, self.copies)
+        return np.stack([np.where(self.is_odd(odd, axis), -1.0, 1.0) if axis in self.axes else odd**0.0 for axis in range(3)], axis=1)
+
+    def is_odd(self, kinds: Array, axis: int) -> Array:
+        """Which of some kinds are odd across one of the axes."""
+        return (kinds >> self.axes.index(axis)) % 2 == 1
+
+    def twist_kinds(self, rotation: Array) -> Array:
+        """The kinds (6,) of translations along the columns of `rotation`, each along a plane or across it, and rotations about them."""
+        translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
+        return np.concatenate([translations, translations ^ (self.copies - 1)])
+
+    def kinds(self, odd: Array) -> Array:
+        """The kinds (k,) of what is `odd` or not, axis by axis (m, k)."""
+        return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
+
+    def whole(self, side: Array, rows: Array, columns: Array) -> Array:
+        """Products (n, k) of motions over the whole, from those over a `side`: none of motions of different kinds (n,) and (k,)."""
+        return np.where(rows[:, None] == columns, self.copies * side, 0.0)
+
+    def within(self, points: Array) -> Array:
+        """Those of the points (n, 3) that are on the positive side."""
+        return points[np.all(points[:, list(self.axes)] >= 0.0, axis=1)]
+
+
+def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shape:
+    """The positive side of a drawing of `medium 0`, the faces it is cut at named.
+
+    >>> quarter = cut_at_mirrors(occ.Box(occ.Pnt(0, -1, -1), occ.Pnt(1, 1, 1)), Mirrors((1, 2)))
+    >>> round(quarter.mass, 9), sorted(face.name for face in quarter.faces if face.name)
+    (1.0, ['across y', 'across z'])
+    """
+    far = _FAR * max(abs(each) for vertex in solid.vertices for each in (vertex.p.x, vertex.p.y, vertex.p.z))
+    for axis in mirrors.axes:
+        half = occ.Box(occ.Pnt(-far, *(0.0 if axis == each else -far for each in MIRRORS)), occ.Pnt(far, far, far))
+        half.faces.Min(occ.Y if axis == 1 else occ.Z).name = MIRRORS[axis]
+        solid = solid * half
+    solid.mat("medium 0")
+    return solid
+
+
+def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
+    """Whether for every face of some solids there is one of the same area with its centre on the other side of the plane across an axis.
+
+    >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
+    (True, False)
+    """
+    faces = np.array([(face.center.x, face.center.y, face.center.z, face.mass) for solid in solids for face in solid.faces])
+    mirrored = faces * np.where(np.arange(4) == axis, -1.0, 1.0)
+    apart = np.abs(faces[:, None] - mirrored) / np.repeat([np.max(np.abs(faces[:, :3])), np.max(faces[:, 3])], (3, 1))
+    return bool(np.all(np.min(np.max(apart, axis=2), axis=1) < _NEAR))
