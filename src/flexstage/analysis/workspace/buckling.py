@@ -66,7 +66,7 @@ class Buckling(InNotebook):
     @property
     def weakest(self) -> Annotated[str | None, VIEW]:
         """The link with the least factor of its own on the first design; None where no column is pressed."""
-        if not np.size(self.factor):
+        if not self.links:
             return None
         first = 1.0 / self.factor.reshape(-1, len(self.links))[0]
         return self.links[int(index_of_largest(first))] if np.any(first > 0.0) else None

@@ -80,8 +80,8 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 def mirrors_of(component: Component) -> Mirrors:
     """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
 
-    Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut through their thickness: their
-    elements, flat already, would be flatter. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates: their roundness
+    Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut: their elements, flat already, would be
+    flatter, or fewer across them, and the errors told larger. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates: their roundness
     alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too little.
 
     >>> from flexstage.solid.fea.bar import bar
@@ -97,7 +97,7 @@ def _is_mirrored(component: Component, axis: int) -> bool:
     joints = [*(item.joint for item in component.interfaces), *component.fixed]
     links = [piece for piece in component.pieces if piece.body is None]
     frames = [*(joint.frame for joint in joints), *(piece.frame for piece in links)]
-    slender = any(isinstance(piece.form, Shaped) and piece.form.slender and abs(piece.frame.rotation[axis, 1]) > _ALONG for piece in links)
+    slender = any(isinstance(piece.form, Shaped) and piece.form.slender for piece in links)
     return (
         not (slender or any(_is_round(piece.form) for piece in component.pieces))
         and is_mirrored(component.pieces[0].medium, axis)
