@@ -81,8 +81,9 @@ def mirrors_of(component: Component) -> Mirrors:
     """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
 
     Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut: their elements, flat already, would be
-    flatter, or fewer across them, and the errors told larger. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates: their roundness
-    alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too little.
+    flatter, or fewer across them, and the errors told larger. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates:
+    their roundness alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too
+    little.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> mirrors_of(bar())
