@@ -294,14 +294,17 @@ async def test_a_process_that_dies_is_started_anew(page, studio):
 async def test_what_is_computed_too_long_of_a_text_that_is_no_more_is_given_up(page, studio):
     """A process that computes is held still meanwhile; a page that waits for it is told, and the next text is computed."""
     model = studio.session._model
-    (process,) = [each for each in studio.session.processes if each == model.process]
-    os.kill(process, signal.SIGSTOP)
+    async with studio.session._computing:  # nothing of what was asked before is computed any more
+        (process,) = [each for each in studio.session.processes if each == model.process]
+        os.kill(process, signal.SIGSTOP)
     await page.ask(say.Edit, text=TEXT.replace('"1 mm"', '"0.95 mm"', 1), revision=page.state.revision)
-    await page.until(lambda page: page.state.revision == page.revision and model.busy(Urgency.SOON) > 0.0)
+    async with asyncio.timeout(PATIENCE):
+        while model.busy(Urgency.SOON) == 0.0:
+            await asyncio.sleep(0.01)
     model._since -= 10.0
     await page.ask(say.Edit, text=TEXT.replace('"1 mm"', '"0.9 mm"', 1), revision=page.state.revision)
     await page.settle(say.Figures)
-    assert page.told[say.Engine].state == "ready"
+    await page.until(lambda page: page.told[say.Engine].state == "ready")
     assert model.process != process
 
 
