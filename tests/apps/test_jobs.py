@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from flexstage.base.jobs import CallError, results
+from flexstage.base.jobs import CallError, Word, Worker, results
 
 DIES_ONCE = """
 import os, pathlib
@@ -51,6 +51,13 @@ def test_a_call_over_which_processes_die_again_and_again_is_given_up() -> None:
     with pytest.raises(CallError) as caught:
         list(results(operator.is_, [(Executed("import os; os.abort()"),)], 1))
     assert caught.value.error is None
+
+
+def test_who_asks_a_process_that_another_thread_ended_hears_its_end() -> None:
+    worker = Worker(operator.is_)
+    worker.end()
+    worker.ask(None)
+    assert worker.heard.get()[1] is Word.ENDED
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")

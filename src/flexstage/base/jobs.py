@@ -146,8 +146,9 @@ class Worker:
         self._log.close()
 
     def _send(self, value: Any) -> None:
-        with contextlib.suppress(OSError):  # it died meanwhile: heard soon
-            _write(_as_pipe(self.process.stdin), value)
+        data = pickle.dumps(value)
+        with contextlib.suppress(OSError, ValueError):  # it died, or was ended by another thread: heard soon
+            _write(_as_pipe(self.process.stdin), data)
 
     def _listen(self) -> None:
         with _as_pipe(self.process.stdout) as answers, contextlib.suppress(EOFError):
@@ -219,7 +220,7 @@ class Line:
 
     def say(self, word: Word, value: Any) -> None:
         """Tell the caller, and what it is."""
-        _write(self._answers, (word, value))
+        _write(self._answers, pickle.dumps((word, value)))
 
     def hear(self) -> Any:
         """What the caller sends next."""
@@ -290,8 +291,7 @@ def _read_exactly(stream: IO[bytes], size: int) -> bytes:
     return found
 
 
-def _write(stream: IO[bytes], value: Any) -> None:
-    data = pickle.dumps(value)
+def _write(stream: IO[bytes], data: bytes) -> None:
     stream.write(_LENGTH.pack(len(data)))
     stream.write(data)
     stream.flush()
