@@ -364,7 +364,6 @@ class Session:
                 self._cautions = outcome.value.cautions
                 self._push_state()
             if stage == "figures" and self._reader is None:
-                self._push(say.Engine("ready", "", None))
                 self._reader = Helper(self._died)  # not before: it takes processor time to start
 
     def _work_of(self, stage: str, revision: int, text: str) -> tuple[Any, ...] | None:
@@ -391,7 +390,7 @@ class Session:
         self._pages.pop(page, None)
 
     async def _announced(self, called: str, stage: str, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
-        """A stage computed; told as it begins where it takes long."""
+        """A stage computed; told as it begins where it takes long, and that it is ready after that, a start or an end of the process."""
         links = len((self.reading.links if self.reading else None) or ())
         left = expected(stage, links, self._took)
         if left > _QUIET:
@@ -399,7 +398,8 @@ class Session:
         outcome = await self._model.ask(*work, urgency=Urgency.SOON, wanted=wanted)
         if outcome is not None:
             self._took[stage] = (outcome.seconds, links)
-        if left > _QUIET:
+        told = self.shown[say.Engine]
+        if left > _QUIET or (isinstance(told, say.Engine) and told.state in {"starts", "ended"}):
             self._push(say.Engine("ready", "", None))
         return outcome
 
