@@ -25,9 +25,6 @@ MODES = 12
 _ROUNDS = 2
 """How often modes are found one by one at most."""
 
-_NEAR = 48
-"""Slots whose sums of six modes and eight designs the nearest cache holds."""
-
 _KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
 _DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
 _SIZES = (
@@ -42,7 +39,7 @@ _SIZES = (
     "rounds",
     "steps",
     "variables",
-    "slots",
+    "widest",
     "entries",
     "single",
     "parts",
@@ -103,7 +100,7 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
     if library.flexstage_modes(ctypes.byref(job.task)):
         job.results["good"][:] = 0
     count = stage.numbers.shape[1]
-    values, share, slopes = (np.moveaxis(job.results[name][..., :count], -1, 0) for name in ("values", "share", "slopes"))
+    values, share, slopes = (job.results[name][..., :count].T for name in ("values", "share", "slopes"))
     good = job.results["good"][:count]
     found, other = Solution(values, share, good > 0, slopes), np.flatnonzero(good < 0)
     if len(other):
@@ -143,7 +140,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
         "values": np.empty((modes, stride)),
         "share": np.empty((modes, stride)),
         "good": np.zeros(stride, dtype=np.int64),
-        "slopes": np.zeros((stage.variables, modes, modes, stride)),
+        "slopes": np.zeros((modes * (modes + 1) // 2, stage.variables, stride)),
     }
     task = _task(stage, start, tables, (count, number.strides[0] // 8, change.strides[0] // 8, stride))
     for name, item in (held | results).items():
@@ -170,7 +167,7 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "rounds": _ROUNDS,
         "steps": 1 if np.isinf(start.angle) else 2,
         "variables": stage.variables,
-        "slots": len(tables.arrays["slot"]),
+        "widest": int(np.diff(tables.arrays["reach"], prepend=0).max(initial=0)) * 2,
         "entries": len(tables.arrays["entry"]),
         "single": start.needed,
         "parts": stage.scheme.topology.parts,
@@ -211,27 +208,26 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
 
 
 def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
-    """Slots, the single numbers that derivatives are about, the slots that each link has a share in, and entries (variable, slot, row)."""
-    found: list[tuple[int, tuple[int, int, int, int]]] = []
+    """Slots, the single numbers that derivatives are about, by the group they are of, and entries (variable, slot, row) by group, too."""
+    found: list[tuple[int, tuple[int, int, int, int, int]]] = []
     for change in changes:
-        kind, owner = _KINDS.index(change.place.kind), _owner(scheme, change.place)
+        group, kind, owner = _owner(scheme, change.place)
         columns = change.place.shape[-1] if len(change.place.shape) == 2 else 1
-        found += [(change.variable, (kind, owner, row // columns, row % columns)) for row in change.rows.tolist()]
+        found += [(change.variable, (group, kind, owner, row // columns, row % columns)) for row in change.rows.tolist()]
     slots = {key: number for number, key in enumerate(sorted({key for _, key in found}))}
-    entries = [(variable, slots[key], row) for row, (variable, key) in enumerate(found)]
-    entries.sort(key=lambda entry: (entry[1] // _NEAR, entry[0]))
-    of: dict[tuple[bool, int], list[int]] = {}
-    for (kind, owner, _, _), number in slots.items():
-        if kind < 5:
-            of.setdefault((kind < 2, owner), []).append(number)
-    lists = [of.get((True, link[0]), []) + of.get((False, index), []) for index, link in enumerate(scheme.topology.links)]
+    entries = sorted((key[0], variable, slots[key], row) for row, (variable, key) in enumerate(found))
+    groups = np.arange(scheme.topology.parts + len(scheme.topology.links) + len(scheme.graph.order) + 1)
     return {
-        "slot": np.array(list(slots), dtype=np.int64).reshape(-1, 4),
-        "entry": np.array(entries, dtype=np.int64).reshape(-1, 3),
-        "reach": np.array([0, *itertools.accumulate(map(len, lists))], dtype=np.int64),
-        "about": np.array([number for each in lists for number in each], dtype=np.int64),
+        "slot": np.array([key[1:] for key in slots], dtype=np.int64).reshape(-1, 4),
+        "entry": np.array([entry[1:] for entry in entries], dtype=np.int64).reshape(-1, 3),
+        "reach": np.searchsorted([key[0] for key in slots], groups).astype(np.int64),
+        "about": np.searchsorted([entry[0] for entry in entries], groups).astype(np.int64),
     }
 
 
-def _owner(scheme: Scheme, place: Feature) -> int:
-    return scheme.position[place.owner] if place.kind == "inertia" else place.owner
+def _owner(scheme: Scheme, place: Feature) -> tuple[int, int, int]:
+    """The group, the kind and the owner of a feature, bodies by place: groups are parts, then links, then bodies."""
+    owner = scheme.position[place.owner] if place.kind == "inertia" else place.owner
+    kind = _KINDS.index(place.kind)
+    parts, links = scheme.topology.parts, len(scheme.topology.links)
+    return owner + (0 if kind < 2 else parts if kind < 5 else parts + links), kind, owner

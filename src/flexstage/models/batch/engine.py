@@ -349,4 +349,4 @@ def _write(plan_: Plan, result: PlatformModes, designs: Array, found: Solution) 
     frequencies = np.sqrt(found.values) / (2.0 * np.pi)
     scale = (1.0 / (8.0 * np.pi**2 * frequencies))[:, None]
     result.frequencies[designs], result.share[designs] = frequencies, found.share
-    result.slopes[designs], result.gradient[designs] = found.slopes * scale[..., None], gradient * scale
+    result.slopes[designs], result.gradient[designs] = found.matrices * scale[..., None], gradient * scale

@@ -22,7 +22,7 @@ typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, slots, entries, single, parts;
+    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, entries, single, parts;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
@@ -34,9 +34,9 @@ typedef struct {
     const int64_t *inertia; /* bodies: where the inertia of the body at that place begins among the numbers */
     const int64_t *start;   /* stiffness, mass, turn, first, second */
     const int64_t *slot;    /* slots x (kind, owner or place, row, column) */
-    const int64_t *reach;   /* links + 1: where the slots of each link begin in the following */
-    const int64_t *about;   /* slots that are about a link or its part */
-    const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by slots that are near, then by variable */
+    const int64_t *reach;   /* groups + 1: where the slots of each group begin: parts (laws), links (places), bodies by place (inertia) */
+    const int64_t *about;   /* groups + 1: where their entries begin */
+    const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by group, then by variable */
     const int64_t *alike;   /* links, those of one part together */
     const int64_t *plane;   /* bodies x (link, axis): whose axes the body has, the axis normal to the plane of symmetry; -1: the stage's */
     const int64_t *normal;  /* links: the axis of each that is normal to its leg's plane; -1: it is not symmetric about it */
@@ -50,7 +50,7 @@ typedef struct {
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
     int64_t *good;          /* designs: 1, 0 for what is not proved, -1 where legs have not these planes */
-    double *slopes;         /* variables x count x count x stride, zero */
+    double *slopes;         /* pairs (i, i), then (i, j > i), x variables x stride, zero */
 } Task;
 
 #define INLINE inline __attribute__((always_inline))
@@ -177,7 +177,7 @@ typedef struct {
     lanes *other, *other_edge;       /* K - shift M factored */
     lanes *now, *next, *force, *ahead; /* blocks of vectors */
     lanes *shapes;                   /* modes found (6 bodies, count) */
-    lanes *sum, *slope;              /* slots x pairs, variables x pairs */
+    lanes *sum, *slope;              /* slots of a group x pairs, variables x pairs */
 } Room;
 
 /* ---- assembly in axes of a plane ---- */
@@ -836,108 +836,182 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 
 enum { STIFFNESS, MASS, TURN, FIRST, SECOND, INERTIA };
 
+/* Two modes i <= j of a cluster; those of a mode with itself come first. */
 typedef struct { int i, j; } Pair;
 
-/* a_i b_j + a_j b_i. */
-static INLINE lanes both(const lanes *a, const lanes *b, Pair at)
+/* Modes that derivatives are about, their means by cluster, and the pairs of different ones (`pairs` in all). */
+typedef struct { const lanes *mean; const Pair *pair; int pairs; } Wanted;
+
+/* `sum` (pairs) of a slot, += or = a_i b_j + a_j b_i, by a factor: of each mode with itself, or (`crossed`) of pairs of different ones. */
+static INLINE void gain(lanes *sum, const lanes *a, const lanes *b, double factor, const int more, const Wanted *of, const int crossed, const int k)
 {
-    return at.i == at.j ? 2.0 * (a[at.i] * b[at.j]) : a[at.i] * b[at.j] + a[at.j] * b[at.i];
+    if (crossed)
+        for (int p = k; p < of->pairs; p++) {
+            const Pair at = of->pair[p];
+            const lanes x = 0.5 * factor * (a[at.i] * b[at.j] + a[at.j] * b[at.i]);
+            sum[p] = more ? sum[p] + x : x;
+        }
+    else
+        UNROLL for (int p = 0; p < k; p++) sum[p] = more ? sum[p] + factor * a[p] * b[p] : factor * a[p] * b[p];
 }
 
-/* Of entry (row, column) of a symmetric matrix between x and y, both (rows, k): for two entries where it is off the diagonal. */
-static INLINE lanes between(const lanes *x, const lanes *y, int k, int row, int column, Pair at)
+/* out (k) = the entries of a row of a law times x (k columns). */
+static INLINE void weigh_row(lanes *out, const lanes *row, const int *column, int entries, const lanes *x, const int k)
 {
-    return row == column ? x[row * k + at.i] * y[row * k + at.j] : both(x + row * k, y + column * k, at);
+    lanes sum[MODES];
+    UNROLL for (int c = 0; c < k; c++) sum[c] = all(0.0);
+    for (int at = 0; at < entries; at++) {
+        const lanes own = row[column[at]], *y = x + column[at] * k;
+        UNROLL for (int c = 0; c < k; c++) sum[c] += own * y[c];
+    }
+    UNROLL for (int c = 0; c < k; c++) out[c] = sum[c];
 }
 
-/* Twists (12, k) of a link's ends in its axes and those of its place in the stage's (u: 3, k). */
-static INLINE void link_motion(const Task *t, const Room *w, int64_t l, lanes *twist, lanes *seen, const int k)
+/* A link in the modes: twists of its ends in its axes (12, k), the same times - lambda, strains (6, k), motions of its place as either body moves it
+ * (3, k each) in the stage's axes, forces less lambda times momenta on its ends (12, k) and their first halves in the stage's axes. */
+typedef struct { lanes twist[12 * MODES], heavy[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES]; } Moved;
+
+static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to, const Wanted *of, const int k)
 {
     const lanes *r = w->number + t->start[2] + 9 * l;
     for (int side = 0; side < 2; side++) {
         const int64_t body = t->link[4 * l + 1 + side];
-        lanes *e = twist + 6 * side * k, *u = seen + 3 * side * k;
+        lanes *e = to->twist + 6 * side * k, *u = to->seen + 3 * side * k;
         if (body < 0) {
             memset(e, 0, sizeof(lanes) * 6 * k);
             continue;
         }
         const lanes *a = w->number + t->start[3 + side] + 3 * l, *x = w->shapes + 6 * k * body, *o = x + 3 * k;
-        for (int c = 0; c < k; c++) {
-            u[c] = x[c] + (a[1] * o[2 * k + c] - a[2] * o[k + c]);
-            u[k + c] = x[k + c] + (a[2] * o[c] - a[0] * o[2 * k + c]);
-            u[2 * k + c] = x[2 * k + c] + (a[0] * o[k + c] - a[1] * o[c]);
+        UNROLL for (int c = 0; c < k; c++) {
+            const lanes one = o[c], two = o[k + c], three = o[2 * k + c];
+            const lanes p = u[c] = x[c] + (a[1] * three - a[2] * two);
+            const lanes q = u[k + c] = x[k + c] + (a[2] * one - a[0] * three);
+            const lanes s = u[2 * k + c] = x[2 * k + c] + (a[0] * two - a[1] * one);
             UNROLL for (int i = 0; i < 3; i++) {
-                e[i * k + c] = r[i] * u[c] + r[3 + i] * u[k + c] + r[6 + i] * u[2 * k + c];
-                e[(3 + i) * k + c] = r[i] * o[c] + r[3 + i] * o[k + c] + r[6 + i] * o[2 * k + c];
+                e[i * k + c] = r[i] * p + r[3 + i] * q + r[6 + i] * s;
+                e[(3 + i) * k + c] = r[i] * one + r[3 + i] * two + r[6 + i] * three;
             }
         }
     }
+    for (int i = 0; i < 6; i++)
+        UNROLL for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
+    for (int i = 0; i < 12; i++)
+        UNROLL for (int c = 0; c < k; c++) to->heavy[i * k + c] = -of->mean[c] * to->twist[i * k + c];
 }
 
-/* Forces less lambda times momenta (6, k) on one end of a link, in its axes, and their first half in the stage's. */
-static INLINE void end_force(
-    const Task *t, const Room *w, int64_t l, int side, const lanes *mean, const lanes *twist, const lanes *strain, lanes *force, lanes *world, const int k)
+static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const int k)
 {
     const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
-    const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l] + 72 * side;
+    const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
     const Law *law = w->law + t->link[4 * l];
-    const double sign = side ? 1.0 : -1.0;
-    for (int i = 0; i < 6; i++) {
-        lanes sum[MODES], heavy[MODES];
-        for (int c = 0; c < k; c++) sum[c] = heavy[c] = all(0.0);
-        for (int at = law->start[i]; at < law->start[i + 1]; at++)
-            for (int c = 0; c < k; c++) sum[c] += stiff[6 * i + law->column[at]] * strain[law->column[at] * k + c];
-        for (int at = law->start[6 + 6 * side + i]; at < law->start[7 + 6 * side + i]; at++)
-            for (int c = 0; c < k; c++) heavy[c] += mass[12 * i + law->column[at]] * twist[law->column[at] * k + c];
-        for (int c = 0; c < k; c++) force[i * k + c] = sign * sum[c] - mean[c] * heavy[c];
+    lanes pull[6 * MODES];
+    for (int i = 0; i < 6; i++)
+        weigh_row(pull + i * k, stiff + 6 * i, law->column + law->start[i], law->start[i + 1] - law->start[i], to->strain, k);
+    for (int i = 0; i < 12; i++) {
+        if (t->link[4 * l + 1 + i / 6] < 0) continue;
+        lanes *f = to->force + i * k;
+        weigh_row(f, mass + 12 * i, law->column + law->start[6 + i], law->start[7 + i] - law->start[6 + i], to->heavy, k);
+        UNROLL for (int c = 0; c < k; c++) f[c] = i < 6 ? f[c] - pull[i * k + c] : f[c] + pull[(i - 6) * k + c];
     }
-    for (int i = 0; i < 3; i++)
-        for (int c = 0; c < k; c++) world[i * k + c] = r[3 * i] * force[c] + r[3 * i + 1] * force[k + c] + r[3 * i + 2] * force[2 * k + c];
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
+            const lanes *f = to->force + 6 * side * k;
+            UNROLL for (int c = 0; c < k; c++)
+                to->world[(3 * side + i) * k + c] = r[3 * i] * f[c] + r[3 * i + 1] * f[k + c] + r[3 * i + 2] * f[2 * k + c];
+        }
 }
 
-/* Adds a link's or part's share of every slot that is about it, of masses for lambda = -1: of each mode with itself, or of some `pair`s of a cluster
- * beyond these. */
-static INLINE void link_slots(const Task *t, Room *w, int64_t l, const lanes *mean, int pairs, const Pair *pair, const int k)
+/* Adds a link's share of every slot of its part to `sum`. */
+static INLINE void law_slots(const Task *t, int64_t l, const Moved *at, lanes *sum, const Wanted *of, const int crossed, const int k, const int n)
 {
-    lanes twist[12 * MODES], force[12 * MODES], seen[6 * MODES], strain[6 * MODES], world[6 * MODES];
-    int known[2] = {0, 0};
-    if (t->reach[l] == t->reach[l + 1]) return;
-    link_motion(t, w, l, twist, seen, k);
-    for (int i = 0; i < 6 * k; i++) strain[i] = twist[6 * k + i] - twist[i];
-    for (int64_t of = t->reach[l]; of < t->reach[l + 1]; of++) {
-        const int64_t s = t->about[of];
+    const int64_t part = t->link[4 * l];
+    const int least = t->link[4 * l + 1] < 0 ? 6 : 0, most = t->link[4 * l + 2] < 0 ? 6 : 12;
+    for (int64_t s = t->reach[part]; s < t->reach[part + 1]; s++, sum += n) {
+        const int row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
+        const double factor = row == column ? 1.0 : 2.0;
+        if (t->slot[4 * s] == STIFFNESS) gain(sum, at->strain + row * k, at->strain + column * k, factor, 1, of, crossed, k);
+        else if (row >= least && column < most) gain(sum, at->twist + row * k, at->heavy + column * k, factor, 1, of, crossed, k);
+    }
+}
+
+/* Every slot about a link's place, into `sum`. */
+static INLINE void place_slots(
+    const Task *t, const Room *w, int64_t l, const Moved *at, lanes *sum, const Wanted *of, const int crossed, const int k, const int n)
+{
+    for (int64_t s = t->reach[t->parts + l]; s < t->reach[t->parts + l + 1]; s++, sum += n) {
         const int kind = (int)t->slot[4 * s], row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
         const int one = (row + 1) % 3, two = (row + 2) % 3;
-        lanes *sum = w->sum + s * pairs;
-#define EACH(what) for (int p = pair ? k : 0; p < (pair ? pairs : k); p++) { const Pair at = pair ? pair[p] : (Pair){p, p}; what; }
-        if (kind == STIFFNESS) EACH(sum[p] += between(strain, strain, k, row, column, at))
-        else if (kind == MASS) EACH(sum[p] += between(twist, twist, k, row, column, at))
-        else
-            for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
-                const int64_t body = t->link[4 * l + 1 + side];
-                if (body < 0) continue;
-                if (!known[side]) end_force(t, w, l, side, mean, twist, strain, force + 6 * side * k, world + 3 * side * k, k), known[side] = 1;
-                const lanes *o = w->shapes + 6 * k * body + 3 * k, *u = seen + (3 * side + row) * k, *g = world + 3 * side * k;
-                const lanes *f = force + (6 * side + column) * k;
-                if (kind == TURN) EACH(sum[p] += both(f, u, at) + both(f + 3 * k, o + row * k, at))
-                else EACH(sum[p] += both(o + one * k, g + two * k, at) - both(o + two * k, g + one * k, at))
+        int more = 0;
+        for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
+            const int64_t body = t->link[4 * l + 1 + side];
+            if (body < 0) continue;
+            const lanes *o = w->shapes + 6 * k * body + 3 * k, *g = at->world + 3 * side * k, *f = at->force + (6 * side + column) * k;
+            if (kind == TURN) {
+                gain(sum, f, at->seen + (3 * side + row) * k, 2.0, more, of, crossed, k);
+                gain(sum, f + 3 * k, o + row * k, 2.0, 1, of, crossed, k);
+            } else {
+                gain(sum, o + one * k, g + two * k, 2.0, 0, of, crossed, k);
+                gain(sum, o + two * k, g + one * k, -2.0, 1, of, crossed, k);
             }
+            more = 1;
+        }
     }
 }
 
-/* From slots to variables. */
-static INLINE void contract(const Task *t, Room *w, const int pairs)
+/* From the slots of a group (a part, a link, a body) to variables; n is the number of pairs. */
+static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *sum, const int n)
 {
-    for (int64_t i = 0; i < t->variables * pairs; i++) w->slope[i] = all(0.0);
-    for (int64_t e = 0; e < t->entries;) {
+    sum -= t->reach[group] * n;
+    for (int64_t e = t->about[group]; e < t->about[group + 1];) {
         const int64_t variable = t->entry[3 * e];
-        lanes sum[MODES * MODES], *to = w->slope + variable * pairs;
-        for (int p = 0; p < pairs; p++) sum[p] = to[p];
-        for (; e < t->entries && t->entry[3 * e] == variable; e++) {
-            const lanes change = w->change[e], *own = w->sum + t->entry[3 * e + 1] * pairs;
-            for (int p = 0; p < pairs; p++) sum[p] += change * own[p];
+        lanes own[MODES], *to = w->slope + variable * n;
+        if (n > MODES) {
+            for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++)
+                for (int p = 0; p < n; p++) to[p] += w->change[e] * sum[t->entry[3 * e + 1] * n + p];
+            continue;
         }
-        for (int p = 0; p < pairs; p++) to[p] = sum[p];
+        UNROLL for (int p = 0; p < n; p++) own[p] = to[p];
+        for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++) {
+            const lanes change = w->change[e], *of = sum + t->entry[3 * e + 1] * n;
+            UNROLL for (int p = 0; p < n; p++) own[p] += change * of[p];
+        }
+        UNROLL for (int p = 0; p < n; p++) to[p] = own[p];
+    }
+}
+
+/* All links, those of one part together, then the bodies' inertia. */
+static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int k, const int n)
+{
+    Moved at;
+    const int more = of->pairs > k;
+    for (int64_t i = 0; i < t->variables * n; i++) w->slope[i] = all(0.0);
+    for (int64_t i = 0; i < t->links; i++) {
+        const int64_t l = t->alike[i], part = t->link[4 * l], place = t->parts + l;
+        const int first = !i || t->link[4 * t->alike[i - 1]] != part, last = i + 1 == t->links || t->link[4 * t->alike[i + 1]] != part;
+        const int law = t->reach[part] < t->reach[part + 1], moves = t->reach[place] < t->reach[place + 1];
+        lanes *own = w->sum, *other = own + (t->reach[part + 1] - t->reach[part]) * n;
+        if (first) memset(own, 0, sizeof(lanes) * (other - own));
+        if (law || moves) move_link(t, w, l, &at, of, k);
+        if (law) law_slots(t, l, &at, own, of, 0, k, n);
+        if (law && more) law_slots(t, l, &at, own, of, 1, k, n);
+        if (law && last) contract(t, w, part, own, n);
+        if (!moves) continue;
+        load_link(t, w, l, &at, k), place_slots(t, w, l, &at, other, of, 0, k, n);
+        if (more) place_slots(t, w, l, &at, other, of, 1, k, n);
+        contract(t, w, place, other, n);
+    }
+    for (int64_t b = 0; b < t->bodies; b++) {
+        const int64_t group = t->parts + t->links + b;
+        const lanes *x = w->shapes + 6 * k * b;
+        lanes heavy[6 * MODES], *sum = w->sum;
+        for (int i = 0; i < 6; i++)
+            UNROLL for (int c = 0; c < k; c++) heavy[i * k + c] = -of->mean[c] * x[i * k + c];
+        for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
+            const int64_t row = t->slot[4 * s + 2], column = t->slot[4 * s + 3];
+            gain(sum, x + row * k, heavy + column * k, row == column ? 1.0 : 2.0, 0, of, 0, k);
+            if (more) gain(sum, x + row * k, heavy + column * k, row == column ? 1.0 : 2.0, 0, of, 1, k);
+        }
+        contract(t, w, group, w->sum, n);
     }
 }
 
@@ -965,37 +1039,23 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
         if (t->plane[2 * b] < 0) continue;
         axes_of(q, t, w, b);
         for (int c = 0; c < k; c++) {
-            for (int i = 0; i < 6; i++) u[SPOT[i]] = x[i * k + c];
-            for (int i = 0; i < 6; i++) x[i * k + c] = q[3 * (i % 3)] * u[i - i % 3] + q[3 * (i % 3) + 1] * u[i - i % 3 + 1] + q[3 * (i % 3) + 2] * u[i - i % 3 + 2];
+            UNROLL for (int i = 0; i < 6; i++) u[SPOT[i]] = x[i * k + c];
+            UNROLL for (int i = 0; i < 6; i++)
+                x[i * k + c] = q[3 * (i % 3)] * u[i - i % 3] + q[3 * (i % 3) + 1] * u[i - i % 3 + 1] + q[3 * (i % 3) + 2] * u[i - i % 3 + 2];
         }
     }
     for (; pairs < k; pairs++) pair[pairs].i = pair[pairs].j = pairs;
     for (int i = 0; i < k; i++)
         for (int j = i + 1; j < k; j++)
             if (any(same[i * k + j])) pair[pairs].i = i, pair[pairs++].j = j;
-    for (int64_t i = 0; i < t->slots * pairs; i++) w->sum[i] = all(0.0);
-    for (int64_t l = 0; l < t->links; l++) {
-        if (k == 6) link_slots(t, w, t->alike[l], mean, pairs, 0, 6); /* the usual case, unrolled by the compiler */
-        else link_slots(t, w, t->alike[l], mean, pairs, 0, k);
-        if (pairs > k) link_slots(t, w, t->alike[l], mean, pairs, pair, k);
-    }
-    for (int64_t s = 0; s < t->slots; s++) {
-        const lanes *x = w->shapes + 6 * k * t->slot[4 * s + 1];
-        lanes *sum = w->sum + s * pairs;
-        if (t->slot[4 * s] == INERTIA)
-            for (int p = 0; p < pairs; p++) sum[p] = between(x, x, k, (int)t->slot[4 * s + 2], (int)t->slot[4 * s + 3], pair[p]);
-        if (t->slot[4 * s] == INERTIA || t->slot[4 * s] == MASS)
-            for (int p = 0; p < pairs; p++) sum[p] *= -mean[pair[p].i];
-    }
-    if (pairs == 6) contract(t, w, 6);
-    else contract(t, w, pairs);
-    for (int64_t variable = 0; variable < t->variables; variable++) {
-        double *to = t->slopes + variable * k * k * t->stride + design;
-        for (int p = 0; p < pairs; p++) {
-            const int i = pair[p].i, j = pair[p].j;
-            const lanes kept = (lanes)(same[i * k + j] & (marks)w->slope[variable * pairs + p]);
-            store(to + (i * k + j) * t->stride, kept), store(to + (j * k + i) * t->stride, kept);
-        }
+    const Wanted of = {mean, pair, pairs};
+    if (k == 6 && pairs == 6) sum_slots(t, w, &of, 6, 6); /* the usual case, unrolled by the compiler */
+    else if (k == 6) sum_slots(t, w, &of, 6, pairs);
+    else sum_slots(t, w, &of, k, pairs);
+    for (int p = 0; p < pairs; p++) {
+        const int i = pair[p].i, j = pair[p].j, row = p < k ? p : k + i * (2 * k - i - 1) / 2 + j - i - 1;
+        for (int64_t variable = 0; variable < t->variables; variable++)
+            store(t->slopes + (row * t->variables + variable) * t->stride + design, (lanes)(same[i * k + j] & (marks)w->slope[variable * pairs + p]));
     }
 }
 
@@ -1127,7 +1187,7 @@ int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m, pairs = t->count * (t->count + 1) / 2;
     const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
-                             6 * t->bodies * t->count, t->slots * pairs, t->variables * pairs};
+                             6 * t->bodies * t->count, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
     for (int i = 0; i < count; i++) total += sizes[i] + 1;

@@ -37,7 +37,8 @@ class Stage:
 class Solution:
     """Eigenvalues `values` (b, k) of the platform's modes, ascending, and its `share` (b, k); `good` (b,) where they are proved.
 
-    `slopes` (b, P, k, k): Phi^T (dK - lambda dM) Phi within clusters, zero between them.
+    `slopes` (b, P, k (k + 1) / 2): Phi^T (dK - lambda dM) Phi of each mode with itself, then of those within clusters, zero between them:
+    the upper half of `matrices`, by its diagonal and then by its rows.
     """
 
     values: Array
@@ -45,9 +46,24 @@ class Solution:
     good: Array
     slopes: Array
 
+    @property
+    def matrices(self) -> Array:
+        """The slopes as symmetric matrices (b, P, k, k)."""
+        count = self.values.shape[1]
+        place = np.empty((count, count), dtype=int)
+        for number, (row, column) in enumerate(zip(*_upper(count), strict=True)):
+            place[row, column] = place[column, row] = number
+        return self.slopes[..., place]
+
     def take(self, designs: Array | slice) -> Solution:
         """Those of some designs."""
         return Solution(self.values[designs], self.share[designs], self.good[designs], self.slopes[designs])
+
+
+def _upper(count: int) -> tuple[Array, Array]:
+    """Rows and columns of the upper half of a matrix: its diagonal, then by rows."""
+    diagonal, (rows, columns) = np.arange(count), np.triu_indices(count, 1)
+    return np.concatenate([diagonal, rows]), np.concatenate([diagonal, columns])
 
 
 def by_iteration(stage: Stage, start: Start) -> Solution:
@@ -67,7 +83,7 @@ def by_iteration(stage: Stage, start: Start) -> Solution:
     picked = np.argsort(~found.mask, axis=1, kind="stable")[:, : start.choice.count]
     values, share = (np.take_along_axis(item, picked, axis=1) for item in (found.ritz.values, found.ritz.share))
     if stage.slopes is None:
-        return Solution(values, share, good, np.zeros((len(values), 0, values.shape[1], values.shape[1])))
+        return Solution(values, share, good, np.zeros((len(values), 0, len(_upper(values.shape[1])[0]))))
     shapes = np.take_along_axis(found.ritz.shapes, picked[:, None, None, :], axis=-1)
     return Solution(values, share, good, _slopes(stage, shapes, values, start.choice.cluster))
 
@@ -94,16 +110,17 @@ def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array
 
 def _slopes(stage: Stage, shapes: Array, values: Array, gap: float) -> Array:
     group = groups(values, gap)
-    result = np.zeros((len(values), stage.variables, values.shape[1], values.shape[1]))
+    rows, columns = _upper(values.shape[1])
+    result = np.zeros((len(values), stage.variables, len(rows)))
     if stage.slopes is None:
         return result
     seen = motion(stage.scheme, stage.numbers, shapes, means(values, group))
     start = 0
     for change in stage.slopes.changes:
         stop = start + len(change.rows)
-        result[:, change.variable] += slope(stage.scheme, seen, change, stage.slopes.values[start:stop])
+        result[:, change.variable] += slope(stage.scheme, seen, change, stage.slopes.values[start:stop])[:, rows, columns]
         start = stop
-    return np.where((group[:, :, None] == group[:, None, :])[:, None], result, 0.0)
+    return np.where((group[:, rows] == group[:, columns])[:, None], result, 0.0)
 
 
 def wholly(stage: Stage, choice: Choice) -> list[Solution]:
@@ -163,18 +180,19 @@ def platform_indices(modes: Whole, choice: Choice) -> Array:
 def keep(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
     """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
 
-    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.diag([1.0, 2.0, 4.0])[None, None])
+    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.array([[[1.0, 2.0, 4.0, 0.0, 0.0, 0.0]]]))
     >>> left, mean = keep(both, Choice(count=2))
     >>> left.values.tolist(), mean.tolist()
     ([[1.0, 4.0]], [[[1.0, 3.0]]])
     """
     group = groups(solution.values, choice.cluster)
-    diagonal = np.diagonal(solution.slopes, axis1=-2, axis2=-1)
+    diagonal = solution.slopes[..., : solution.values.shape[1]]
     mean = np.swapaxes(means(np.swapaxes(diagonal, 1, 2), group), 1, 2)
     if solution.values.shape[1] <= choice.count:
         return solution, mean
     whole_share = means(solution.share, groups(np.sqrt(solution.values), choice.cluster))
     best = np.sort(np.argsort(-whole_share, axis=1, kind="stable")[:, : choice.count], axis=1)
     values, share = (np.take_along_axis(item, best, axis=1) for item in (solution.values, solution.share))
-    slopes = np.take_along_axis(np.take_along_axis(solution.slopes, best[:, None, None, :], 3), best[:, None, :, None], 2)
+    slopes = np.take_along_axis(np.take_along_axis(solution.matrices, best[:, None, None, :], 3), best[:, None, :, None], 2)
+    slopes = slopes[:, :, *_upper(choice.count)]
     return Solution(values, share, solution.good, slopes), np.take_along_axis(mean, best[:, None, :], axis=2)
