@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -43,9 +42,12 @@ _SIZES = (
     "entries",
     "single",
     "parts",
+    "ports",
+    "gates",
+    "rows",
 )
 _GRAPH = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
-_PLANES = ("plane", "normal", "flat", "thin")
+_PLANES = ("gate", "through", "normal", "model", "row", "copies", "nth")
 _TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
@@ -79,7 +81,8 @@ class Tables:
     @cached_property
     def arrays(self) -> Mapping[str, Array]:
         """Every table."""
-        return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **{name: getattr(self.planes, name) for name in _PLANES}}
+        own = {"later": self.planes.later(self.scheme), **{name: getattr(self.planes, name) for name in _PLANES}}
+        return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **own}
 
 
 def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) -> Solution:
@@ -171,6 +174,9 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "entries": len(tables.arrays["entry"]),
         "single": start.needed,
         "parts": stage.scheme.topology.parts,
+        "ports": len(tables.planes.copies) - len(graph.order),
+        "gates": len(tables.planes.gate),
+        "rows": 6 * int(tables.planes.copies[len(graph.order) :].sum()) + 6 * len(graph.order),
     }
     bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
     settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
@@ -196,7 +202,6 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
     return {
         "link": np.array(link, dtype=np.int64),
         "range": np.searchsorted(firsts, np.arange(bodies + 1)).astype(np.int64),
-        "later": np.array([later for _, later in graph.edges], dtype=np.int64),
         "heavy": np.isin(np.arange(len(graph.edges)), [item[3] for item in link]).astype(np.int64),
         "product": np.searchsorted([firsts[item[0]] for item in update], np.arange(bodies + 1)).astype(np.int64),
         "update": np.array(update, dtype=np.int64).reshape(-1, 3),

@@ -9,24 +9,30 @@
  *    1 / (outer - sigma) at most: its sine is (sine of the angle between x and y) / ((outer - sigma) theta - 1) at most.
  * 4. As many pivots of K - shift M are negative as values lie below the shift: none is missed.
  *
- * Own blocks of bodies are lower triangles by rows, edges 6x6 by rows; vectors are [body][6][m]; every entry is a vector of WIDTH designs.
+ * Own blocks of bodies are lower triangles by rows, edges 6x6 by rows; vectors are [body][6][copy][m]; every entry is a vector of WIDTH designs.
+ *
+ * A leg that is symmetric about a plane, in which every body has one that comes later, is a tree: in axes of its own its blocks are two of 3x3,
+ * which have nothing in common: x, y, rz and z, rx, ry. Own blocks are two lower triangles there, edges two of 3x3. It ends at a port: the platform as it
+ * moves in the leg's axes at the point of the plane next to its reference point. Equal legs have equal matrices there, which are assembled
+ * and eliminated once; their motions are columns side by side.
  */
 #include "lanes.h"
 
 #define MOST 16     /* vectors of a block */
 #define MODES 12    /* modes that may be asked for */
 #define BESIDE 1e-6 /* how far below its value a single mode's shift is: its matrix is never singular */
+#define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
 #define AHEAD 4     /* vectors of designs whose numbers are gathered at once: rows are far apart, and a page holds few */
 
 typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, entries, single, parts;
+    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, entries, single, parts, ports, gates, rows;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
-    const int64_t *later;   /* edges: the later body */
+    const int64_t *later;   /* edges: the later body, or the port that stands for the platform */
     const int64_t *heavy;   /* edges: whether some link is on it */
     const int64_t *product; /* bodies + 1: where the updates of each body begin */
     const int64_t *update;  /* updates x (edge, edge, target); -1: the later body's own block */
@@ -38,11 +44,15 @@ typedef struct {
     const int64_t *about;   /* groups + 1: where their entries begin */
     const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by group, then by variable */
     const int64_t *alike;   /* links, those of one part together */
-    const int64_t *plane;   /* bodies x (link, axis): whose axes the body has, the axis normal to the plane of symmetry; -1: the stage's */
-    const int64_t *normal;  /* links: the axis of each that is normal to its leg's plane; -1: it is not symmetric about it */
-    const int64_t *flat;    /* bodies x 2: whether own blocks of K and M are split, and as elimination leaves them */
-    const int64_t *thin;    /* edges x 2: so for edges */
-    const double *force;    /* bodies x 6 x m: inertial forces of the modes to begin with */
+    const int64_t *gate;    /* gates x (port, link, axis, link to the platform, its side, copy): one for each tree, which has the axes of its link, of which
+                             * one is normal to the plane of symmetry */
+    const int64_t *through; /* bodies, then links: the gate of their tree; -1: in none, in the stage's axes */
+    const int64_t *normal;  /* links: the axis of each that is normal to its tree's plane; -1: in none */
+    const int64_t *model;   /* bodies, then links: the one of an equal tree whose matrices serve for it, or itself */
+    const int64_t *row;     /* bodies, then ports: the row of their first component in vectors */
+    const int64_t *copies;  /* bodies, then ports: how many equal ones there are, whose rows stand side by side */
+    const int64_t *nth;     /* bodies, then ports, x 2: how many come before it, and which of those before the later one it is */
+    const double *force;    /* rows x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
     const double *changes;  /* entries x slopes_stride */
     /* settings */
@@ -79,9 +89,7 @@ static inline void store(double *p, lanes a) { *(loose *)p = a; }
 #define OWN 21
 #define LOWER(i, k) ((i) * ((i) + 1) / 2 + (k)) /* k <= i */
 
-/* Bodies that are symmetric about a plane have axes of their own: entries are x, y, rz, z, rx, ry there, and those of either half have nothing
- * in common with the others. */
-#define BOTH(split, i, k) (!(split) || (i) / 3 == (k) / 3)
+#define HALF(h, i, k) (6 * (h) + LOWER(i, k)) /* of an own block of a tree; edges: 9 * h + 3 * i + k */
 
 enum { PLAIN, TURNED, SYMMETRIC };
 
@@ -97,23 +105,99 @@ static INLINE void pick_columns(lanes *x, const lanes *v, int m, const int n)
         UNROLL for (int k = 0; k < n; k++) x[c * n + k] = v[c * m + k];
 }
 
-#define SIZE 6
-#define SIZED(name) name##_whole
-#include "blocks.h"
-#undef SIZE
-#undef SIZED
-#define SIZE 3
-#define SIZED(name) name##_split
-#include "blocks.h"
+/* n columns of y (6, m) += a x or -= a x: each entry of a is used n times. */
+static INLINE void multiply(lanes *restrict y, const lanes *restrict a, const lanes *x, int m, const int kind, const int negative, const int n)
+{
+    UNROLL for (int r = 0; r < 6; r++) {
+        lanes s[4];
+        UNROLL for (int k = 0; k < n; k++) s[k] = y[r * m + k];
+        UNROLL for (int c = 0; c < 6; c++) {
+            const lanes e = entry(a, r, c, kind);
+            UNROLL for (int k = 0; k < n; k++) s[k] = negative ? s[k] - e * x[c * n + k] : s[k] + e * x[c * n + k];
+        }
+        UNROLL for (int k = 0; k < n; k++) y[r * m + k] = s[k];
+    }
+}
 
-/* `what` with four columns from j on at once, then with what is left of m. */
-#define IN_COLUMNS(m, what)                                            \
-    {                                                                  \
-        int j = 0;                                                     \
-        for (; j + 4 <= (m); j += 4) { enum { n = 4 }; what; }         \
-        if ((m) - j == 3) { enum { n = 3 }; what; }                    \
-        else if ((m) - j == 2) { enum { n = 2 }; what; }               \
-        else if ((m) - j == 1) { enum { n = 1 }; what; }               \
+/* own (a lower triangle of `size`) = L D L^T: L below the diagonal, D^-1 on it. */
+static INLINE void invert(lanes *own, lanes *pivot, const int size)
+{
+    lanes a[OWN];
+    UNROLL for (int i = 0; i < LOWER(size, 0); i++) a[i] = own[i];
+    UNROLL for (int s = 0; s < size; s++) {
+        const lanes inverse = 1.0 / (pivot[s] = a[LOWER(s, s)]);
+        UNROLL for (int i = s + 1; i < size; i++) {
+            const lanes l = a[LOWER(i, s)] * inverse;
+            for (int k = s + 1; k <= i; k++) a[LOWER(i, k)] -= l * a[LOWER(k, s)];
+        }
+        UNROLL for (int i = s + 1; i < size; i++) a[LOWER(i, s)] *= inverse;
+        a[LOWER(s, s)] = inverse;
+    }
+    UNROLL for (int i = 0; i < LOWER(size, 0); i++) own[i] = a[i];
+}
+
+/* Edges of K - shift M: L^-1 times themselves, of an own block. */
+static INLINE void reduce(lanes *edge, const lanes *stiff, const lanes *mass, lanes shift, const lanes *own, const int fills)
+{
+    UNROLL for (int half = 0; half < 6; half += 3) {
+        lanes x[18];
+        UNROLL for (int i = 0; i < 18; i++) {
+            const int at = half + 6 * (i / 3) + i % 3;
+            x[i] = fills ? edge[at] : stiff[at] - shift * mass[at];
+        }
+        UNROLL for (int s = 0; s < 6; s++)
+            UNROLL for (int i = s + 1; i < 6; i++)
+                UNROLL for (int c = 0; c < 3; c++) x[3 * i + c] -= own[LOWER(i, s)] * x[3 * s + c];
+        UNROLL for (int i = 0; i < 18; i++) edge[half + 6 * (i / 3) + i % 3] = x[i];
+    }
+}
+
+/* Three rows of an own block from `first` on -= x^T D x. */
+static INLINE void update(lanes *restrict to, const lanes *restrict x, const lanes *restrict a, const int first)
+{
+    lanes sum[OWN];
+    UNROLL for (int i = first; i < first + 3; i++)
+        UNROLL for (int k = 0; k <= i; k++) sum[LOWER(i, k)] = to[LOWER(i, k)];
+    UNROLL for (int r = 0; r < 6; r++)
+        UNROLL for (int i = first; i < first + 3; i++) {
+            const lanes scaled = x[6 * r + i] * a[LOWER(r, r)];
+            for (int k = 0; k <= i; k++) sum[LOWER(i, k)] -= scaled * x[6 * r + k];
+        }
+    UNROLL for (int i = first; i < first + 3; i++)
+        UNROLL for (int k = 0; k <= i; k++) to[LOWER(i, k)] = sum[LOWER(i, k)];
+}
+
+/* n columns u (6, n): L^-1 u. */
+static INLINE void lower(lanes *u, const lanes *a, const int n)
+{
+    UNROLL for (int s = 0; s < 6; s++)
+        UNROLL for (int i = s + 1; i < 6; i++)
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] -= a[LOWER(i, s)] * u[s * n + k];
+}
+
+/* L^-T u. */
+static INLINE void upper(lanes *u, const lanes *a, const int n)
+{
+    UNROLL for (int i = 5; i > 0; i--)
+        UNROLL for (int s = 0; s < i; s++)
+            UNROLL for (int k = 0; k < n; k++) u[s * n + k] -= a[LOWER(i, s)] * u[i * n + k];
+}
+
+/* `what` with three of `wide` columns from j on at once, then with what is left of them. */
+#define IN_THREES(what)                                                   \
+    {                                                                     \
+        int j = 0;                                                        \
+        for (; j + 3 <= wide; j += 3) { enum { n = 3 }; what; }           \
+        if (wide - j == 2) { enum { n = 2 }; what; }                      \
+        else if (wide - j == 1) { enum { n = 1 }; what; }                 \
+    }
+/* The same; the usual numbers of columns are known to the compiler. */
+#define IN_COLUMNS(columns, what)                                         \
+    {                                                                     \
+        if ((columns) == 1) { enum { wide = 1, j = 0, n = 1 }; what; }      \
+        else if ((columns) == 2) { enum { wide = 2, j = 0, n = 2 }; what; } \
+        else if ((columns) == 3) { enum { wide = 3, j = 0, n = 3 }; what; } \
+        else { const int wide = (columns); IN_THREES(what) }              \
     }
 
 /* ---- assembly ---- */
@@ -152,19 +236,24 @@ static INLINE void carried(lanes *p, const lanes *n, const lanes *b)
 }
 
 /* out += sign T(a)^T p, out of a kind. */
-static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign, const int kind, const int *row, const int *column)
+static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign, const int kind)
 {
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < (kind == SYMMETRIC ? i + 1 : 6); k++) {
             lanes x = p[6 * i + k];
             if (i > 2) x += p[6 * ((i + 1) % 3) + k] * a[(i + 2) % 3] - p[6 * ((i + 2) % 3) + k] * a[(i + 1) % 3];
-            const int r = row[i], c = column[k];
-            out[kind == SYMMETRIC ? r > c ? LOWER(r, c) : LOWER(c, r) : kind == TURNED ? 6 * c + r : 6 * r + c] += sign * x;
+            out[kind == SYMMETRIC ? LOWER(i, k) : 6 * i + k] += sign * x;
         }
 }
 
 /* What of a part's law and mass is not zero in every design: 3x3 blocks (4 and 16) that are; columns by row (6 and 12). */
 typedef struct { int zero[20], start[19], column[180]; } Law;
+
+/* The axes of a leg (columns, the normal last), and how far its plane is from the platform's reference point. */
+typedef struct { lanes q[9], far; } View;
+
+/* A link's axes in those of its leg: the two in the plane (2x2) and the normal; arms in the leg's axes. */
+typedef struct { lanes p[4], s, arm[2][2]; int spot[6]; } Side;
 
 typedef struct {
     Law *law;
@@ -176,35 +265,25 @@ typedef struct {
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
     lanes *now, *next, *force, *ahead; /* blocks of vectors */
-    lanes *shapes;                   /* modes found (6 bodies, count) */
+    lanes *shapes, *placed;          /* modes found (rows, count), and of each body in the stage's axes (6 bodies, count) */
+    View *view;                      /* of every gate */
+    Side *side;                      /* of every link of a leg with a plane */
     lanes *sum, *slope;              /* slots of a group x pairs, variables x pairs */
 } Room;
 
 /* ---- assembly in axes of a plane ---- */
 
-/* Whether an edge of a body with axes of its own leads to another with the same ones: to every one but the platform. */
-static INLINE int inner(const Task *t, int64_t e) { return t->later[e] < t->bodies - 1; }
-
 static const int SPOT[6] = {0, 1, 5, 2, 3, 4}; /* x, y, rz, z, rx, ry among x, y, z, rx, ry, rz */
 
-/* The axes q (columns) of a body with axes of its own: those of a link, the normal last. */
-static INLINE void axes_of(lanes *q, const Task *t, const Room *w, int64_t body)
-{
-    const lanes *r = w->number + t->start[2] + 9 * t->plane[2 * body];
-    const int normal = (int)t->plane[2 * body + 1];
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) q[3 * i + k] = r[3 * i + (normal + 1 + k) % 3];
-}
-
-/* A link's axes in those of its leg: the two in the plane (2x2) and the normal; arms in the leg's axes. */
-typedef struct { lanes p[4], s, arm[2][2]; int spot[6]; } Side;
+/* What stands for a body of a link in its tree's matrices: its port for the platform. */
+static INLINE int64_t end_of(const Task *t, int64_t gate, int64_t body) { return gate >= 0 && body == t->bodies - 1 ? t->bodies + t->gate[6 * gate] : body; }
 
 static INLINE lanes along(const lanes *q, int i, const lanes *v, int step) { return q[i] * v[0] + q[3 + i] * v[step] + q[6 + i] * v[2 * step]; }
 
 /* Says in which lanes the link is not of that plane. */
-static INLINE marks lay(const Task *t, const Room *w, int64_t l, const lanes *q, Side *out)
+static INLINE marks lay(const Task *t, const Room *w, int64_t l, const View *view, Side *out)
 {
-    const lanes *r = w->number + t->start[2] + 9 * l;
+    const lanes *r = w->number + t->start[2] + 9 * l, *q = view->q;
     const int normal = (int)t->normal[l], one = (normal + 1) % 3, two = (normal + 2) % 3;
     const int spot[6] = {one, two, 3 + normal, normal, 3 + one, 3 + two};
     memcpy(out->spot, spot, sizeof spot);
@@ -214,11 +293,21 @@ static INLINE marks lay(const Task *t, const Room *w, int64_t l, const lanes *q,
     marks bad = ~(size_of(along(q, 2, r + one, 3)) + size_of(along(q, 2, r + two, 3)) <= t->skew);
     for (int side = 0; side < 2; side++) {
         const int64_t body = t->link[4 * l + 1 + side];
-        if (body < 0 || t->plane[2 * body] < 0) continue;
+        out->arm[side][0] = out->arm[side][1] = all(0.0);
+        if (body < 0) continue;
         const lanes *arm = w->number + t->start[3 + side] + 3 * l;
         out->arm[side][0] = along(q, 0, arm, 1), out->arm[side][1] = along(q, 1, arm, 1);
-        bad |= ~(size_of(along(q, 2, arm, 1)) <= t->skew * t->span);
+        bad |= ~(size_of(along(q, 2, arm, 1) - (body == t->bodies - 1 ? view->far : all(0.0))) <= t->skew * t->span);
     }
+    return bad;
+}
+
+/* In which lanes two links lie otherwise in their legs. */
+static INLINE marks unlike(const Task *t, const Side *a, const Side *b)
+{
+    marks bad = ~(size_of(a->s - b->s) <= t->skew);
+    UNROLL for (int i = 0; i < 4; i++)
+        bad |= ~(size_of(a->p[i] - b->p[i]) <= t->skew) | ~(size_of(a->arm[i / 2][i % 2] - b->arm[i / 2][i % 2]) <= t->skew * t->span);
     return bad;
 }
 
@@ -244,11 +333,14 @@ static INLINE void lie(lanes *out, const lanes *from, const int stride, const Si
 #undef OF
 }
 
+/* Whether an entry is in one of the two 3x3 blocks. */
+#define WITHIN(i, k) ((i) / 3 == (k) / 3)
+
 /* p = n T(b) and out += sign T(a)^T p as `carried` and `join`, in the plane. */
 static INLINE void carried_plane(lanes *p, const lanes *n, const lanes *b)
 {
     UNROLL for (int i = 0; i < 36; i++)
-        if (BOTH(1, i / 6, i % 6)) p[i] = n[i];
+        if (WITHIN(i / 6, i % 6)) p[i] = n[i];
     UNROLL for (int i = 0; i < 18; i += 6) {
         p[i + 2] += n[i] * b[1] - n[i + 1] * b[0];
         p[i + 22] -= n[i + 21] * b[1];
@@ -256,146 +348,129 @@ static INLINE void carried_plane(lanes *p, const lanes *n, const lanes *b)
     }
 }
 
-static INLINE void join_plane(lanes *out, const lanes *p, const lanes *a, double sign, const int kind, const int narrow)
+static INLINE void join_plane(lanes *out, const lanes *p, const lanes *a, double sign, const int kind)
 {
     UNROLL for (int i = 0; i < 6; i++)
         UNROLL for (int k = 0; k < 6; k++) {
-            if (!BOTH(narrow, i, k) || (kind == SYMMETRIC && k > i)) continue;
+            if (!WITHIN(i, k) || (kind == SYMMETRIC && k > i)) continue;
             lanes x = p[6 * i + k];
             if (i == 2) x += p[k] * a[1] - p[6 + k] * a[0];
             if (i == 4) x -= p[18 + k] * a[1];
             if (i == 5) x += p[18 + k] * a[0];
-            out[kind == SYMMETRIC ? LOWER(i, k) : 6 * i + k] += sign * x;
+            out[kind == SYMMETRIC ? HALF(i / 3, i % 3, k % 3) : 9 * (i / 3) + 3 * (i % 3) + k % 3] += sign * x;
         }
 }
 
-/* Columns of n (6x6, split) in the stage's axes. */
-static INLINE void open_columns(lanes *p, const lanes *n, const lanes *q)
+/* An own block of the platform += one of a port, as the platform moves in the stage's axes. */
+static INLINE void open_own(lanes *own, const lanes *s, const View *at)
 {
-    UNROLL for (int i = 0; i < 3; i++)
+    const lanes *q = at->q, far = at->far, zero = all(0.0), square = far * far;
+    const lanes a = s[HALF(0, 0, 0)], b = s[HALF(0, 1, 0)], c = s[HALF(0, 1, 1)], e = s[HALF(0, 2, 0)], f = s[HALF(0, 2, 1)];
+    const lanes turned[9] = {c * far, -b * far, f, -a * far, zero, zero, zero, zero, zero};
+    const lanes push[9] = {a, b, zero, b, c, zero, zero, zero, s[HALF(1, 0, 0)]};
+    const lanes cross[9] = {b * far, turned[3], e, turned[0], turned[1], f, s[HALF(1, 1, 0)], s[HALF(1, 2, 0)], zero}; /* of forces by turns */
+    const lanes twist[9] = {s[HALF(1, 1, 1)] + c * square, s[HALF(1, 2, 1)] - b * square, f * far, zero, s[HALF(1, 2, 2)] + a * square,
+                            -e * far, zero, zero, s[HALF(0, 2, 2)]};
+    UNROLL for (int i = 0; i < 3; i++) {
+        const lanes x = q[3 * i], y = q[3 * i + 1], z = q[3 * i + 2];
+        const lanes p[3] = {x * push[0] + y * push[1], x * push[1] + y * push[4], z * push[8]};
+        const lanes m[3] = {x * twist[0] + y * twist[1] + z * twist[2], x * twist[1] + y * twist[4] + z * twist[5], x * twist[2] + y * twist[5] + z * twist[8]};
+        const lanes g[3] = {x * cross[0] + y * cross[3] + z * cross[6], x * cross[1] + y * cross[4] + z * cross[7], x * cross[2] + y * cross[5]};
         UNROLL for (int k = 0; k < 3; k++) {
-            p[6 * i + k] = n[6 * i] * q[3 * k] + n[6 * i + 1] * q[3 * k + 1];
-            p[6 * i + 3 + k] = n[6 * i + 2] * q[3 * k + 2];
-            p[18 + 6 * i + k] = n[18 + 6 * i + 3] * q[3 * k + 2];
-            p[21 + 6 * i + k] = n[18 + 6 * i + 4] * q[3 * k] + n[18 + 6 * i + 5] * q[3 * k + 1];
+            const lanes *r = q + 3 * k;
+            if (k <= i) own[LOWER(i, k)] += p[0] * r[0] + p[1] * r[1] + p[2] * r[2];
+            if (k <= i) own[LOWER(3 + i, 3 + k)] += m[0] * r[0] + m[1] * r[1] + m[2] * r[2];
+            own[LOWER(3 + k, i)] += g[0] * r[0] + g[1] * r[1] + g[2] * r[2];
         }
+    }
 }
 
-/* What is turned from a link's axes (r) into those of its body, in which its arms are, goes to places by row and by column. */
-static const int ORDER[6] = {0, 1, 2, 3, 4, 5}, PLACE[6] = {0, 1, 3, 4, 5, 2}; /* x, y, z, rx, ry, rz among x, y, rz, z, rx, ry */
+/* What the ports' own blocks add to the platform's. */
+static INLINE void open_ports(const Task *t, const Room *w, lanes *own, const lanes *from)
+{
+    for (int64_t g = 0; g < t->gates; g++) open_own(own, from + OWN * (t->bodies + t->gate[6 * g]), w->view + g);
+}
 
 /* One of a link's own blocks. */
-static INLINE void add_own(lanes *own, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *arm, const int *place)
+static INLINE void add_own(lanes *own, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *arm)
 {
     lanes n[36], p[36];
-    turn(n, law, stride, r, zero, 1), carried(p, n, arm), join(own, p, arm, 1.0, SYMMETRIC, place, place);
+    turn(n, law, stride, r, zero, 1), carried(p, n, arm), join(own, p, arm, 1.0, SYMMETRIC);
 }
 
-/* A link's edge of K or M (`symmetric`: K); columns are in the stage's axes where those of the row's body are q. */
+/* A link's edge of K or M (`symmetric`: K). */
 static INLINE void add_edge(
-    lanes *edge, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *first, const lanes *second, double sign,
-    const int symmetric, const lanes *q, const int *row, const int *column)
+    lanes *edge, const lanes *law, const int stride, const lanes *r, const int *zero, const lanes *first, const lanes *second, double sign, const int symmetric)
 {
     lanes n[36], p[36];
-    turn(n, law, stride, r, zero, symmetric);
-    if (q)
-        for (int i = 0; i < 36; i += 3) {
-            lanes u[3];
-            for (int k = 0; k < 3; k++) u[k] = n[i] * q[3 * k] + n[i + 1] * q[3 * k + 1] + n[i + 2] * q[3 * k + 2];
-            memcpy(n + i, u, sizeof u);
-        }
-    carried(p, n, second), join(edge, p, first, sign, PLAIN, row, column);
+    turn(n, law, stride, r, zero, symmetric), carried(p, n, second), join(edge, p, first, sign, PLAIN);
 }
 
-/* Adds a link that is not symmetric about a plane; of bodies with axes of their own in these. */
+/* Adds a link in the stage's axes. */
 static void assemble_whole(const Task *t, Room *w, int64_t l)
 {
     const int64_t part = t->link[4 * l], *body = t->link + 4 * l + 1, e = t->link[4 * l + 3];
     const lanes *k = w->number + t->start[0] + 36 * part, *m = w->number + t->start[1] + 144 * part, *r = w->number + t->start[2] + 9 * l;
     const lanes *arm[2] = {w->number + t->start[3] + 3 * l, w->number + t->start[4] + 3 * l};
     const int *zero = w->law[part].zero;
-    lanes q[9], own_r[9], own_arm[2][3], crossed[36];
-    const int64_t leg = body[body[0] < 0 || t->plane[2 * body[0]] < 0];
-    const int has = leg >= 0 && t->plane[2 * leg] >= 0;
-    if (has) {
-        axes_of(q, t, w, leg);
-        for (int i = 0; i < 9; i++) own_r[i] = along(q, i / 3, r + i % 3, 3);
-        for (int i = 0; i < 6; i++) own_arm[i / 3][i % 3] = along(q, i % 3, arm[i / 3], 1);
-    }
+    lanes crossed[36];
     for (int side = 0; side < 2; side++) {
         if (body[side] < 0) continue;
-        const int own = t->plane[2 * body[side]] >= 0;
-        const lanes *turns = own ? own_r : r, *reach = own ? own_arm[side] : arm[side];
-        const int *place = own ? PLACE : ORDER;
-        add_own(w->stiff + OWN * body[side], k, 6, turns, zero, reach, place);
-        add_own(w->mass + OWN * body[side], m + 78 * side, 12, turns, zero + 4 + 10 * side, reach, place);
+        add_own(w->stiff + OWN * body[side], k, 6, r, zero, arm[side]);
+        add_own(w->mass + OWN * body[side], m + 78 * side, 12, r, zero + 4 + 10 * side, arm[side]);
     }
     if (e < 0) return;
-    const int one = body[0] > body[1], two = 1 - one, same = has && inner(t, e);
+    const int one = body[0] > body[1], two = 1 - one;
     int none[4];
     for (int i = 0; i < 36; i++) crossed[i] = one ? m[72 + 12 * (i / 6) + i % 6] : m[6 + 12 * (i / 6) + i % 6];
     for (int i = 0; i < 4; i++) none[i] = one ? zero[4 + 8 + 4 * (i / 2) + i % 2] : zero[4 + 2 + 4 * (i / 2) + i % 2];
-    const lanes *turns = has ? own_r : r, *first = has ? own_arm[one] : arm[one], *second = same ? own_arm[two] : arm[two], *open = has && !same ? q : 0;
-    const int *row = has ? PLACE : ORDER, *column = same ? PLACE : ORDER;
-    add_edge(w->stiff_edge + 36 * e, k, 6, turns, zero, first, second, -1.0, 1, open, row, column);
-    add_edge(w->mass_edge + 36 * e, crossed, 6, turns, none, first, second, 1.0, 0, open, row, column);
+    add_edge(w->stiff_edge + 36 * e, k, 6, r, zero, arm[one], arm[two], -1.0, 1);
+    add_edge(w->mass_edge + 36 * e, crossed, 6, r, none, arm[one], arm[two], 1.0, 0);
 }
 
-/* Adds a link of a leg with axes of its own; tells in which lanes it is not of the leg's plane. */
+/* Adds a link of a tree; tells in which lanes it is not of its plane, or not as that of the equal tree that stands for it. */
 static marks assemble_plane(const Task *t, Room *w, int64_t l)
 {
-    const int64_t part = t->link[4 * l], *body = t->link + 4 * l + 1, e = t->link[4 * l + 3];
+    const int64_t part = t->link[4 * l], *body = t->link + 4 * l + 1, e = t->link[4 * l + 3], gate = t->through[t->bodies + l];
+    const int64_t model = t->model[t->bodies + l];
     const lanes *k = w->number + t->start[0] + 36 * part, *m = w->number + t->start[1] + 144 * part;
-    const lanes *r = w->number + t->start[2] + 9 * l;
-    const int *zero = w->law[part].zero;
-    lanes q[9], n[36], p[36], stiff[36];
-    Side at;
-    axes_of(q, t, w, body[body[0] < 0 || t->plane[2 * body[0]] < 0]);
-    const marks bad = lay(t, w, l, q, &at);
-    lie(stiff, k, 6, &at, 0);
+    Side *const at = w->side + l;
+    const marks bad = lay(t, w, l, w->view + gate, at);
+    lanes n[36], p[36], stiff[36];
+    if (model != l) return bad | unlike(t, at, w->side + model);
+    lie(stiff, k, 6, at, 0);
     for (int side = 0; side < 2; side++) {
         if (body[side] < 0) continue;
-        lanes *own = w->stiff + OWN * body[side], *heavy = w->mass + OWN * body[side];
-        if (t->plane[2 * body[side]] >= 0) {
-            carried_plane(p, stiff, at.arm[side]), join_plane(own, p, at.arm[side], 1.0, SYMMETRIC, 1);
-            lie(n, m + 78 * side, 12, &at, 0), carried_plane(p, n, at.arm[side]), join_plane(heavy, p, at.arm[side], 1.0, SYMMETRIC, 1);
-        } else {
-            const lanes *arm = w->number + t->start[3 + side] + 3 * l;
-            turn(n, k, 6, r, zero, 1), carried(p, n, arm), join(own, p, arm, 1.0, SYMMETRIC, ORDER, ORDER);
-            turn(n, m + 78 * side, 12, r, zero + 4 + 10 * side, 1), carried(p, n, arm), join(heavy, p, arm, 1.0, SYMMETRIC, ORDER, ORDER);
-        }
+        const int64_t end = OWN * end_of(t, gate, body[side]);
+        carried_plane(p, stiff, at->arm[side]), join_plane(w->stiff + end, p, at->arm[side], 1.0, SYMMETRIC);
+        lie(n, m + 78 * side, 12, at, 0), carried_plane(p, n, at->arm[side]), join_plane(w->mass + end, p, at->arm[side], 1.0, SYMMETRIC);
     }
     if (e < 0) return bad;
     const int row = body[0] > body[1];
-    if (row) lie(n, m + 6, 12, &at, 1);
-    else lie(n, m + 6, 12, &at, 0);
-    if (inner(t, e)) {
-        carried_plane(p, stiff, at.arm[!row]), join_plane(w->stiff_edge + 36 * e, p, at.arm[row], -1.0, PLAIN, 1);
-        carried_plane(p, n, at.arm[!row]), join_plane(w->mass_edge + 36 * e, p, at.arm[row], 1.0, PLAIN, 1);
-    } else {
-        const lanes *arm = w->number + t->start[4 - row] + 3 * l;
-        lanes wide[36];
-        open_columns(wide, stiff, q), carried(p, wide, arm), join_plane(w->stiff_edge + 36 * e, p, at.arm[row], -1.0, PLAIN, 0);
-        open_columns(wide, n, q), carried(p, wide, arm), join_plane(w->mass_edge + 36 * e, p, at.arm[row], 1.0, PLAIN, 0);
-    }
+    if (row) lie(n, m + 6, 12, at, 1);
+    else lie(n, m + 6, 12, at, 0);
+    carried_plane(p, stiff, at->arm[!row]), join_plane(w->stiff_edge + 36 * e, p, at->arm[row], -1.0, PLAIN);
+    carried_plane(p, n, at->arm[!row]), join_plane(w->mass_edge + 36 * e, p, at->arm[row], 1.0, PLAIN);
     return bad;
 }
 
-/* A body's inertia in axes of its own; tells in which lanes it is not symmetric about the plane. */
+/* The inertia of a tree's body; tells in which lanes it is not symmetric about the plane, or not that of the equal body that stands for it. */
 static marks weigh_plane(const Task *t, Room *w, int64_t b)
 {
     static const int none[4];
-    lanes q[9], r[9], own[36];
+    const int64_t model = t->model[b];
+    const lanes *q = w->view[t->through[b]].q;
+    lanes r[9], own[36], *mass = w->mass + OWN * model;
     marks bad = {0};
-    axes_of(q, t, w, b);
     for (int i = 0; i < 9; i++) r[i] = q[3 * (i % 3) + i / 3];
     turn(own, w->number + t->inertia[b], 6, r, none, 1);
     for (int i = 0; i < 6; i++)
         for (int k = 0; k <= i; k++) {
-            const lanes x = own[6 * SPOT[i] + SPOT[k]];
-            const int kept = BOTH(1, i, k) || !t->flat[2 * b];
-            w->mass[OWN * b + LOWER(i, k)] = kept ? x : all(0.0);
-            if (!kept) bad |= ~(x * x <= t->skew * t->skew * (own[7 * SPOT[i]] * own[7 * SPOT[k]]));
+            const lanes x = own[6 * SPOT[i] + SPOT[k]], most = t->skew * t->skew * (own[7 * SPOT[i]] * own[7 * SPOT[k]]);
+            lanes *to = mass + HALF(i / 3, i % 3, k % 3);
+            if (!WITHIN(i, k)) bad |= ~(x * x <= most);
+            else if (model == b) *to = x;
+            else bad |= ~((x - *to) * (x - *to) <= most);
         }
     return bad;
 }
@@ -403,136 +478,293 @@ static marks weigh_plane(const Task *t, Room *w, int64_t b)
 static marks assemble(const Task *t, Room *w)
 {
     marks bad = {0};
-    memset(w->stiff, 0, sizeof(lanes) * OWN * t->bodies);
-    memset(w->stiff_edge, 0, sizeof(lanes) * 36 * t->edges);
-    memset(w->mass_edge, 0, sizeof(lanes) * 36 * t->edges);
+    const int64_t platform = OWN * (t->bodies - 1);
+    memset(w->stiff, 0, sizeof(lanes) * OWN * (t->bodies + t->ports));
+    memset(w->mass + OWN * t->bodies, 0, sizeof(lanes) * OWN * t->ports);
+    for (int64_t v = 0; v < t->bodies; v++)
+        for (int64_t e = t->range[v]; t->model[v] == v && e < t->range[v + 1]; e++)
+            memset(w->stiff_edge + 36 * e, 0, sizeof(lanes) * (t->through[v] < 0 ? 36 : 18)), memset(w->mass_edge + 36 * e, 0, sizeof(lanes) * (t->through[v] < 0 ? 36 : 18));
     for (int64_t i = 0; i < w->crossings; i++) bad |= ~(w->number[w->crossing[i]] == 0.0);
-    for (int64_t b = 0; b < t->bodies; b++)
-        if (t->plane[2 * b] >= 0) bad |= weigh_plane(t, w, b);
-        else for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
-    for (int64_t l = 0; l < t->links; l++)
-        if (t->normal[l] >= 0) bad |= assemble_plane(t, w, l);
-        else assemble_whole(t, w, l);
+    for (int64_t g = 0; g < t->gates; g++) {
+        const int64_t *gate = t->gate + 6 * g;
+        const lanes *r = w->number + t->start[2] + 9 * gate[1];
+        View *view = w->view + g;
+        for (int i = 0; i < 9; i++) view->q[i] = r[3 * (i / 3) + (gate[2] + 1 + i % 3) % 3];
+        view->far = along(view->q, 2, w->number + t->start[3 + gate[4]] + 3 * gate[3], 1);
+    }
+    for (int copies = 0; copies < 2; copies++) { /* models first */
+        for (int64_t b = 0; b < t->bodies; b++)
+            if ((t->model[b] != b) != copies) continue;
+            else if (t->through[b] >= 0) bad |= weigh_plane(t, w, b);
+            else for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
+    }
+    for (int copies = 0; copies < 2; copies++)
+        for (int64_t l = 0; l < t->links; l++)
+            if ((t->model[t->bodies + l] != l) != copies) continue;
+            else if (t->normal[l] >= 0) bad |= assemble_plane(t, w, l);
+            else assemble_whole(t, w, l);
+    open_ports(t, w, w->stiff + platform, w->stiff), open_ports(t, w, w->mass + platform, w->mass);
     return bad;
 }
 
 /* ---- elimination ---- */
 
+/* Of pivots, in each lane, how many are negative, and the least over its own entry of K. */
+typedef struct { lanes negative, least; } Count;
+
+static INLINE void count_pivots(Count *told, const lanes *pivot, const lanes *stiff, double copies, const int size)
+{
+    UNROLL for (int s = 0; s < size; s++) {
+        const lanes ratio = size_of(pivot[s]) / stiff[LOWER(s, s)];
+        told->negative += pick(pivot[s] < 0.0, all(copies), all(0.0));
+        told->least = pick(ratio >= told->least, told->least, ratio);
+    }
+}
+
+/* A body of a tree, and what is left of it at the later one. */
+static INLINE void eliminate_tree(const Task *t, Room *w, int64_t v, lanes shift, Count *told)
+{
+    const int64_t e = 36 * t->range[v], o = OWN * v;
+    const lanes *stiff = w->stiff + o, *mass = w->mass + o, *stiff_edge = w->stiff_edge + e, *mass_edge = w->mass_edge + e;
+    lanes *own = w->other + o, *edge = w->other_edge + e, *later = w->other + OWN * t->later[t->range[v]];
+    const int64_t before = t->nth[2 * v], nth = t->nth[2 * v + 1];
+    UNROLL for (int h = 0; h < 2; h++) {
+        lanes a[6], x[9], pivot[3], left[6];
+        UNROLL for (int i = 0; i < 6; i++) a[i] = stiff[6 * h + i] - shift * mass[6 * h + i];
+        if (before)
+            UNROLL for (int i = 0; i < 6; i++) a[i] += own[6 * h + i];
+        invert(a, pivot, 3);
+        if (told) count_pivots(told, pivot, stiff + 6 * h, (double)t->copies[v], 3);
+        UNROLL for (int i = 0; i < 9; i++) x[i] = stiff_edge[9 * h + i] - shift * mass_edge[9 * h + i];
+        UNROLL for (int c = 0; c < 3; c++) x[3 + c] -= a[1] * x[c];
+        UNROLL for (int c = 0; c < 3; c++) x[6 + c] -= a[3] * x[c] + a[4] * x[3 + c];
+        UNROLL for (int i = 0; i < 6; i++) left[i] = all(0.0);
+        UNROLL for (int r = 0; r < 3; r++)
+            UNROLL for (int i = 0; i < 3; i++) {
+                const lanes scaled = x[3 * r + i] * a[LOWER(r, r)];
+                UNROLL for (int k = 0; k <= i; k++) left[LOWER(i, k)] -= scaled * x[3 * r + k];
+            }
+        UNROLL for (int i = 0; i < 6; i++) own[6 * h + i] = a[i];
+        UNROLL for (int i = 0; i < 9; i++) edge[9 * h + i] = x[i];
+        if (nth)
+            UNROLL for (int i = 0; i < 6; i++) later[6 * h + i] += left[i];
+        else
+            UNROLL for (int i = 0; i < 6; i++) later[6 * h + i] = left[i];
+    }
+}
+
 /* A product of two edges of body v, which elimination subtracts from what is between later bodies. */
 static INLINE void join_update(const Task *t, Room *w, int64_t v, const int64_t *edges)
 {
     const lanes *own = w->other + OWN * v, *x = w->other_edge + 36 * edges[0], *y = w->other_edge + 36 * edges[1];
-    lanes *to = w->other_edge + 36 * edges[2];
-    const int left = (int)t->thin[2 * edges[0] + 1], right = (int)t->thin[2 * edges[1] + 1];
     for (int c = 0; c < 6; c++) {
         lanes scaled[6];
         UNROLL for (int i = 0; i < 6; i++) scaled[i] = own[LOWER(i, i)] * y[6 * i + c];
-        if (right)
-            UNROLL for (int i = 0; i < 3; i++) scaled[c < 3 ? 3 + i : i] = all(0.0);
-        if (left) multiply_split(to + c, x, scaled, 6, TURNED, 1, 1);
-        else multiply_whole(to + c, x, scaled, 6, TURNED, 1, 1);
+        multiply(w->other_edge + 36 * edges[2] + c, x, scaled, 6, TURNED, 1, 1);
     }
 }
 
-/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves. Gives per lane how many
- * pivots are negative and the least pivot over its own entry of K, where these are asked for. */
-static INLINE void eliminate(const Task *t, Room *w, lanes shift, const int told, lanes *negative, lanes *least)
+/* Another body: of its own block K - shift M, less what bodies before it left, is at hand. */
+static INLINE void eliminate_whole(const Task *t, Room *w, int64_t v, lanes shift, Count *told)
 {
-    for (int64_t v = 0; v < t->bodies; v++) {
-        lanes *own = w->other + OWN * v;
-        const lanes *stiff = w->stiff + OWN * v, *mass = w->mass + OWN * v;
-        if (t->flat[2 * v + 1]) shifted_split(own, stiff, mass, shift);
-        else shifted_whole(own, stiff, mass, shift);
+    lanes pivot[6], *own = w->other + OWN * v;
+    invert(own, pivot, 6);
+    if (told) count_pivots(told, pivot, w->stiff + OWN * v, 1.0, 6);
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) reduce(w->other_edge + 36 * e, w->stiff_edge + 36 * e, w->mass_edge + 36 * e, shift, own, w->fills);
+    for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
+        lanes *later = w->other + OWN * t->later[t->update[3 * u]];
+        const lanes *x = w->other_edge + 36 * t->update[3 * u];
+        if (t->update[3 * u + 2] >= 0) join_update(t, w, v, t->update + 3 * u);
+        else update(later, x, own, 3), update(later, x, own, 0);
     }
+}
+
+/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves; what is told of pivots where it
+ * is asked for. */
+static INLINE void eliminate(const Task *t, Room *w, lanes shift, Count *told)
+{
+    for (int64_t v = 0; v < t->bodies; v++)
+        for (int i = 0; i < OWN && t->through[v] < 0; i++) w->other[OWN * v + i] = w->stiff[OWN * v + i] - shift * w->mass[OWN * v + i];
     if (w->fills)
         for (int64_t i = 0; i < 36 * t->edges; i++) w->other_edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
     for (int64_t v = 0; v < t->bodies; v++) {
-        lanes pivot[6], *own = w->other + OWN * v;
-        const int split = (int)t->flat[2 * v + 1];
-        if (split) invert_split(own, pivot);
-        else invert_whole(own, pivot);
-        UNROLL for (int s = 0; told && s < 6; s++) {
-            const lanes ratio = size_of(pivot[s]) / w->stiff[OWN * v + LOWER(s, s)];
-            *negative += pick(pivot[s] < 0.0, all(1.0), all(0.0));
-            *least = pick(ratio >= *least, *least, ratio);
-        }
-        for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
-            lanes *edge = w->other_edge + 36 * e;
-            const lanes *stiff = w->stiff_edge + 36 * e, *mass = w->mass_edge + 36 * e;
-            if (t->thin[2 * e + 1]) reduce_split(edge, stiff, mass, shift, own, w->fills, 1);
-            else if (split) reduce_split(edge, stiff, mass, shift, own, w->fills, 0);
-            else reduce_whole(edge, stiff, mass, shift, own, w->fills, 0);
-        }
-        for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
-            const int64_t left = t->update[3 * u];
-            lanes *later = w->other + OWN * t->later[left];
-            const lanes *x = w->other_edge + 36 * left;
-            if (t->update[3 * u + 2] >= 0) join_update(t, w, v, t->update + 3 * u);
-            else if (t->thin[2 * left + 1]) update_split(later, x, own, 3), update_split(later, x, own, 0);
-            else update_whole(later, x, own, 3), update_whole(later, x, own, 0);
+        if (t->model[v] != v) continue;
+        if (t->through[v] >= 0) eliminate_tree(t, w, v, shift, told);
+        else {
+            if (v == t->bodies - 1) open_ports(t, w, w->other + OWN * v, w->other);
+            eliminate_whole(t, w, v, shift, told);
         }
     }
 }
 
-/* y += or -= a x for n columns, a split or whole. */
-static INLINE void apply(lanes *y, const lanes *a, const lanes *x, int m, const int kind, const int negative, const int n, int64_t split)
+/* Columns of a body or port: those of all its copies. */
+static INLINE lanes *rows_of(const Task *t, lanes *x, int64_t v, int m, int j) { return x + t->row[v] * m + j; }
+
+/* A tree's body forward: n of `wide` columns. */
+static INLINE void forward_tree(const Task *t, const Room *w, lanes *x, int64_t v, int m, const int wide, int j, const int n)
 {
-    if (split) multiply_split(y, a, x, m, kind, negative, n);
-    else multiply_whole(y, a, x, m, kind, negative, n);
+    const lanes *restrict a = w->other + OWN * v, *restrict e = w->other_edge + 36 * t->range[v];
+    lanes *own = rows_of(t, x, v, m, j), *later = rows_of(t, x, t->later[t->range[v]], m, j);
+    UNROLL for (int h = 0; h < 2; h++) {
+        lanes u[12], s[12];
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] = own[(3 * h + i) * wide + k], s[i * n + k] = later[(3 * h + i) * wide + k];
+        UNROLL for (int k = 0; k < n; k++) {
+            u[n + k] -= a[6 * h + 1] * u[k];
+            u[2 * n + k] -= a[6 * h + 3] * u[k];
+            u[2 * n + k] -= a[6 * h + 4] * u[n + k];
+        }
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] *= a[HALF(h, i, i)];
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int c = 0; c < 3; c++)
+                UNROLL for (int k = 0; k < n; k++) s[c * n + k] -= e[9 * h + 3 * i + c] * u[i * n + k];
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) own[(3 * h + i) * wide + k] = u[i * n + k], later[(3 * h + i) * wide + k] = s[i * n + k];
+    }
 }
 
-static INLINE void forward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
+/* The same backward, and what the body adds to y = M x. */
+static INLINE void backward_tree(const Task *t, const Room *w, lanes *x, lanes *y, int64_t v, int m, const int wide, int j, const int n)
+{
+    const int64_t at = t->range[v], last = t->later[at];
+    const lanes *restrict a = w->other + OWN * v, *restrict e = w->other_edge + 36 * at, *restrict g = w->mass + OWN * v, *restrict f = w->mass_edge + 36 * at;
+    lanes *own = rows_of(t, x, v, m, j), *later = rows_of(t, x, last, m, j), *force = rows_of(t, y, v, m, j), *on = rows_of(t, y, last, m, j);
+    UNROLL for (int h = 0; h < 2; h++) {
+        lanes u[12], s[12], p[12];
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) {
+                p[i * n + k] = later[(3 * h + i) * wide + k];
+                s[i * n + k] = all(0.0);
+            }
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int c = 0; c < 3; c++)
+                UNROLL for (int k = 0; k < n; k++) s[i * n + k] += e[9 * h + 3 * i + c] * p[c * n + k];
+        UNROLL for (int i = 0; i < 3; i++) /* D^-1 has been applied: here to what the edge adds, too */
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] = own[(3 * h + i) * wide + k] - a[HALF(h, i, i)] * s[i * n + k];
+        UNROLL for (int k = 0; k < n; k++) {
+            u[n + k] -= a[6 * h + 4] * u[2 * n + k];
+            u[k] -= a[6 * h + 3] * u[2 * n + k];
+            u[k] -= a[6 * h + 1] * u[n + k];
+        }
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) own[(3 * h + i) * wide + k] = u[i * n + k], s[i * n + k] = all(0.0);
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int c = 0; c < 3; c++)
+                UNROLL for (int k = 0; k < n; k++) s[i * n + k] += g[i > c ? HALF(h, i, c) : HALF(h, c, i)] * u[c * n + k];
+        if (t->heavy[at])
+            UNROLL for (int c = 0; c < 3; c++) {
+                lanes more[4];
+                UNROLL for (int k = 0; k < n; k++) more[k] = on[(3 * h + c) * wide + k];
+                UNROLL for (int i = 0; i < 3; i++)
+                    UNROLL for (int k = 0; k < n; k++) {
+                        s[i * n + k] += f[9 * h + 3 * i + c] * p[c * n + k];
+                        more[k] += f[9 * h + 3 * i + c] * u[i * n + k];
+                    }
+                UNROLL for (int k = 0; k < n; k++) on[(3 * h + c) * wide + k] = more[k];
+            }
+        UNROLL for (int i = 0; i < 3; i++)
+            UNROLL for (int k = 0; k < n; k++) force[(3 * h + i) * wide + k] = s[i * n + k];
+    }
+}
+
+/* Another body's n of m columns. */
+static INLINE void forward_whole(const Task *t, const Room *w, lanes *x, int64_t v, int m, int j, const int n)
 {
     const lanes *a = w->other + OWN * v;
-    lanes u[24];
-    pick_columns(u, x + 6 * m * v, m, n);
-    if (t->flat[2 * v + 1]) lower_split(u, a, n);
-    else lower_whole(u, a, n);
+    lanes u[24], *own = rows_of(t, x, v, m, j);
+    pick_columns(u, own, m, n);
+    lower(u, a, n);
     UNROLL for (int i = 0; i < 6; i++)
-        UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k] *= a[LOWER(i, i)];
-    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) apply(x + 6 * m * t->later[e], w->other_edge + 36 * e, u, m, TURNED, 1, n, t->thin[2 * e + 1]);
+        UNROLL for (int k = 0; k < n; k++) own[i * m + k] = u[i * n + k] *= a[LOWER(i, i)];
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(rows_of(t, x, t->later[e], m, j), w->other_edge + 36 * e, u, m, TURNED, 1, n);
 }
 
-static INLINE void backward(const Task *t, const Room *w, lanes *restrict x, int64_t v, int m, const int n)
+static INLINE void backward_whole(const Task *t, const Room *w, lanes *x, lanes *y, int64_t v, int m, int j, const int n)
 {
     const lanes *a = w->other + OWN * v;
-    lanes u[24];
+    lanes u[24], *own = rows_of(t, x, v, m, j), *force = rows_of(t, y, v, m, j);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
-        /* D^-1 has been applied: here to what the edge adds, too. */
         lanes sum[24];
-        pick_columns(u, x + 6 * m * t->later[e], m, n);
+        pick_columns(u, rows_of(t, x, t->later[e], m, j), m, n);
         UNROLL for (int i = 0; i < 6 * n; i++) sum[i] = all(0.0);
-        apply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n, t->thin[2 * e + 1]);
+        multiply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n);
         UNROLL for (int i = 0; i < 6; i++)
-            UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] -= a[LOWER(i, i)] * sum[i * n + k];
+            UNROLL for (int k = 0; k < n; k++) own[i * m + k] -= a[LOWER(i, i)] * sum[i * n + k];
     }
-    pick_columns(u, x + 6 * m * v, m, n);
-    if (t->flat[2 * v + 1]) upper_split(u, a, n);
-    else upper_whole(u, a, n);
+    pick_columns(u, own, m, n);
+    upper(u, a, n);
     UNROLL for (int i = 0; i < 6; i++)
-        UNROLL for (int k = 0; k < n; k++) x[6 * m * v + i * m + k] = u[i * n + k];
-}
-
-/* What body v and its edges to later bodies add to n columns of y = M x. */
-static INLINE void weigh(const Task *t, const Room *w, lanes *restrict y, const lanes *restrict x, int64_t v, int m, const int n)
-{
-    lanes u[24], other[24];
-    pick_columns(u, x + 6 * m * v, m, n);
-    apply(y + 6 * m * v, w->mass + OWN * v, u, m, SYMMETRIC, 0, n, t->flat[2 * v]);
+        UNROLL for (int k = 0; k < n; k++) own[i * m + k] = u[i * n + k], force[i * m + k] = all(0.0);
+    multiply(force, w->mass + OWN * v, u, m, SYMMETRIC, 0, n);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
         if (t->heavy[e]) {
-            pick_columns(other, x + 6 * m * t->later[e], m, n);
-            apply(y + 6 * m * t->later[e], w->mass_edge + 36 * e, u, m, TURNED, 0, n, t->thin[2 * e]);
-            apply(y + 6 * m * v, w->mass_edge + 36 * e, other, m, PLAIN, 0, n, t->thin[2 * e]);
+            lanes other[24];
+            pick_columns(other, rows_of(t, x, t->later[e], m, j), m, n);
+            multiply(rows_of(t, y, t->later[e], m, j), w->mass_edge + 36 * e, u, m, TURNED, 0, n);
+            multiply(force, w->mass_edge + 36 * e, other, m, PLAIN, 0, n);
         }
+}
+
+/* Where a gate's columns stand among those of its port. */
+static INLINE lanes *columns_of(const Task *t, lanes *x, int64_t gate, int m)
+{
+    const int64_t port = t->bodies + t->gate[6 * gate];
+    return rows_of(t, x, port, m, (int)t->gate[6 * gate + 5] * m);
+}
+
+/* The ports' rows as the platform moves, in m columns. */
+static INLINE void enter_ports(const Task *t, const Room *w, lanes *x, const int m)
+{
+    const lanes *from = rows_of(t, x, t->bodies - 1, m, 0);
+    for (int64_t g = 0; g < t->gates; g++) {
+        const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
+        const lanes *q = w->view[g].q, far = w->view[g].far;
+        lanes *to = columns_of(t, x, g, m);
+        for (int c = 0; c < m; c++) {
+            lanes u[6];
+            UNROLL for (int i = 0; i < 6; i++)
+                u[i] = q[i % 3] * from[(i - i % 3) * m + c] + q[3 + i % 3] * from[(i - i % 3 + 1) * m + c] + q[6 + i % 3] * from[(i - i % 3 + 2) * m + c];
+            to[c] = u[0] - far * u[4], to[wide + c] = u[1] + far * u[3], to[2 * wide + c] = u[5];
+            to[3 * wide + c] = u[2], to[4 * wide + c] = u[3], to[5 * wide + c] = u[4];
+        }
+    }
+}
+
+/* The platform's forces += those on the ports. */
+static INLINE void leave_ports(const Task *t, const Room *w, lanes *y, const int m)
+{
+    lanes *to = rows_of(t, y, t->bodies - 1, m, 0);
+    for (int64_t g = 0; g < t->gates; g++) {
+        const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
+        const lanes *q = w->view[g].q, far = w->view[g].far, *from = columns_of(t, y, g, m);
+        for (int c = 0; c < m; c++) {
+            const lanes f[6] = {from[c], from[wide + c], from[3 * wide + c], from[4 * wide + c] + far * from[wide + c], from[5 * wide + c] - far * from[c],
+                                from[2 * wide + c]};
+            UNROLL for (int i = 0; i < 6; i++)
+                to[i * m + c] += q[3 * (i % 3)] * f[i - i % 3] + q[3 * (i % 3) + 1] * f[i - i % 3 + 1] + q[3 * (i % 3) + 2] * f[i - i % 3 + 2];
+        }
+    }
 }
 
 /* x = (K - shift M)^-1 x, m vectors, by what `eliminate` left, and y = M x. */
-static INLINE void solve(const Task *t, const Room *w, lanes *restrict x, lanes *restrict y, const int m)
+static INLINE void solve(const Task *t, const Room *w, lanes *x, lanes *y, const int m)
 {
-    for (int64_t v = 0; v < t->bodies; v++) IN_COLUMNS(m, forward(t, w, x + j, v, m, n))
-    memset(y, 0, sizeof(lanes) * 6 * m * t->bodies);
-    for (int64_t v = t->bodies - 1; v >= 0; v--) IN_COLUMNS(m, (backward(t, w, x + j, v, m, n), weigh(t, w, y + j, x + j, v, m, n)))
+    const int64_t platform = t->bodies - 1, own = 6 * m * t->bodies;
+    memset(x + own, 0, sizeof(lanes) * (m * t->rows - own)), memset(y + own, 0, sizeof(lanes) * (m * t->rows - own));
+    for (int64_t v = 0; v < t->bodies; v++) {
+        if (t->model[v] != v) continue;
+        if (v == platform) leave_ports(t, w, x, m);
+        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, forward_tree(t, w, x, v, m, wide, j, n))
+        else { const int wide = m; IN_THREES(forward_whole(t, w, x, v, m, j, n)) }
+    }
+    for (int64_t v = platform; v >= 0; v--) {
+        if (t->model[v] != v) continue;
+        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, backward_tree(t, w, x, y, v, m, wide, j, n))
+        else { const int wide = m; IN_THREES(backward_whole(t, w, x, y, v, m, j, n)) }
+        if (v == platform) enter_ports(t, w, x, m);
+    }
+    leave_ports(t, w, y, m);
 }
 
 /* ---- Rayleigh-Ritz ---- */
@@ -540,30 +772,42 @@ static INLINE void solve(const Task *t, const Room *w, lanes *restrict x, lanes 
 /* Entry (r, i) of m vectors: they stand side by side (row m, column 1) or one after the other (row 1, column n). */
 typedef struct { int64_t row, column; } Layout;
 
-static INLINE void dots(int64_t n, int m, Layout at, lanes *g, const lanes *x, const lanes *y, int i0, int j0, const int ni, const int nj)
+/* Dots of ni vectors x from i0 on with nj of y and of z from j0 on; z is the same in all lanes where it is `plain`. */
+static INLINE void dots(
+    int64_t n, int m, Layout at, lanes *g, lanes *h, const lanes *x, const lanes *y, const lanes *z, const double *plain, int i0, int j0, const int ni, const int nj)
 {
-    lanes s[9];
-    for (int k = 0; k < 9; k++) s[k] = all(0.0);
+    lanes s[9], u[9];
+    UNROLL for (int k = 0; k < 9; k++) s[k] = u[k] = all(0.0);
     for (int64_t r = 0; r < n; r++)
-        for (int i = 0; i < ni; i++)
-            for (int j = 0; j < nj; j++) s[3 * i + j] += x[r * at.row + (i0 + i) * at.column] * y[r * at.row + (j0 + j) * at.column];
-    for (int i = 0; i < ni; i++)
-        for (int j = 0; j < nj; j++) g[(i0 + i) * m + j0 + j] = g[(j0 + j) * m + i0 + i] = s[3 * i + j];
+        UNROLL for (int i = 0; i < ni; i++) {
+            const lanes own = x[r * at.row + (i0 + i) * at.column];
+            UNROLL for (int j = 0; j < nj; j++) {
+                const int64_t place = r * at.row + (j0 + j) * at.column;
+                s[3 * i + j] += own * y[place];
+                if (plain) u[3 * i + j] += own * plain[place];
+                else u[3 * i + j] += own * z[place];
+            }
+        }
+    UNROLL for (int i = 0; i < ni; i++)
+        UNROLL for (int j = 0; j < nj; j++) {
+            g[(i0 + i) * m + j0 + j] = g[(j0 + j) * m + i0 + i] = s[3 * i + j];
+            h[(i0 + i) * m + j0 + j] = h[(j0 + j) * m + i0 + i] = u[3 * i + j];
+        }
 }
 
-/* g (m x m, lower triangle and its mirror) = x^T y, known to be symmetric. */
-static void gram(int64_t n, int m, Layout at, lanes *g, const lanes *restrict x, const lanes *restrict y)
+/* g and h (m x m, lower triangles and their mirrors) = x^T y and x^T z, known to be symmetric. */
+static INLINE void grams(int64_t n, int m, Layout at, lanes *g, lanes *h, const lanes *x, const lanes *y, const lanes *z, const double *plain)
 {
     for (int i = 0; i < m; i += 3)
         for (int j = 0; j <= i; j += 3) {
             const int rows = m - i;
-            if (rows > 2) dots(n, m, at, g, x, y, i, j, 3, 3);
-            else if (rows == 2) j < i ? dots(n, m, at, g, x, y, i, j, 2, 3) : dots(n, m, at, g, x, y, i, j, 2, 2);
-            else j < i ? dots(n, m, at, g, x, y, i, j, 1, 3) : dots(n, m, at, g, x, y, i, j, 1, 1);
+            if (rows > 2) dots(n, m, at, g, h, x, y, z, plain, i, j, 3, 3);
+            else if (rows == 2) j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 3) : dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 2);
+            else j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 3) : dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 1);
         }
 }
 
-static INLINE void blends(int64_t n, int m, Layout at, lanes *y, const lanes *x, const lanes *q, int c, const int ni)
+static INLINE void blends(int64_t n, int m, Layout at, int64_t next, lanes *y, const lanes *x, const lanes *q, int c, const int ni)
 {
     for (int64_t r = 0; r < n; r += 2) { /* n is even */
         lanes s[6];
@@ -573,17 +817,17 @@ static INLINE void blends(int64_t n, int m, Layout at, lanes *y, const lanes *x,
                 s[i] += x[r * at.row + k * at.column] * q[k * m + c + i];
                 s[3 + i] += x[(r + 1) * at.row + k * at.column] * q[k * m + c + i];
             }
-        for (int i = 0; i < ni; i++) y[(c + i) * n + r] = s[i], y[(c + i) * n + r + 1] = s[3 + i];
+        for (int i = 0; i < ni; i++) y[(c + i) * next + r] = s[i], y[(c + i) * next + r + 1] = s[3 + i];
     }
 }
 
-/* y = x q, the first `count` columns of it, one after the other. */
-static void blend(int64_t n, int m, Layout at, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
+/* y = x q, the first `count` columns of it, one after the other, each `next` further on. */
+static void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
 {
     int c = 0;
-    for (; c + 3 <= count; c += 3) blends(n, m, at, y, x, q, c, 3);
-    if (count - c == 2) blends(n, m, at, y, x, q, c, 2);
-    else if (count - c == 1) blends(n, m, at, y, x, q, c, 1);
+    for (; c + 3 <= count; c += 3) blends(n, m, at, next, y, x, q, c, 3);
+    if (count - c == 2) blends(n, m, at, next, y, x, q, c, 2);
+    else if (count - c == 1) blends(n, m, at, next, y, x, q, c, 1);
 }
 
 /* Eigenvalues on the diagonal of a and vectors in v (columns), by Jacobi's rotations; those of a lane stop when they are done. */
@@ -691,21 +935,19 @@ static void begin(const Task *t, Room *w, Ritz *out)
     const int m = (int)t->m, single = (int)t->single;
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
-    eliminate(t, w, all(t->shift), 0, 0, 0);
-    for (int64_t i = 0; i < n * m; i++) w->next[i] = w->ahead[i] = all(t->force[i]);
-    if (m == 7) solve(t, w, w->ahead, w->now, 7); /* six platform modes below all others, the usual case */
+    eliminate(t, w, all(t->shift), 0);
+    for (int64_t i = 0; i < n * m; i++) w->ahead[i] = all(t->force[i]);
+    if (m == 6) solve(t, w, w->ahead, w->now, 6); /* six platform modes below all others, the usual case */
     else solve(t, w, w->ahead, w->now, m);
-    const Layout at = {m, 1};
-    gram(n, m, at, stiff, w->ahead, w->next);
-    gram(n, m, at, mass, w->ahead, w->now);
+    grams(n, m, (Layout){m, 1}, mass, stiff, w->ahead, w->now, 0, t->force);
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
     for (int c = 0; c < m; c++) out->share[c] = share_of(t, w, w->ahead + (n - 6) * m, q, m, c);
-    blend(n, m, at, w->force, w->now, q, single);
+    blend(n, m, (Layout){m, 1}, t->rows, w->force, w->now, q, single);
 }
 
 /* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
- * w->force to shapes (single, n) in w->now. What is of other modes falls in each step like the value's distance from
+ * w->force to shapes (single, rows) in w->now. What is of other modes falls in each step like the value's distance from
  * the shift over theirs. */
 static void polish(const Task *t, Room *w, Ritz *known)
 {
@@ -713,9 +955,9 @@ static void polish(const Task *t, Room *w, Ritz *known)
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST];
     for (int c = 0; c < m; c++) {
-        lanes *f = w->force + c * n, *x = w->ahead + c * n, *g = w->next + c * n;
+        lanes *f = w->force + c * t->rows, *x = w->ahead + c * t->rows, *g = w->next + c * t->rows;
         const lanes shift = known->shift[c] = (1.0 - BESIDE) * known->values[c];
-        eliminate(t, w, shift, 0, 0, 0);
+        eliminate(t, w, shift, 0);
         lanes before = all(1.0), between = before, after = before;
         for (int64_t step = 0; step < t->steps; step++) {
             memcpy(x, f, sizeof(lanes) * n);
@@ -733,21 +975,20 @@ static void polish(const Task *t, Room *w, Ritz *known)
         known->sine[c] = pick(square == square, known->sine[c], square);
         known->quotient[c] = between / before;
     }
-    const Layout at = {1, n};
-    gram(n, m, at, mass, w->ahead, w->next);
-    gram(n, m, at, stiff, w->ahead, w->force);
+    const Layout at = {1, t->rows};
+    grams(n, m, at, mass, stiff, w->ahead, w->next, w->force, 0);
     for (int i = 0; i < m; i++)
         for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
     lanes length[MOST];
     for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
     small(m, stiff, mass, values, q, 1e-17);
-    blend(n, m, at, w->now, w->ahead, q, m);
+    blend(n, m, at, t->rows, w->now, w->ahead, q, m);
     memcpy(known->mix, q, sizeof(lanes) * m * m);
     for (int c = 0; c < m; c++) {
         known->values[c] = values[c];
         for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(q[k * m + c]) * length[k];
         lanes one = all(1.0), seen[6];
-        for (int i = 0; i < 6; i++) seen[i] = w->now[c * n + n - 6 + i];
+        for (int i = 0; i < 6; i++) seen[i] = w->now[c * t->rows + n - 6 + i];
         known->share[c] = share_of(t, w, seen, &one, 1, 0);
     }
 }
@@ -772,7 +1013,7 @@ static double left_over(const Task *t, const double *share, int count)
 static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 {
     const int m = (int)t->m, count = (int)t->count, single = (int)t->single;
-    double value[MOST], share[MOST], mean[MOST], frequency[MOST], least = INFINITY;
+    double value[MOST + 1], share[MOST], mean[MOST], frequency[MOST], least = INFINITY;
     int group[MOST], order[MOST], taken = 0, needed = 0;
     memset(out, 0, sizeof *out);
     for (int i = 0; i < m; i++) {
@@ -802,15 +1043,19 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
     if (taken != count || needed > first || apart(value, m, first, t->together) != first) return;
     const double ceiling = 4.0 * 9.86960440108935861883 * t->limit * t->limit;
     int below = first;
+    if (first == m) { /* no value beyond is at hand: that there is none up to a little above these is counted */
+        if (!(left_over(t, share, first) < least)) return;
+        value[m] = value[m - 1] * (1.0 + 10.0 * ABOVE);
+    }
     while (below < m && !(left_over(t, share, below) < (below == first ? least : least - t->margin)))
         below = apart(value, m, below + 1, t->together);
-    const int wide = below >= m;
+    const int wide = below >= m && first < m;
     if (wide) {
         int reach = needed;
         while (reach < m && value[reach] < ceiling) reach++;
         below = apart(value, m, reach, t->together);
     }
-    if (below >= m) return;
+    if (below >= m && first < m) return;
     out->below = below, out->shift = value[below - 1] + 0.1 * (value[below] - value[below - 1]);
     if (wide) {
         if (!(ceiling <= value[below])) return;
@@ -881,7 +1126,7 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
             memset(e, 0, sizeof(lanes) * 6 * k);
             continue;
         }
-        const lanes *a = w->number + t->start[3 + side] + 3 * l, *x = w->shapes + 6 * k * body, *o = x + 3 * k;
+        const lanes *a = w->number + t->start[3 + side] + 3 * l, *x = w->placed + 6 * k * body, *o = x + 3 * k;
         UNROLL for (int c = 0; c < k; c++) {
             const lanes one = o[c], two = o[k + c], three = o[2 * k + c];
             const lanes p = u[c] = x[c] + (a[1] * three - a[2] * two);
@@ -945,7 +1190,7 @@ static INLINE void place_slots(
         for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
             const int64_t body = t->link[4 * l + 1 + side];
             if (body < 0) continue;
-            const lanes *o = w->shapes + 6 * k * body + 3 * k, *g = at->world + 3 * side * k, *f = at->force + (6 * side + column) * k;
+            const lanes *o = w->placed + 6 * k * body + 3 * k, *g = at->world + 3 * side * k, *f = at->force + (6 * side + column) * k;
             if (kind == TURN) {
                 gain(sum, f, at->seen + (3 * side + row) * k, 2.0, more, of, crossed, k);
                 gain(sum, f + 3 * k, o + row * k, 2.0, 1, of, crossed, k);
@@ -1002,7 +1247,7 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
     }
     for (int64_t b = 0; b < t->bodies; b++) {
         const int64_t group = t->parts + t->links + b;
-        const lanes *x = w->shapes + 6 * k * b;
+        const lanes *x = w->placed + 6 * k * b;
         lanes heavy[6 * MODES], *sum = w->sum;
         for (int i = 0; i < 6; i++)
             UNROLL for (int c = 0; c < k; c++) heavy[i * k + c] = -of->mean[c] * x[i * k + c];
@@ -1035,13 +1280,18 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
         }
     }
     for (int64_t b = 0; b < t->bodies; b++) {
-        lanes q[9], *x = w->shapes + 6 * k * b, u[6];
-        if (t->plane[2 * b] < 0) continue;
-        axes_of(q, t, w, b);
+        const lanes *x = w->shapes + t->row[b] * k;
+        lanes u[6], *to = w->placed + 6 * k * b;
+        const int64_t own = t->through[b], next = t->copies[b] * k;
         for (int c = 0; c < k; c++) {
-            UNROLL for (int i = 0; i < 6; i++) u[SPOT[i]] = x[i * k + c];
-            UNROLL for (int i = 0; i < 6; i++)
-                x[i * k + c] = q[3 * (i % 3)] * u[i - i % 3] + q[3 * (i % 3) + 1] * u[i - i % 3 + 1] + q[3 * (i % 3) + 2] * u[i - i % 3 + 2];
+            UNROLL for (int i = 0; i < 6; i++) u[own < 0 ? i : SPOT[i]] = x[i * next + c];
+            if (own < 0)
+                UNROLL for (int i = 0; i < 6; i++) to[i * k + c] = u[i];
+            else {
+                const lanes *q = w->view[own].q;
+                UNROLL for (int i = 0; i < 6; i++)
+                    to[i * k + c] = q[3 * (i % 3)] * u[i - i % 3] + q[3 * (i % 3) + 1] * u[i - i % 3 + 1] + q[3 * (i % 3) + 2] * u[i - i % 3 + 2];
+            }
         }
     }
     for (; pairs < k; pairs++) pair[pairs].i = pair[pairs].j = pairs;
@@ -1079,10 +1329,10 @@ static void keep(const Task *t, Room *w, const Ritz *known, const Verdict *verdi
         if (!t->variables) continue;
         for (int64_t r = 0; r < n; r++) {
             lanes *to = w->shapes + r * k + c;
-            if (alike) *to = pick(fresh, w->now[first * n + r], *to);
+            if (alike) *to = pick(fresh, w->now[first * t->rows + r], *to);
             else
                 for (int lane = 0; lane < WIDTH; lane++)
-                    if (fresh[lane]) (*to)[lane] = w->now[from[lane] * n + r][lane];
+                    if (fresh[lane]) (*to)[lane] = w->now[from[lane] * t->rows + r][lane];
         }
     }
 }
@@ -1091,7 +1341,8 @@ static void designs(const Task *t, Room *w, int64_t design)
 {
     Verdict verdict[WIDTH];
     Ritz known;
-    lanes value[MODES], share[MODES], negative = all(0.0), least = all(INFINITY), shift = all(0.0);
+    lanes value[MODES], share[MODES], shift = all(0.0);
+    Count told = {all(0.0), all(INFINITY)};
     int left = WIDTH;
     for (int i = 0; i < t->count; i++) value[i] = all(1.0), share[i] = all(0.0);
     if (t->variables) memset(w->shapes, 0, sizeof(lanes) * 6 * t->bodies * t->count);
@@ -1103,7 +1354,7 @@ static void designs(const Task *t, Room *w, int64_t design)
     }
     begin(t, w, &known);
     for (int64_t round = 0; round < t->rounds && left; round++) {
-        if (round) blend(6 * t->bodies, (int)t->single, (Layout){1, 6 * t->bodies}, w->force, w->next, known.mix, (int)t->single);
+        if (round) blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->force, w->next, known.mix, (int)t->single);
         polish(t, w, &known);
         marks fresh = {0};
         left = 0;
@@ -1115,9 +1366,9 @@ static void designs(const Task *t, Room *w, int64_t design)
         }
         if (any(fresh)) keep(t, w, &known, verdict, fresh, value, share);
     }
-    eliminate(t, w, shift, 1, &negative, &least);
+    eliminate(t, w, shift, &told);
     for (int lane = 0; lane < WIDTH; lane++)
-        t->good[design + lane] = bad[lane] ? -1 : verdict[lane].done && least[lane] > t->pivot && negative[lane] == (double)verdict[lane].below;
+        t->good[design + lane] = bad[lane] ? -1 : verdict[lane].done && told.least[lane] > t->pivot && told.negative[lane] == (double)verdict[lane].below;
     for (int i = 0; i < t->count; i++)
         store(t->values + i * t->stride + design, value[i]), store(t->share + i * t->stride + design, share[i]);
     if (t->variables) derive(t, w, design, value);
@@ -1185,25 +1436,26 @@ int64_t flexstage_width(void) { return WIDTH; }
 /* Every design of the task; 0, or 1 where that is too much. */
 int64_t flexstage_modes(const Task *t)
 {
-    const int64_t own = OWN * t->bodies, edge = 36 * t->edges, block = 6 * t->bodies * t->m, pairs = t->count * (t->count + 1) / 2;
+    const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, shapes = 6 * t->bodies * t->count, pairs = t->count * (t->count + 1) / 2;
     const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
-                             6 * t->bodies * t->count, t->widest * pairs, t->variables * pairs};
+                             shapes, shapes, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
     for (int i = 0; i < count; i++) total += sizes[i] + 1;
-    if (t->m > MOST || t->count > MODES || t->single >= t->m) return 1;
+    if (t->m > MOST || t->count > MODES || t->single > t->m) return 1;
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
     Room w;
     lanes **parts[] = {&w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
-                       &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.sum, &w.slope};
+                       &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.placed, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
     char *const filled = malloc(t->numbers);
     int64_t *const crossing = malloc(sizeof(int64_t) * 180 * t->links);
     w.law = malloc(sizeof(Law) * t->parts);
+    w.view = aligned_alloc(sizeof(lanes), sizeof(View) * (t->gates + 1)), w.side = aligned_alloc(sizeof(lanes), sizeof(Side) * t->links);
     w.fills = 0;
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
-    const int short_of = !memory || !varying || !filled || !crossing || !w.law;
+    const int short_of = !memory || !varying || !filled || !crossing || !w.law || !w.view || !w.side;
     if (!short_of) {
         const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
         const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
@@ -1224,6 +1476,6 @@ int64_t flexstage_modes(const Task *t)
             }
         }
     }
-    free(memory), free(varying), free(filled), free(crossing), free(w.law);
+    free(memory), free(varying), free(filled), free(crossing), free(w.law), free(w.view), free(w.side);
     return short_of;
 }

@@ -148,15 +148,34 @@ class Family:
 
 def _near_slopes(family_: Family) -> Array:
     """Derivatives (rows, n) of all that may change, at three designs near the nominal one, or at fewer where no more can be described."""
-    number = np.arange(len(family_.nominal)) + 1.0
-    scale = np.where(family_.nominal != 0.0, 0.01 * family_.nominal, 1e-4)
-    steps = np.stack([0.0 * number, np.cos(number), -0.7 * np.cos(number), *(np.cos(turns * number) for turns in range(2, _TRIALS))])
-    trials = family_.nominal + steps * scale
+    trials = _trials(family_)
     try:
         return _slopes(family_, trials[:3], family_.widest, {}, {})[0]
     except DesignError:
         told = (slopes for trial in trials for slopes in _told_slopes(family_, trial))
         return np.concatenate(list(itertools.islice(told, 3)), axis=1)
+
+
+def _trials(family_: Family) -> Array:
+    """The nominal design and others near it, in which no two numbers change alike."""
+    number = np.arange(len(family_.nominal)) + 1.0
+    scale = np.where(family_.nominal != 0.0, 0.01 * family_.nominal, 1e-4)
+    steps = np.stack([0.0 * number, np.cos(number), -0.7 * np.cos(number), *(np.cos(turns * number) for turns in range(2, _TRIALS))])
+    return np.asarray(family_.nominal + steps * scale)
+
+
+def near_numbers(family_: Family) -> Array | None:
+    """Features' numbers (features, 1) of a design near the nominal one; none where none can be described.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = near_numbers(family(double_triangle(), ("parts.neck.thickness",)))
+    >>> found is not None and found.shape[1]
+    1
+    """
+    for trial in _trials(family_)[1:]:
+        with contextlib.suppress(DesignError):
+            return numbers_of(family_, trial[None])
+    return None
 
 
 def _told_slopes(family_: Family, design: Array) -> Iterator[Array]:

@@ -180,7 +180,8 @@ def platform_indices(modes: Whole, choice: Choice) -> Array:
 def keep(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
     """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
 
-    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.array([[[1.0, 2.0, 4.0, 0.0, 0.0, 0.0]]]))
+    >>> slopes = np.array([[[1.0, 2.0, 4.0, 0.0, 0.0, 0.0]]])
+    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), slopes)
     >>> left, mean = keep(both, Choice(count=2))
     >>> left.values.tolist(), mean.tolist()
     ([[1.0, 4.0]], [[[1.0, 3.0]]])
