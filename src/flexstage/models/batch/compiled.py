@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -13,7 +14,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme
 from flexstage.models.batch.features import GROUNDED, Feature
-from flexstage.models.batch.numbers import Change
+from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.models.batch.planes import SKEW, Planes, no_planes
 from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
 from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
@@ -214,16 +215,20 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
 
 def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
     """Slots, the single numbers that derivatives are about, by the group they are of, and entries (variable, slot, row) by group, too."""
-    found: list[tuple[int, tuple[int, int, int, int, int]]] = []
+    found: list[tuple[int, tuple[int, int, int, int, int, int]]] = []
     for change in changes:
         group, kind, owner = _owner(scheme, change.place)
         columns = change.place.shape[-1] if len(change.place.shape) == 2 else 1
-        found += [(change.variable, (group, kind, owner, row // columns, row % columns)) for row in change.rows.tolist()]
+        both = [int(change.mirrored and MIRROR[row] != row) * int(MIRROR_SIGN[row]) for row in change.rows] if columns == 12 else []
+        found += [
+            (change.variable, (group, kind, owner, row // columns, row % columns, sign))
+            for row, sign in itertools.zip_longest(change.rows.tolist(), both, fillvalue=0)
+        ]
     slots = {key: number for number, key in enumerate(sorted({key for _, key in found}))}
     entries = sorted((key[0], variable, slots[key], row) for row, (variable, key) in enumerate(found))
     groups = np.arange(scheme.topology.parts + len(scheme.topology.links) + len(scheme.graph.order) + 1)
     return {
-        "slot": np.array([key[1:] for key in slots], dtype=np.int64).reshape(-1, 4),
+        "slot": np.array([key[1:] for key in slots], dtype=np.int64).reshape(-1, 5),
         "entry": np.array([entry[1:] for entry in entries], dtype=np.int64).reshape(-1, 3),
         "reach": np.searchsorted([key[0] for key in slots], groups).astype(np.int64),
         "about": np.searchsorted([entry[0] for entry in entries], groups).astype(np.int64),

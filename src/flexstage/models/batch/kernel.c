@@ -39,7 +39,7 @@ typedef struct {
     const int64_t *mirror;  /* numbers: the one that is the same by symmetry, or itself */
     const int64_t *inertia; /* bodies: where the inertia of the body at that place begins among the numbers */
     const int64_t *start;   /* stiffness, mass, turn, first, second */
-    const int64_t *slot;    /* slots x (kind, owner or place, row, column) */
+    const int64_t *slot;    /* slots x (kind, owner or place, row, column, sign of what the other end of a mirrored mass has; 0: it is not) */
     const int64_t *reach;   /* groups + 1: where the slots of each group begin: parts (laws), links (places), bodies by place (inertia) */
     const int64_t *about;   /* groups + 1: where their entries begin */
     const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by group, then by variable */
@@ -260,7 +260,7 @@ typedef struct {
     int64_t *crossing, crossings;    /* entries of laws that are zero where the plane is one of symmetry, and are not in every design */
     int fills;                       /* whether elimination makes edges */
     lanes *number, *change;          /* the numbers of these designs, and their derivatives */
-    lanes *numbers, *changes;        /* those of AHEAD vectors of designs */
+    lanes *numbers, *changes;        /* what of them varies, of AHEAD vectors of designs */
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
@@ -1112,11 +1112,11 @@ static INLINE void weigh_row(lanes *out, const lanes *row, const int *column, in
     UNROLL for (int c = 0; c < k; c++) out[c] = sum[c];
 }
 
-/* A link in the modes: twists of its ends in its axes (12, k), the same times - lambda, strains (6, k), motions of its place as either body moves it
- * (3, k each) in the stage's axes, forces less lambda times momenta on its ends (12, k) and their first halves in the stage's axes. */
-typedef struct { lanes twist[12 * MODES], heavy[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES]; } Moved;
+/* A link in the modes: twists of its ends in its axes (12, k), strains (6, k), motions of its place as either body moves it (3, k each) in the stage's
+ * axes, forces less lambda times momenta on its ends (12, k) and their first halves in the stage's axes. */
+typedef struct { lanes twist[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES]; } Moved;
 
-static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to, const Wanted *of, const int k)
+static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to, const int k)
 {
     const lanes *r = w->number + t->start[2] + 9 * l;
     for (int side = 0; side < 2; side++) {
@@ -1140,11 +1140,9 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
     }
     for (int i = 0; i < 6; i++)
         UNROLL for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
-    for (int i = 0; i < 12; i++)
-        UNROLL for (int c = 0; c < k; c++) to->heavy[i * k + c] = -of->mean[c] * to->twist[i * k + c];
 }
 
-static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const int k)
+static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const lanes *mean, const int k)
 {
     const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
     const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
@@ -1155,8 +1153,8 @@ static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to,
     for (int i = 0; i < 12; i++) {
         if (t->link[4 * l + 1 + i / 6] < 0) continue;
         lanes *f = to->force + i * k;
-        weigh_row(f, mass + 12 * i, law->column + law->start[6 + i], law->start[7 + i] - law->start[6 + i], to->heavy, k);
-        UNROLL for (int c = 0; c < k; c++) f[c] = i < 6 ? f[c] - pull[i * k + c] : f[c] + pull[(i - 6) * k + c];
+        weigh_row(f, mass + 12 * i, law->column + law->start[6 + i], law->start[7 + i] - law->start[6 + i], to->twist, k);
+        UNROLL for (int c = 0; c < k; c++) f[c] = i < 6 ? -pull[i * k + c] - mean[c] * f[c] : pull[(i - 6) * k + c] - mean[c] * f[c];
     }
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
@@ -1172,10 +1170,16 @@ static INLINE void law_slots(const Task *t, int64_t l, const Moved *at, lanes *s
     const int64_t part = t->link[4 * l];
     const int least = t->link[4 * l + 1] < 0 ? 6 : 0, most = t->link[4 * l + 2] < 0 ? 6 : 12;
     for (int64_t s = t->reach[part]; s < t->reach[part + 1]; s++, sum += n) {
-        const int row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
+        const int row = (int)t->slot[5 * s + 2], column = (int)t->slot[5 * s + 3], sign = (int)t->slot[5 * s + 4];
         const double factor = row == column ? 1.0 : 2.0;
-        if (t->slot[4 * s] == STIFFNESS) gain(sum, at->strain + row * k, at->strain + column * k, factor, 1, of, crossed, k);
-        else if (row >= least && column < most) gain(sum, at->twist + row * k, at->heavy + column * k, factor, 1, of, crossed, k);
+        if (t->slot[5 * s] == STIFFNESS) gain(sum, at->strain + row * k, at->strain + column * k, factor, 1, of, crossed, k);
+        else {
+            if (row >= least && column < most) gain(sum, at->twist + row * k, at->twist + column * k, factor, 1, of, crossed, k);
+            if (!sign) continue;
+            const int one = (row + 6) % 12, two = (column + 6) % 12;
+            if (one >= least && two >= least && one < most && two < most)
+                gain(sum, at->twist + one * k, at->twist + two * k, sign * factor, 1, of, crossed, k);
+        }
     }
 }
 
@@ -1184,7 +1188,7 @@ static INLINE void place_slots(
     const Task *t, const Room *w, int64_t l, const Moved *at, lanes *sum, const Wanted *of, const int crossed, const int k, const int n)
 {
     for (int64_t s = t->reach[t->parts + l]; s < t->reach[t->parts + l + 1]; s++, sum += n) {
-        const int kind = (int)t->slot[4 * s], row = (int)t->slot[4 * s + 2], column = (int)t->slot[4 * s + 3];
+        const int kind = (int)t->slot[5 * s], row = (int)t->slot[5 * s + 2], column = (int)t->slot[5 * s + 3];
         const int one = (row + 1) % 3, two = (row + 2) % 3;
         int more = 0;
         for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
@@ -1200,6 +1204,16 @@ static INLINE void place_slots(
             }
             more = 1;
         }
+    }
+}
+
+/* Masses and inertias of a group times - lambda: the same for both modes where it matters, within a cluster. */
+static INLINE void weigh_slots(const Task *t, int64_t group, lanes *sum, const Wanted *of, const int k, const int n)
+{
+    for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
+        if (t->slot[5 * s] == STIFFNESS) continue;
+        UNROLL for (int p = 0; p < k; p++) sum[p] *= -of->mean[p];
+        for (int p = k; p < n; p++) sum[p] *= -of->mean[of->pair[p].i];
     }
 }
 
@@ -1236,27 +1250,25 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
         const int law = t->reach[part] < t->reach[part + 1], moves = t->reach[place] < t->reach[place + 1];
         lanes *own = w->sum, *other = own + (t->reach[part + 1] - t->reach[part]) * n;
         if (first) memset(own, 0, sizeof(lanes) * (other - own));
-        if (law || moves) move_link(t, w, l, &at, of, k);
+        if (law || moves) move_link(t, w, l, &at, k);
         if (law) law_slots(t, l, &at, own, of, 0, k, n);
         if (law && more) law_slots(t, l, &at, own, of, 1, k, n);
-        if (law && last) contract(t, w, part, own, n);
+        if (law && last) weigh_slots(t, part, own, of, k, n), contract(t, w, part, own, n);
         if (!moves) continue;
-        load_link(t, w, l, &at, k), place_slots(t, w, l, &at, other, of, 0, k, n);
+        load_link(t, w, l, &at, of->mean, k), place_slots(t, w, l, &at, other, of, 0, k, n);
         if (more) place_slots(t, w, l, &at, other, of, 1, k, n);
         contract(t, w, place, other, n);
     }
     for (int64_t b = 0; b < t->bodies; b++) {
         const int64_t group = t->parts + t->links + b;
         const lanes *x = w->placed + 6 * k * b;
-        lanes heavy[6 * MODES], *sum = w->sum;
-        for (int i = 0; i < 6; i++)
-            UNROLL for (int c = 0; c < k; c++) heavy[i * k + c] = -of->mean[c] * x[i * k + c];
+        lanes *sum = w->sum;
         for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
-            const int64_t row = t->slot[4 * s + 2], column = t->slot[4 * s + 3];
-            gain(sum, x + row * k, heavy + column * k, row == column ? 1.0 : 2.0, 0, of, 0, k);
-            if (more) gain(sum, x + row * k, heavy + column * k, row == column ? 1.0 : 2.0, 0, of, 1, k);
+            const int64_t row = t->slot[5 * s + 2], column = t->slot[5 * s + 3];
+            gain(sum, x + row * k, x + column * k, row == column ? 1.0 : 2.0, 0, of, 0, k);
+            if (more) gain(sum, x + row * k, x + column * k, row == column ? 1.0 : 2.0, 0, of, 1, k);
         }
-        contract(t, w, group, w->sum, n);
+        weigh_slots(t, group, w->sum, of, k, n), contract(t, w, group, w->sum, n);
     }
 }
 
@@ -1376,10 +1388,10 @@ static void designs(const Task *t, Room *w, int64_t design)
 
 /* ---- what of the numbers is the same in every design ---- */
 
-/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go to each of AHEAD vectors here,
- * once. What is below the diagonal of symmetric matrices is never read: its `mirror` stands for both. */
+/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go where they are used, `apart`
+ * from one another in each of `ahead` vectors, once. What is below the diagonal of symmetric matrices is never read: its `mirror` stands for both. */
 static int64_t vary(
-    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror, int64_t *varying)
+    lanes *to, int64_t ahead, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror, int64_t *varying)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < rows; i++) {
@@ -1391,20 +1403,20 @@ static int64_t vary(
             for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(own, design + k * WIDTH, designs) != first;
         if (any(other)) varying[count++] = i;
         else
-            for (int64_t k = 0; k < AHEAD; k++) to[k * rows + i] = to[k * rows + (mirror ? mirror[i] : i)] = first;
+            for (int64_t k = 0; k < ahead; k++) to[k * rows + i] = to[k * rows + (mirror ? mirror[i] : i)] = first;
     }
     return count;
 }
 
-/* The varying rows of AHEAD vectors of designs, vector by vector. */
+/* The varying rows of AHEAD vectors of designs, vector by vector: where they are used, or one after the other. */
 static void gather(
-    lanes *to, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t design, int64_t designs, const int64_t *mirror,
-    const int64_t *varying, int64_t count)
+    lanes *to, const double *from, const int64_t *row, int64_t next, int64_t stride, int64_t design, int64_t designs, const int64_t *varying, int64_t count,
+    const int in_place)
 {
     for (int64_t i = 0; i < count; i++) {
-        const int64_t at = varying[i], other = mirror ? mirror[at] : at;
+        const int64_t at = varying[i], place = in_place ? at : i;
         for (int64_t k = 0; k < AHEAD && design + k * WIDTH < designs; k++)
-            to[k * rows + at] = to[k * rows + other] = load_at(from + (row ? row[3 * at] : at) * stride, design + k * WIDTH, designs);
+            to[k * next + place] = load_at(from + (row ? row[3 * at] : at) * stride, design + k * WIDTH, designs);
     }
 }
 
@@ -1437,7 +1449,7 @@ int64_t flexstage_width(void) { return WIDTH; }
 int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, shapes = 6 * t->bodies * t->count, pairs = t->count * (t->count + 1) / 2;
-    const int64_t sizes[] = {AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
+    const int64_t sizes[] = {t->numbers, AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
                              shapes, shapes, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
@@ -1445,7 +1457,7 @@ int64_t flexstage_modes(const Task *t)
     if (t->m > MOST || t->count > MODES || t->single > t->m) return 1;
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
     Room w;
-    lanes **parts[] = {&w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
+    lanes **parts[] = {&w.number, &w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
                        &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.placed, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
@@ -1457,9 +1469,9 @@ int64_t flexstage_modes(const Task *t)
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
     const int short_of = !memory || !varying || !filled || !crossing || !w.law || !w.view || !w.side;
     if (!short_of) {
-        const int64_t some = vary(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
-        const int64_t other = vary(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
-        outlines(t, w.law, w.numbers, varying, some, filled);
+        const int64_t some = vary(w.number, 1, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
+        const int64_t other = vary(w.changes, AHEAD, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
+        outlines(t, w.law, w.number, varying, some, filled);
         w.crossing = crossing, w.crossings = 0;
         for (int64_t l = 0; l < t->links; l++)
             for (int64_t i = 0; i < 36 + 144 && t->normal[l] >= 0; i++) {
@@ -1468,10 +1480,11 @@ int64_t flexstage_modes(const Task *t)
                 if (filled[at] && (row / 3 == column / 3) != ((row % 3 == t->normal[l]) == (column % 3 == t->normal[l]))) w.crossing[w.crossings++] = at;
             }
         for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
-            gather(w.numbers, t->numbers_, 0, t->numbers, t->numbers_stride, first, t->designs, t->mirror, varying, some);
-            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, 0, changing, other);
+            gather(w.numbers, t->numbers_, 0, some, t->numbers_stride, first, t->designs, varying, some, 0);
+            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, changing, other, 1);
             for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
-                w.number = w.numbers + k * t->numbers, w.change = w.changes + k * t->entries;
+                for (int64_t i = 0; i < some; i++) w.number[varying[i]] = w.number[t->mirror[varying[i]]] = w.numbers[k * some + i];
+                w.change = w.changes + k * t->entries;
                 designs(t, &w, first + k * WIDTH);
             }
         }

@@ -40,11 +40,15 @@ Draw = Callable[[tuple[Array, ...]], Mechanism]
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """A feature that a variable changes, and which `rows` of its numbers; of symmetric matrices the upper half stands for both."""
+    """A feature that a variable changes, and which `rows` of its numbers; of symmetric matrices the upper half stands for both.
+
+    Where a mass is `mirrored`, what one end has stands for the other, too.
+    """
 
     variable: int
     place: Feature
     rows: Array
+    mirrored: bool = False
 
     @property
     def key(self) -> Key:
@@ -122,11 +126,11 @@ class Family:
 
     @cached_property
     def wide(self) -> tuple[Change, ...]:
-        """The changes of parts and axes, and all there can be of bodies and their places."""
+        """The changes of parts, mirrored or not, and axes, and all there can be of bodies and their places."""
         return tuple(
             sorted(
                 (
-                    *(change for change in self.changes if change.place.kind not in _OF_BODIES),
+                    *(change for change in self.moving if change.place.kind not in _OF_BODIES),
                     *(c for c in self.widest if c.place.kind in _OF_BODIES),
                 ),
                 key=lambda change: (change.variable, change.place.start),
@@ -134,8 +138,8 @@ class Family:
         )
 
     @cached_property
-    def changes(self) -> tuple[Change, ...]:
-        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas.
+    def moving(self) -> tuple[Change, ...]:
+        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas, or by units.
 
         Every one there can be where no three of them can be described.
         """
@@ -143,7 +147,53 @@ class Family:
         if own.shape[1] < 3:
             return self.widest
         moves = np.split((own != 0.0).any(axis=1), np.cumsum([len(change.rows) for change in self.widest], dtype=int))[:-1]
+        for change, rows in zip(self.widest, moves, strict=True):
+            for item in self.told.get(change.key, ()):
+                if item.variable == change.variable and not item.rest:
+                    rows &= item.powers(change.place.kind, change.rows) != 0.0
         return tuple(replace(change, rows=change.rows[rows]) for change, rows in zip(self.widest, moves, strict=True) if rows.any())
+
+    @cached_property
+    def mirrored(self) -> frozenset[int]:
+        """The parts whose masses are the same seen from either end, to the bit, in the nominal design and near it."""
+        known = [numbers for numbers in (numbers_of(self, self.nominal[None]), near_numbers(self)) if numbers is not None]
+        masses = [place for place in self.topology.features if place.kind == "mass"]
+        return frozenset(place.owner for place in masses if len(known) > 1 and all(is_mirrored(each, place).all() for each in known))
+
+    @cached_property
+    def changes(self) -> tuple[Change, ...]:
+        """What moves, of mirrored masses one end."""
+        return tuple(
+            replace(change, rows=change.rows[MIRROR[change.rows] >= change.rows], mirrored=True)
+            if change.place.kind == "mass" and change.place.owner in self.mirrored
+            else change
+            for change in self.moving
+        )
+
+
+def _mirror() -> tuple[Array, Array]:
+    """Of each number of a mass the one that the other end has, in the upper half, and the sign between them: angles about y and z turn."""
+    row, column = np.divmod(np.arange(144), 12)
+    other = np.sort(np.stack([(row + 6) % 12, (column + 6) % 12]), axis=0)
+    turning = np.isin(np.arange(12) % 6, (4, 5))
+    return 12 * other[0] + other[1], np.where(turning[row] == turning[column], 1.0, -1.0)
+
+
+MIRROR, MIRROR_SIGN = _mirror()
+
+
+def is_mirrored(numbers: Array, place: Feature) -> Array:
+    """Of which designs (features, b) a mass is the same seen from either end, to the bit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ())
+    >>> mass = next(place for place in found.topology.features if place.kind == "mass")
+    >>> is_mirrored(numbers_of(found, np.zeros((1, 0))), mass).tolist()
+    [True]
+    """
+    own = numbers[place.slots]
+    rows = np.flatnonzero((MIRROR > np.arange(144)) & (np.arange(144) // 12 <= np.arange(144) % 12))
+    return np.asarray((own[rows] == MIRROR_SIGN[rows, None] * own[MIRROR[rows]]).all(axis=0))
 
 
 def _near_slopes(family_: Family) -> Array:
@@ -330,6 +380,10 @@ def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) ->
     """
     changes = family_.wide if wide else family_.changes
     found, missed, numbers = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
+    if not wide:
+        for place in family_.topology.features:
+            if place.kind == "mass" and place.owner in family_.mirrored:
+                missed |= ~is_mirrored(numbers, place)
     nought = np.flatnonzero((values[:, family_.dividing] == 0.0).any(axis=1))  # a quotient by a step alone is not that by nought
     if len(nought):
         numbers[:, nought] = numbers_of(family_, values[nought])

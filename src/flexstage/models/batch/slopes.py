@@ -13,7 +13,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme, carries, of_kind
 from flexstage.models.batch.features import GROUNDED, Feature
-from flexstage.models.batch.numbers import Change
+from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.spatial.frame import cross_matrix
 
 
@@ -86,6 +86,8 @@ def _whole(change: Change, values: Array) -> Array:
     """The derivative (b, *shape) of a feature, of which only some rows are given."""
     result = np.zeros((values.shape[1], int(np.prod(change.place.shape))))
     result[:, change.rows] = values.T
+    if change.mirrored:
+        result[:, MIRROR[change.rows]] = MIRROR_SIGN[change.rows] * values.T
     result = result.reshape(-1, *change.place.shape)
     if change.place.symmetric:
         result += np.swapaxes(np.triu(result, 1), -1, -2)
