@@ -50,7 +50,7 @@ _SIZES = (
 _GRAPH = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
 _PLANES = ("gate", "through", "normal", "model", "row", "copies", "nth")
 _TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
-_ARRAYS = ("force", "numbers_", "changes")
+_ARRAYS = ("force", "numbers_", "still", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
 _RESULTS = ("values", "share", "good", "slopes")
 
@@ -139,6 +139,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     number = _rows(stage.numbers)
     change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
     held = {**tables.arrays, "force": np.ascontiguousarray(tables.planes.inside(start.force)), "numbers_": number, "changes": change}
+    held["still"] = np.zeros(len(number), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
     stride = count + -count % width
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),

@@ -247,7 +247,7 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method, wide: bo
             for design in np.flatnonzero(finite):
                 _write(plan_, result, np.array([design]), locked_solution(plan_.family, safe[design], plan_.choice, slopes=slopes))
             return result
-        stage = _stage(plan_, safe, slopes=slopes, wide=wide)
+        stage = stage_of(plan_, safe, slopes=slopes, wide=wide)
         finite = finite & np.isfinite(stage.numbers).all(axis=0)
         result.status[~finite] = Status.NOT_FINITE
         left = finite
@@ -315,16 +315,23 @@ def _nothing(plan_: Plan, size: int, *, slopes: bool) -> PlatformModes:
     )
 
 
-def _stage(plan_: Plan, values: Array, *, slopes: bool, wide: bool) -> Stage:
+def stage_of(plan_: Plan, values: Array, *, slopes: bool, wide: bool = False) -> Stage:
+    """The designs (b, P) in their features, with derivatives where these are asked for: of all that can change of bodies if `wide`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage_of(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1e-3], [2e-3]]), slopes=True).numbers.shape[1]
+    2
+    """
     if plan_.surface is None or wide:
         numbers, derivatives = _described(plan_, values, slopes=slopes, wide=wide)
-    else:
-        numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
-        outside = np.flatnonzero(~plan_.surface.holds(values))
-        if len(outside):
-            numbers[:, outside], there = _described(plan_, values[outside], slopes=slopes)
-            if derivatives is not None and there is not None:
-                derivatives.values[:, outside], derivatives.missed[outside] = there.values, there.missed
+        still = None if derivatives is None else derivatives.still
+        return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives, still)
+    numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
+    outside = np.flatnonzero(~plan_.surface.holds(values))
+    if len(outside):
+        numbers[:, outside], there = _described(plan_, values[outside], slopes=slopes)
+        if derivatives is not None and there is not None:
+            derivatives.values[:, outside], derivatives.missed[outside] = there.values, there.missed
     return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives)
 
 

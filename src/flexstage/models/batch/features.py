@@ -281,14 +281,14 @@ def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], co
     return result
 
 
-def put(numbers: Array, place: Feature, array: Array) -> None:
-    """Write the real numbers (..., *shape) of a feature among all (numbers, designs).
+def put(numbers: Array, place: Feature, array: Array) -> Array:
+    """Write the real numbers (..., *shape) of a feature among all (numbers, designs), and tell which are the same in all designs.
 
     >>> numbers = np.zeros((3, 2))
-    >>> put(numbers, Feature("first", 0, 0), np.arange(3.0))
-    >>> numbers.tolist()
-    [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
+    >>> put(numbers, Feature("first", 0, 0), np.array([[0.0, 1.0, 2.0], [0.0, 1.0, 3.0]])).tolist(), numbers.tolist()
+    ([True, True, False], [[0.0, 0.0], [1.0, 1.0], [2.0, 3.0]])
     """
     values = np.real(array)
-    flat = values.reshape(*values.shape[: values.ndim - len(place.shape)], -1)
-    numbers[place.slots] = flat.T if flat.ndim == 2 else flat[:, None]
+    flat = values.reshape(-1, int(np.prod(place.shape)))
+    numbers[place.slots] = flat.T
+    return np.asarray((flat == flat[:1]).all(axis=0))

@@ -54,6 +54,7 @@ typedef struct {
     const int64_t *nth;     /* bodies, then ports, x 2: how many come before it, and which of those before the later one it is */
     const double *force;    /* rows x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
+    const int64_t *still;   /* numbers: whether it is known that one is the same in all designs */
     const double *changes;  /* entries x slopes_stride */
     /* settings */
     double shift, value, angle, limit, cluster, together, shares, margin, pivot, skew, span;
@@ -264,7 +265,7 @@ typedef struct {
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
-    lanes *now, *next, *force, *ahead; /* blocks of vectors */
+    lanes *now, *next, *force, *ahead, *start; /* blocks of vectors; those to begin with are the same in all lanes */
     lanes *shapes, *placed;          /* modes found (rows, count), and of each body in the stage's axes (6 bodies, count) */
     View *view;                      /* of every gate */
     Side *side;                      /* of every link of a leg with a plane */
@@ -598,17 +599,20 @@ static INLINE void eliminate(const Task *t, Room *w, lanes shift, Count *told)
 }
 
 /* Columns of a body or port: those of all its copies. */
-static INLINE lanes *rows_of(const Task *t, lanes *x, int64_t v, int m, int j) { return x + t->row[v] * m + j; }
+#define ROWS(x, v) ((x) + t->row[v] * m + j)
 
-/* A tree's body forward: n of `wide` columns. */
-static INLINE void forward_tree(const Task *t, const Room *w, lanes *x, int64_t v, int m, const int wide, int j, const int n)
+/* A tree's body forward, n of `wide` columns: of x = (K - shift M)^-1 f, what is not there yet is taken from f, nothing from ports. */
+static INLINE void forward_tree(const Task *t, const Room *w, lanes *x, const lanes *f, int64_t v, int m, const int wide, int j, const int n)
 {
+    const int64_t last = t->later[t->range[v]];
     const lanes *restrict a = w->other + OWN * v, *restrict e = w->other_edge + 36 * t->range[v];
-    lanes *own = rows_of(t, x, v, m, j), *later = rows_of(t, x, t->later[t->range[v]], m, j);
+    const int fresh = !t->nth[2 * v + 1], port = last >= t->bodies;
+    lanes *own = ROWS(x, v), *later = ROWS(x, last);
+    const lanes *from = t->nth[2 * v] ? own : ROWS(f, v), *to = fresh && !port ? ROWS(f, last) : later;
     UNROLL for (int h = 0; h < 2; h++) {
         lanes u[12], s[12];
         UNROLL for (int i = 0; i < 3; i++)
-            UNROLL for (int k = 0; k < n; k++) u[i * n + k] = own[(3 * h + i) * wide + k], s[i * n + k] = later[(3 * h + i) * wide + k];
+            UNROLL for (int k = 0; k < n; k++) u[i * n + k] = from[(3 * h + i) * wide + k], s[i * n + k] = fresh && port ? all(0.0) : to[(3 * h + i) * wide + k];
         UNROLL for (int k = 0; k < n; k++) {
             u[n + k] -= a[6 * h + 1] * u[k];
             u[2 * n + k] -= a[6 * h + 3] * u[k];
@@ -629,7 +633,8 @@ static INLINE void backward_tree(const Task *t, const Room *w, lanes *x, lanes *
 {
     const int64_t at = t->range[v], last = t->later[at];
     const lanes *restrict a = w->other + OWN * v, *restrict e = w->other_edge + 36 * at, *restrict g = w->mass + OWN * v, *restrict f = w->mass_edge + 36 * at;
-    lanes *own = rows_of(t, x, v, m, j), *later = rows_of(t, x, last, m, j), *force = rows_of(t, y, v, m, j), *on = rows_of(t, y, last, m, j);
+    const int fresh = last >= t->bodies && t->nth[2 * v + 1] + 1 == t->nth[2 * last];
+    lanes *own = ROWS(x, v), *later = ROWS(x, last), *force = ROWS(y, v), *on = ROWS(y, last);
     UNROLL for (int h = 0; h < 2; h++) {
         lanes u[12], s[12], p[12];
         UNROLL for (int i = 0; i < 3; i++)
@@ -655,7 +660,7 @@ static INLINE void backward_tree(const Task *t, const Room *w, lanes *x, lanes *
         if (t->heavy[at])
             UNROLL for (int c = 0; c < 3; c++) {
                 lanes more[4];
-                UNROLL for (int k = 0; k < n; k++) more[k] = on[(3 * h + c) * wide + k];
+                UNROLL for (int k = 0; k < n; k++) more[k] = fresh ? all(0.0) : on[(3 * h + c) * wide + k];
                 UNROLL for (int i = 0; i < 3; i++)
                     UNROLL for (int k = 0; k < n; k++) {
                         s[i * n + k] += f[9 * h + 3 * i + c] * p[c * n + k];
@@ -672,21 +677,21 @@ static INLINE void backward_tree(const Task *t, const Room *w, lanes *x, lanes *
 static INLINE void forward_whole(const Task *t, const Room *w, lanes *x, int64_t v, int m, int j, const int n)
 {
     const lanes *a = w->other + OWN * v;
-    lanes u[24], *own = rows_of(t, x, v, m, j);
+    lanes u[24], *own = ROWS(x, v);
     pick_columns(u, own, m, n);
     lower(u, a, n);
     UNROLL for (int i = 0; i < 6; i++)
         UNROLL for (int k = 0; k < n; k++) own[i * m + k] = u[i * n + k] *= a[LOWER(i, i)];
-    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(rows_of(t, x, t->later[e], m, j), w->other_edge + 36 * e, u, m, TURNED, 1, n);
+    for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) multiply(ROWS(x, t->later[e]), w->other_edge + 36 * e, u, m, TURNED, 1, n);
 }
 
 static INLINE void backward_whole(const Task *t, const Room *w, lanes *x, lanes *y, int64_t v, int m, int j, const int n)
 {
     const lanes *a = w->other + OWN * v;
-    lanes u[24], *own = rows_of(t, x, v, m, j), *force = rows_of(t, y, v, m, j);
+    lanes u[24], *own = ROWS(x, v), *force = ROWS(y, v);
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++) {
         lanes sum[24];
-        pick_columns(u, rows_of(t, x, t->later[e], m, j), m, n);
+        pick_columns(u, ROWS(x, t->later[e]), m, n);
         UNROLL for (int i = 0; i < 6 * n; i++) sum[i] = all(0.0);
         multiply(sum, w->other_edge + 36 * e, u, n, PLAIN, 0, n);
         UNROLL for (int i = 0; i < 6; i++)
@@ -700,8 +705,8 @@ static INLINE void backward_whole(const Task *t, const Room *w, lanes *x, lanes 
     for (int64_t e = t->range[v]; e < t->range[v + 1]; e++)
         if (t->heavy[e]) {
             lanes other[24];
-            pick_columns(other, rows_of(t, x, t->later[e], m, j), m, n);
-            multiply(rows_of(t, y, t->later[e], m, j), w->mass_edge + 36 * e, u, m, TURNED, 0, n);
+            pick_columns(other, ROWS(x, t->later[e]), m, n);
+            multiply(ROWS(y, t->later[e]), w->mass_edge + 36 * e, u, m, TURNED, 0, n);
             multiply(force, w->mass_edge + 36 * e, other, m, PLAIN, 0, n);
         }
 }
@@ -709,14 +714,14 @@ static INLINE void backward_whole(const Task *t, const Room *w, lanes *x, lanes 
 /* Where a gate's columns stand among those of its port. */
 static INLINE lanes *columns_of(const Task *t, lanes *x, int64_t gate, int m)
 {
-    const int64_t port = t->bodies + t->gate[6 * gate];
-    return rows_of(t, x, port, m, (int)t->gate[6 * gate + 5] * m);
+    const int j = (int)t->gate[6 * gate + 5] * m;
+    return ROWS(x, t->bodies + t->gate[6 * gate]);
 }
 
 /* The ports' rows as the platform moves, in m columns. */
 static INLINE void enter_ports(const Task *t, const Room *w, lanes *x, const int m)
 {
-    const lanes *from = rows_of(t, x, t->bodies - 1, m, 0);
+    const lanes *from = x + t->row[t->bodies - 1] * m;
     for (int64_t g = 0; g < t->gates; g++) {
         const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
         const lanes *q = w->view[g].q, far = w->view[g].far;
@@ -734,28 +739,30 @@ static INLINE void enter_ports(const Task *t, const Room *w, lanes *x, const int
 /* The platform's forces += those on the ports. */
 static INLINE void leave_ports(const Task *t, const Room *w, lanes *y, const int m)
 {
-    lanes *to = rows_of(t, y, t->bodies - 1, m, 0);
-    for (int64_t g = 0; g < t->gates; g++) {
-        const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
-        const lanes *q = w->view[g].q, far = w->view[g].far, *from = columns_of(t, y, g, m);
-        for (int c = 0; c < m; c++) {
-            const lanes f[6] = {from[c], from[wide + c], from[3 * wide + c], from[4 * wide + c] + far * from[wide + c], from[5 * wide + c] - far * from[c],
-                                from[2 * wide + c]};
-            UNROLL for (int i = 0; i < 6; i++)
-                to[i * m + c] += q[3 * (i % 3)] * f[i - i % 3] + q[3 * (i % 3) + 1] * f[i - i % 3 + 1] + q[3 * (i % 3) + 2] * f[i - i % 3 + 2];
+    lanes *to = y + t->row[t->bodies - 1] * m;
+    for (int c = 0; c < m; c++) {
+        lanes sum[6];
+        UNROLL for (int i = 0; i < 6; i++) sum[i] = to[i * m + c];
+        for (int64_t g = 0; g < t->gates; g++) {
+            const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
+            const lanes *q = w->view[g].q, far = w->view[g].far, *from = columns_of(t, y, g, m) + c;
+            const lanes f[6] = {from[0], from[wide], from[3 * wide], from[4 * wide] + far * from[wide], from[5 * wide] - far * from[0], from[2 * wide]};
+            UNROLL for (int i = 0; i < 6; i++) sum[i] += q[3 * (i % 3)] * f[i - i % 3] + q[3 * (i % 3) + 1] * f[i - i % 3 + 1] + q[3 * (i % 3) + 2] * f[i - i % 3 + 2];
         }
+        UNROLL for (int i = 0; i < 6; i++) to[i * m + c] = sum[i];
     }
 }
 
-/* x = (K - shift M)^-1 x, m vectors, by what `eliminate` left, and y = M x. */
-static INLINE void solve(const Task *t, const Room *w, lanes *x, lanes *y, const int m)
+/* x = (K - shift M)^-1 f, m vectors, by what `eliminate` left, and y = M x. */
+static INLINE void solve(const Task *t, const Room *w, lanes *x, const lanes *f, lanes *y, const int m)
 {
-    const int64_t platform = t->bodies - 1, own = 6 * m * t->bodies;
-    memset(x + own, 0, sizeof(lanes) * (m * t->rows - own)), memset(y + own, 0, sizeof(lanes) * (m * t->rows - own));
+    const int64_t platform = t->bodies - 1;
+    for (int64_t v = 0; v < t->bodies; v++)
+        for (int64_t i = t->row[v] * m; t->through[v] < 0 && i < (t->row[v] + 6) * m; i++) x[i] = f[i];
     for (int64_t v = 0; v < t->bodies; v++) {
         if (t->model[v] != v) continue;
         if (v == platform) leave_ports(t, w, x, m);
-        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, forward_tree(t, w, x, v, m, wide, j, n))
+        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, forward_tree(t, w, x, f, v, m, wide, j, n))
         else { const int wide = m; IN_THREES(forward_whole(t, w, x, v, m, j, n)) }
     }
     for (int64_t v = platform; v >= 0; v--) {
@@ -936,9 +943,8 @@ static void begin(const Task *t, Room *w, Ritz *out)
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
     eliminate(t, w, all(t->shift), 0);
-    for (int64_t i = 0; i < n * m; i++) w->ahead[i] = all(t->force[i]);
-    if (m == 6) solve(t, w, w->ahead, w->now, 6); /* six platform modes below all others, the usual case */
-    else solve(t, w, w->ahead, w->now, m);
+    if (m == 6) solve(t, w, w->ahead, w->start, w->now, 6); /* six platform modes below all others, the usual case */
+    else solve(t, w, w->ahead, w->start, w->now, m);
     grams(n, m, (Layout){m, 1}, mass, stiff, w->ahead, w->now, 0, t->force);
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
@@ -953,22 +959,21 @@ static void polish(const Task *t, Room *w, Ritz *known)
 {
     const int m = (int)t->single;
     const int64_t n = 6 * t->bodies;
-    lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST];
+    lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST], *const weighed = t->steps % 2 ? w->next : w->force;
     for (int c = 0; c < m; c++) {
-        lanes *f = w->force + c * t->rows, *x = w->ahead + c * t->rows, *g = w->next + c * t->rows;
+        lanes *x = w->ahead + c * t->rows;
         const lanes shift = known->shift[c] = (1.0 - BESIDE) * known->values[c];
         eliminate(t, w, shift, 0);
         lanes before = all(1.0), between = before, after = before;
         for (int64_t step = 0; step < t->steps; step++) {
-            memcpy(x, f, sizeof(lanes) * n);
-            solve(t, w, x, g, 1);
+            const lanes *f = (step % 2 ? w->next : w->force) + c * t->rows;
+            lanes *g = (step % 2 ? w->force : w->next) + c * t->rows;
+            solve(t, w, x, f, g, 1);
             lanes sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
             for (int64_t i = 0; i < n; i += 2) /* n is even */
                 UNROLL for (int k = 0; k < 2; k++) sum[k] += x[i + k] * f[i + k], sum[2 + k] += x[i + k] * g[i + k];
+            if (step) before = after;
             between = sum[0] + sum[1], after = sum[2] + sum[3];
-            if (step + 1 == t->steps) break;
-            before = after;
-            memcpy(f, g, sizeof(lanes) * n);
         }
         const lanes square = 1.0 - between * between / (before * after);
         known->sine[c] = root(pick(square > 0.0, square, all(0.0)));
@@ -976,7 +981,7 @@ static void polish(const Task *t, Room *w, Ritz *known)
         known->quotient[c] = between / before;
     }
     const Layout at = {1, t->rows};
-    grams(n, m, at, mass, stiff, w->ahead, w->next, w->force, 0);
+    grams(n, m, at, mass, stiff, w->ahead, weighed, t->steps % 2 ? w->force : w->next, 0);
     for (int i = 0; i < m; i++)
         for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
     lanes length[MOST];
@@ -1366,7 +1371,10 @@ static void designs(const Task *t, Room *w, int64_t design)
     }
     begin(t, w, &known);
     for (int64_t round = 0; round < t->rounds && left; round++) {
-        if (round) blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->force, w->next, known.mix, (int)t->single);
+        if (round) { /* M times the modes, as `polish` left it */
+            blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->ahead, t->steps % 2 ? w->next : w->force, known.mix, (int)t->single);
+            memcpy(w->force, w->ahead, sizeof(lanes) * t->rows * t->single);
+        }
         polish(t, w, &known);
         marks fresh = {0};
         left = 0;
@@ -1391,7 +1399,8 @@ static void designs(const Task *t, Room *w, int64_t design)
 /* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go where they are used, `apart`
  * from one another in each of `ahead` vectors, once. What is below the diagonal of symmetric matrices is never read: its `mirror` stands for both. */
 static int64_t vary(
-    lanes *to, int64_t ahead, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror, int64_t *varying)
+    lanes *to, int64_t ahead, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror,
+    const int64_t *still, int64_t *varying)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < rows; i++) {
@@ -1399,7 +1408,7 @@ static int64_t vary(
         const double *own = from + (row ? row[3 * i] : i) * stride;
         const lanes first = all(*own);
         marks other = {0};
-        for (int64_t design = 0; design < designs && !any(other); design += 4 * WIDTH)
+        for (int64_t design = 0; !(still && still[i]) && design < designs && !any(other); design += 4 * WIDTH)
             for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(own, design + k * WIDTH, designs) != first;
         if (any(other)) varying[count++] = i;
         else
@@ -1449,7 +1458,7 @@ int64_t flexstage_width(void) { return WIDTH; }
 int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, shapes = 6 * t->bodies * t->count, pairs = t->count * (t->count + 1) / 2;
-    const int64_t sizes[] = {t->numbers, AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
+    const int64_t sizes[] = {block, t->numbers, AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
                              shapes, shapes, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
@@ -1457,7 +1466,7 @@ int64_t flexstage_modes(const Task *t)
     if (t->m > MOST || t->count > MODES || t->single > t->m) return 1;
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
     Room w;
-    lanes **parts[] = {&w.number, &w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
+    lanes **parts[] = {&w.start, &w.number, &w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
                        &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.placed, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
@@ -1469,9 +1478,10 @@ int64_t flexstage_modes(const Task *t)
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
     const int short_of = !memory || !varying || !filled || !crossing || !w.law || !w.view || !w.side;
     if (!short_of) {
-        const int64_t some = vary(w.number, 1, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, varying);
-        const int64_t other = vary(w.changes, AHEAD, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, changing);
+        const int64_t some = vary(w.number, 1, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, t->still, varying);
+        const int64_t other = vary(w.changes, AHEAD, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, 0, changing);
         outlines(t, w.law, w.number, varying, some, filled);
+        for (int64_t i = 0; i < 6 * t->bodies * t->m; i++) w.start[i] = all(t->force[i]);
         w.crossing = crossing, w.crossings = 0;
         for (int64_t l = 0; l < t->links; l++)
             for (int64_t i = 0; i < 36 + 144 && t->normal[l] >= 0; i++) {

@@ -341,15 +341,19 @@ def numbers_of(family_: Family, values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Derivatives (rows of all changes, b) of features by variables; `missed` (b,): designs that change where these changes say nothing."""
+    """Derivatives (rows of all changes, b) of features by variables; `missed` (b,): designs that change where these changes say nothing.
+
+    `still` (features,), where it is told: which of the numbers that were told beside them are the same in all designs.
+    """
 
     changes: tuple[Change, ...]
     values: Array
     missed: Array
+    still: Array | None = None
 
     def take(self, designs: Array | slice) -> Slopes:
         """Those of some designs."""
-        return Slopes(self.changes, self.values[:, designs], self.missed[designs])
+        return Slopes(self.changes, self.values[:, designs], self.missed[designs], self.still)
 
 
 def slopes_of(family_: Family, values: Array, *, wide: bool = False) -> Slopes:
@@ -379,19 +383,19 @@ def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) ->
     True
     """
     changes = family_.wide if wide else family_.changes
-    found, missed, numbers = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
+    found, missed, numbers, still = _slopes(family_, values, changes, family_.told, {} if wide else family_.dropped)
     if not wide:
         for place in family_.topology.features:
             if place.kind == "mass" and place.owner in family_.mirrored:
                 missed |= ~is_mirrored(numbers, place)
     nought = np.flatnonzero((values[:, family_.dividing] == 0.0).any(axis=1))  # a quotient by a step alone is not that by nought
     if len(nought):
-        numbers[:, nought] = numbers_of(family_, values[nought])
+        numbers[:, nought], still = numbers_of(family_, values[nought]), None
     _follow(family_, values, numbers, Slopes(changes, found, missed))
     lost = np.flatnonzero((values[:, [item.variable for told in family_.told.values() for item in told]] == 0.0).any(axis=1))
     if len(lost):
         found[:, lost] = _slopes(family_, values[lost], changes, {}, {})[0]
-    return numbers, Slopes(changes, found, missed)
+    return numbers, Slopes(changes, found, missed, still)
 
 
 def _follow(family_: Family, values: Array, numbers: Array, slopes: Slopes) -> None:
@@ -424,10 +428,11 @@ def _slopes(
     changes: tuple[Change, ...],
     told: Mapping[Key, tuple[Told, ...]],
     dropped: Mapping[int, tuple[Change, ...]],
-) -> tuple[Array, Array, Array]:
-    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers."""
+) -> tuple[Array, Array, Array, Array | None]:
+    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers, which `still`."""
     features_ = {place.key: place for place in family_.topology.features}
     numbers, missed = empty_rows(family_.topology.count, len(values)), np.zeros(len(values), dtype=bool)
+    still = np.zeros(family_.topology.count, dtype=bool)
     result = empty_rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     for start, change in _starts(changes):
@@ -439,14 +444,14 @@ def _slopes(
             wanted.setdefault(number, set()).update(change.key for change in others if change.key[0] != "inertia")
     for group, arrays in _stepped_features(family_, values, wanted):
         for key, array in arrays.items():
-            put(numbers, features_[key], array)
+            still[features_[key].slots] = put(numbers, features_[key], array)
         for number in group:
             for at, change in (each for each in places.get(number, ()) if each[1].key in arrays):
                 rates = np.imag(_flat(arrays[change.key], change)).T[change.rows]
                 np.divide(rates.reshape(len(change.rows), -1), width(family_, number), out=result[at : at + len(change.rows)])
             for change in (each for each in dropped.get(number, ()) if np.iscomplexobj(arrays.get(each.key, 0.0))):
                 missed |= _does_change(arrays[change.key], change, width(family_, number) / abs(family_.nominal[number] or 1.0))
-    return result, missed, numbers
+    return result, missed, numbers, still
 
 
 def _does_change(array: Array, change: Change, step: float) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,16 +21,20 @@ LEAST_PIVOT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Numbers (features, b) of designs, and how they change with each of `variables` numbers (none: no derivatives)."""
+    """Numbers (features, b) of designs, and how they change with each of `variables` numbers (none: no derivatives).
+
+    `still` (features,): which numbers are known to be the same in all designs.
+    """
 
     scheme: Scheme
     numbers: Array
     variables: int = 0
     slopes: Slopes | None = None
+    still: Array | None = None
 
     def take(self, designs: Array | slice) -> Stage:
         """Those of some designs."""
-        return Stage(self.scheme, self.numbers[:, designs], self.variables, None if self.slopes is None else self.slopes.take(designs))
+        return replace(self, numbers=self.numbers[:, designs], slopes=None if self.slopes is None else self.slopes.take(designs))
 
 
 @dataclass(frozen=True, eq=False)
