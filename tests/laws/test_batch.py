@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
@@ -23,8 +24,9 @@ from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.compiled import Tables, by_kernel
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
+from flexstage.models.batch.features import Feature
 from flexstage.models.batch.kernel import kernel
-from flexstage.models.batch.numbers import Family, drawn_family, numbers_and_slopes, numbers_of, slopes_of
+from flexstage.models.batch.numbers import Family, Slopes, drawn_family, numbers_and_slopes, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
 from flexstage.models.batch.units import _told
@@ -149,17 +151,23 @@ def told_and_stepped(stage: Mechanism, names: tuple[str, ...]) -> None:
             result = set_value(result, name, number)
         return result
 
-    stepped = slopes_of(drawn_family(draw, names, own.nominal), values)
-    found, numbers, start = slopes_of(own, values), np.abs(numbers_of(own, values)), 0
-    for change, other in zip(found.changes, stepped.changes, strict=True):
-        rows = slice(start, start := start + len(change.rows))
-        assert (change.place, change.rows.tolist()) == (other.place, other.rows.tolist())
-        if change.place.kind in {"stiffness", "mass"}:
-            diagonal = numbers[change.place.slots].reshape(*change.place.shape, -1)[
-                range(change.place.shape[0]), range(change.place.shape[0])
-            ]
-            scale = np.sqrt(diagonal[:, None] * diagonal).reshape(-1, len(values))[change.rows]
-            assert np.all(np.abs(found.values[rows] - stepped.values[rows]) * values[:, change.variable] <= 1e-13 * scale)
+    stepped, found, numbers = slopes_of(drawn_family(draw, names, own.nominal), values), slopes_of(own, values), np.abs(numbers_of(own, values))
+    known, others = (dict(each_change(slopes)) for slopes in (found, stepped))
+    assert known.keys() <= others.keys()
+    for (variable, place, row), other in others.items():
+        rate = known.get((variable, place, row), np.zeros(len(values)))  # units tell that what is left out is nought
+        if place.kind in {"stiffness", "mass"}:
+            diagonal = numbers[place.slots].reshape(*place.shape, -1)[range(place.shape[0]), range(place.shape[0])]
+            scale = np.sqrt(diagonal[row // place.shape[0]] * diagonal[row % place.shape[0]])
+            assert np.all(np.abs(rate - other) * values[:, variable] <= 1e-13 * scale)
+        else:
+            assert (variable, place, row) in known
+
+
+def each_change(slopes: Slopes) -> Iterator[tuple[tuple[int, Feature, int], np.ndarray]]:
+    """The derivatives of designs by variable, feature and number of it."""
+    keys = ((change.variable, change.place, int(row)) for change in slopes.changes for row in change.rows)
+    yield from zip(keys, slopes.values, strict=True)
 
 
 def test_units_of_time_tell_a_stiffness_by_mass_and_frequency() -> None:

@@ -48,7 +48,8 @@ _SIZES = (
     "rows",
 )
 _GRAPH = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
-_PLANES = ("gate", "through", "normal", "model", "row", "copies", "nth")
+_OWN = ("gate", "through", "normal", "model", "row", "copies", "nth")
+_PLANES = (*_OWN, "tree", "member")
 _TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "still", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
@@ -82,7 +83,8 @@ class Tables:
     @cached_property
     def arrays(self) -> Mapping[str, Array]:
         """Every table."""
-        own = {"later": self.planes.later(self.scheme), **{name: getattr(self.planes, name) for name in _PLANES}}
+        tree, member = self.planes.members
+        own = {"later": self.planes.later(self.scheme), "tree": tree, "member": member, **{name: getattr(self.planes, name) for name in _OWN}}
         return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **own}
 
 

@@ -52,6 +52,8 @@ typedef struct {
     const int64_t *row;     /* bodies, then ports: the row of their first component in vectors */
     const int64_t *copies;  /* bodies, then ports: how many equal ones there are, whose rows stand side by side */
     const int64_t *nth;     /* bodies, then ports, x 2: how many come before it, and which of those before the later one it is */
+    const int64_t *tree;    /* ports + 1: where the bodies of each tree that stand for themselves begin in the following */
+    const int64_t *member;  /* those bodies, in their order */
     const double *force;    /* rows x m: inertial forces of the modes to begin with */
     const double *numbers_; /* numbers x numbers_stride */
     const int64_t *still;   /* numbers: whether it is known that one is the same in all designs */
@@ -463,10 +465,10 @@ static marks weigh_plane(const Task *t, Room *w, int64_t b)
     const lanes *q = w->view[t->through[b]].q;
     lanes r[9], own[36], *mass = w->mass + OWN * model;
     marks bad = {0};
-    for (int i = 0; i < 9; i++) r[i] = q[3 * (i % 3) + i / 3];
+    UNROLL for (int i = 0; i < 9; i++) r[i] = q[3 * (i % 3) + i / 3];
     turn(own, w->number + t->inertia[b], 6, r, none, 1);
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k <= i; k++) {
+    UNROLL for (int i = 0; i < 6; i++)
+        UNROLL for (int k = 0; k <= i; k++) {
             const lanes x = own[6 * SPOT[i] + SPOT[k]], most = t->skew * t->skew * (own[7 * SPOT[i]] * own[7 * SPOT[k]]);
             lanes *to = mass + HALF(i / 3, i % 3, k % 3);
             if (!WITHIN(i, k)) bad |= ~(x * x <= most);
@@ -580,22 +582,25 @@ static INLINE void eliminate_whole(const Task *t, Room *w, int64_t v, lanes shif
     }
 }
 
-/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves; what is told of pivots where it
- * is asked for. */
-static INLINE void eliminate(const Task *t, Room *w, lanes shift, Count *told)
+/* The bodies that are in no tree, the platform last. */
+static INLINE void eliminate_rest(const Task *t, Room *w, lanes shift, Count *told)
 {
     for (int64_t v = 0; v < t->bodies; v++)
         for (int i = 0; i < OWN && t->through[v] < 0; i++) w->other[OWN * v + i] = w->stiff[OWN * v + i] - shift * w->mass[OWN * v + i];
     if (w->fills)
         for (int64_t i = 0; i < 36 * t->edges; i++) w->other_edge[i] = w->stiff_edge[i] - shift * w->mass_edge[i];
     for (int64_t v = 0; v < t->bodies; v++) {
-        if (t->model[v] != v) continue;
-        if (t->through[v] >= 0) eliminate_tree(t, w, v, shift, told);
-        else {
-            if (v == t->bodies - 1) open_ports(t, w, w->other + OWN * v, w->other);
-            eliminate_whole(t, w, v, shift, told);
-        }
+        if (t->through[v] >= 0) continue;
+        if (v == t->bodies - 1) open_ports(t, w, w->other + OWN * v, w->other);
+        eliminate_whole(t, w, v, shift, told);
     }
+}
+
+/* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves; what is told of pivots. */
+static INLINE void eliminate(const Task *t, Room *w, lanes shift, Count *told)
+{
+    for (int64_t i = 0; i < t->tree[t->ports]; i++) eliminate_tree(t, w, t->member[i], shift, told);
+    eliminate_rest(t, w, shift, told);
 }
 
 /* Columns of a body or port: those of all its copies. */
@@ -753,25 +758,85 @@ static INLINE void leave_ports(const Task *t, const Room *w, lanes *y, const int
     }
 }
 
-/* x = (K - shift M)^-1 f, m vectors, by what `eliminate` left, and y = M x. */
-static INLINE void solve(const Task *t, const Room *w, lanes *x, const lanes *f, lanes *y, const int m)
+/* A tree forward, eliminated before where there is a shift: what it works on is then at hand. */
+static INLINE void descend(const Task *t, Room *w, lanes *x, const lanes *f, int64_t port, const lanes *shift, const int m)
 {
-    const int64_t platform = t->bodies - 1;
+    for (int64_t i = t->tree[port]; shift && i < t->tree[port + 1]; i++) eliminate_tree(t, w, t->member[i], *shift, 0);
+    for (int64_t i = t->tree[port]; i < t->tree[port + 1]; i++) {
+        const int64_t v = t->member[i];
+        IN_COLUMNS((int)t->copies[v] * m, forward_tree(t, w, x, f, v, m, wide, j, n))
+    }
+}
+
+/* And back, where the ports' motions are known. */
+static INLINE void ascend(const Task *t, const Room *w, lanes *x, lanes *y, int64_t port, const int m)
+{
+    for (int64_t i = t->tree[port + 1] - 1; i >= t->tree[port]; i--) {
+        const int64_t v = t->member[i];
+        IN_COLUMNS((int)t->copies[v] * m, backward_tree(t, w, x, y, v, m, wide, j, n))
+    }
+}
+
+/* Of x and y = M x what is in no tree, and the ports' motions, where all trees have descended. */
+static INLINE void turn_back(const Task *t, const Room *w, lanes *x, const lanes *f, lanes *y, const int m)
+{
+    const int wide = m;
     for (int64_t v = 0; v < t->bodies; v++)
         for (int64_t i = t->row[v] * m; t->through[v] < 0 && i < (t->row[v] + 6) * m; i++) x[i] = f[i];
-    for (int64_t v = 0; v < t->bodies; v++) {
-        if (t->model[v] != v) continue;
-        if (v == platform) leave_ports(t, w, x, m);
-        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, forward_tree(t, w, x, f, v, m, wide, j, n))
-        else { const int wide = m; IN_THREES(forward_whole(t, w, x, v, m, j, n)) }
-    }
-    for (int64_t v = platform; v >= 0; v--) {
-        if (t->model[v] != v) continue;
-        if (t->through[v] >= 0) IN_COLUMNS((int)t->copies[v] * m, backward_tree(t, w, x, y, v, m, wide, j, n))
-        else { const int wide = m; IN_THREES(backward_whole(t, w, x, y, v, m, j, n)) }
-        if (v == platform) enter_ports(t, w, x, m);
-    }
+    leave_ports(t, w, x, m);
+    for (int64_t v = 0; v < t->bodies; v++)
+        if (t->through[v] < 0) IN_THREES(forward_whole(t, w, x, v, m, j, n))
+    for (int64_t v = t->bodies - 1; v >= 0; v--)
+        if (t->through[v] < 0) IN_THREES(backward_whole(t, w, x, y, v, m, j, n))
+    enter_ports(t, w, x, m);
+}
+
+/* x = (K - shift M)^-1 f, m vectors, eliminated for it, and y = M x. */
+static INLINE void solve(const Task *t, Room *w, lanes *x, const lanes *f, lanes *y, lanes shift, const int m)
+{
+    for (int64_t port = 0; port < t->ports; port++) descend(t, w, x, f, port, &shift, m);
+    eliminate_rest(t, w, shift, 0);
+    turn_back(t, w, x, f, y, m);
+    for (int64_t port = 0; port < t->ports; port++) ascend(t, w, x, y, port, m);
     leave_ports(t, w, y, m);
+}
+
+/* Dots of vectors x, f and y = M x: x M x of the step before, x f and x y. */
+typedef struct { lanes before, between, after; } Dots;
+
+static INLINE void add_dots(Dots *to, const lanes *x, const lanes *f, const lanes *y, int64_t rows)
+{
+    lanes sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
+    for (int64_t i = 0; i < rows; i += 2) /* rows are even */
+        UNROLL for (int k = 0; k < 2; k++) sum[k] += x[i + k] * f[i + k], sum[2 + k] += x[i + k] * y[i + k];
+    to->between += sum[0] + sum[1], to->after += sum[2] + sum[3];
+}
+
+/* Steps of inverse iteration of one vector x: y = M x and f = M times it before, in turn. A tree that came back goes on at once, as its
+ * matrices are at hand. */
+static INLINE Dots iterate(const Task *t, Room *w, lanes *x, lanes *f, lanes *y, lanes shift)
+{
+    Dots dots = {all(0.0), all(0.0), all(1.0)};
+    for (int64_t port = 0; port < t->ports; port++) descend(t, w, x, f, port, &shift, 1);
+    eliminate_rest(t, w, shift, 0);
+    for (int64_t step = 1; step <= t->steps; step++) {
+        dots = (Dots){dots.after, all(0.0), all(0.0)};
+        turn_back(t, w, x, f, y, 1);
+        for (int64_t port = 0; port < t->ports; port++) {
+            ascend(t, w, x, y, port, 1);
+            for (int64_t i = t->tree[port]; i < t->tree[port + 1]; i++) {
+                const int64_t row = t->row[t->member[i]];
+                add_dots(&dots, x + row, f + row, y + row, 6 * t->copies[t->member[i]]);
+            }
+            if (step < t->steps) descend(t, w, x, y, port, 0, 1);
+        }
+        leave_ports(t, w, y, 1);
+        for (int64_t v = 0; v < t->bodies; v++)
+            if (t->through[v] < 0) add_dots(&dots, x + t->row[v], f + t->row[v], y + t->row[v], 6);
+        lanes *const other = f;
+        f = y, y = other;
+    }
+    return dots;
 }
 
 /* ---- Rayleigh-Ritz ---- */
@@ -942,9 +1007,8 @@ static void begin(const Task *t, Room *w, Ritz *out)
     const int m = (int)t->m, single = (int)t->single;
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
-    eliminate(t, w, all(t->shift), 0);
-    if (m == 6) solve(t, w, w->ahead, w->start, w->now, 6); /* six platform modes below all others, the usual case */
-    else solve(t, w, w->ahead, w->start, w->now, m);
+    if (m == 6) solve(t, w, w->ahead, w->start, w->now, all(t->shift), 6); /* six platform modes below all others, the usual case */
+    else solve(t, w, w->ahead, w->start, w->now, all(t->shift), m);
     grams(n, m, (Layout){m, 1}, mass, stiff, w->ahead, w->now, 0, t->force);
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
@@ -961,24 +1025,13 @@ static void polish(const Task *t, Room *w, Ritz *known)
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST], *const weighed = t->steps % 2 ? w->next : w->force;
     for (int c = 0; c < m; c++) {
-        lanes *x = w->ahead + c * t->rows;
-        const lanes shift = known->shift[c] = (1.0 - BESIDE) * known->values[c];
-        eliminate(t, w, shift, 0);
-        lanes before = all(1.0), between = before, after = before;
-        for (int64_t step = 0; step < t->steps; step++) {
-            const lanes *f = (step % 2 ? w->next : w->force) + c * t->rows;
-            lanes *g = (step % 2 ? w->force : w->next) + c * t->rows;
-            solve(t, w, x, f, g, 1);
-            lanes sum[4] = {all(0.0), all(0.0), all(0.0), all(0.0)};
-            for (int64_t i = 0; i < n; i += 2) /* n is even */
-                UNROLL for (int k = 0; k < 2; k++) sum[k] += x[i + k] * f[i + k], sum[2 + k] += x[i + k] * g[i + k];
-            if (step) before = after;
-            between = sum[0] + sum[1], after = sum[2] + sum[3];
-        }
-        const lanes square = 1.0 - between * between / (before * after);
+        const int64_t at = c * t->rows;
+        known->shift[c] = (1.0 - BESIDE) * known->values[c];
+        const Dots dots = iterate(t, w, w->ahead + at, w->force + at, w->next + at, known->shift[c]);
+        const lanes square = 1.0 - dots.between * dots.between / (dots.before * dots.after);
         known->sine[c] = root(pick(square > 0.0, square, all(0.0)));
         known->sine[c] = pick(square == square, known->sine[c], square);
-        known->quotient[c] = between / before;
+        known->quotient[c] = dots.between / dots.before;
     }
     const Layout at = {1, t->rows};
     grams(n, m, at, mass, stiff, w->ahead, weighed, t->steps % 2 ? w->force : w->next, 0);
@@ -1147,19 +1200,22 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
         UNROLL for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
 }
 
-static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const lanes *mean, const int k)
+/* `turned`: moments too, which only axes feel. */
+static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const lanes *mean, const int turned, const int k)
 {
     const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
     const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
     const Law *law = w->law + t->link[4 * l];
-    lanes pull[6 * MODES];
-    for (int i = 0; i < 6; i++)
-        weigh_row(pull + i * k, stiff + 6 * i, law->column + law->start[i], law->start[i + 1] - law->start[i], to->strain, k);
-    for (int i = 0; i < 12; i++) {
-        if (t->link[4 * l + 1 + i / 6] < 0) continue;
-        lanes *f = to->force + i * k;
-        weigh_row(f, mass + 12 * i, law->column + law->start[6 + i], law->start[7 + i] - law->start[6 + i], to->twist, k);
-        UNROLL for (int c = 0; c < k; c++) f[c] = i < 6 ? -pull[i * k + c] - mean[c] * f[c] : pull[(i - 6) * k + c] - mean[c] * f[c];
+    for (int i = 0; i < (turned ? 6 : 3); i++) {
+        lanes pull[MODES];
+        weigh_row(pull, stiff + 6 * i, law->column + law->start[i], law->start[i + 1] - law->start[i], to->strain, k);
+        for (int side = 0; side < 2; side++) {
+            const int row = 6 * side + i;
+            lanes *f = to->force + row * k, push[MODES];
+            if (t->link[4 * l + 1 + side] < 0) continue;
+            weigh_row(push, mass + 12 * row, law->column + law->start[6 + row], law->start[7 + row] - law->start[6 + row], to->twist, k);
+            UNROLL for (int c = 0; c < k; c++) f[c] = side ? pull[c] - mean[c] * push[c] : -pull[c] - mean[c] * push[c];
+        }
     }
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
@@ -1175,15 +1231,20 @@ static INLINE void law_slots(const Task *t, int64_t l, const Moved *at, lanes *s
     const int64_t part = t->link[4 * l];
     const int least = t->link[4 * l + 1] < 0 ? 6 : 0, most = t->link[4 * l + 2] < 0 ? 6 : 12;
     for (int64_t s = t->reach[part]; s < t->reach[part + 1]; s++, sum += n) {
-        const int row = (int)t->slot[5 * s + 2], column = (int)t->slot[5 * s + 3], sign = (int)t->slot[5 * s + 4];
-        const double factor = row == column ? 1.0 : 2.0;
-        if (t->slot[5 * s] == STIFFNESS) gain(sum, at->strain + row * k, at->strain + column * k, factor, 1, of, crossed, k);
+        const int row = (int)t->slot[5 * s + 2], column = (int)t->slot[5 * s + 3], one = (row + 6) % 12, two = (column + 6) % 12;
+        const double factor = row == column ? 1.0 : 2.0, other = (double)t->slot[5 * s + 4] * factor;
+        const lanes *x = at->twist + row * k, *y = at->twist + column * k;
+        if (t->slot[5 * s] == STIFFNESS) {
+            gain(sum, at->strain + row * k, at->strain + column * k, factor, 1, of, crossed, k);
+            continue;
+        }
+        const int own = row >= least && column < most, mirrored = other != 0.0 && one >= least && two >= least && one < most && two < most;
+        const lanes *u = at->twist + one * k, *v = at->twist + two * k;
+        if (own && mirrored && !crossed)
+            UNROLL for (int p = 0; p < k; p++) sum[p] += factor * x[p] * y[p] + other * u[p] * v[p];
         else {
-            if (row >= least && column < most) gain(sum, at->twist + row * k, at->twist + column * k, factor, 1, of, crossed, k);
-            if (!sign) continue;
-            const int one = (row + 6) % 12, two = (column + 6) % 12;
-            if (one >= least && two >= least && one < most && two < most)
-                gain(sum, at->twist + one * k, at->twist + two * k, sign * factor, 1, of, crossed, k);
+            if (own) gain(sum, x, y, factor, 1, of, crossed, k);
+            if (mirrored) gain(sum, u, v, other, 1, of, crossed, k);
         }
     }
 }
@@ -1260,7 +1321,7 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
         if (law && more) law_slots(t, l, &at, own, of, 1, k, n);
         if (law && last) weigh_slots(t, part, own, of, k, n), contract(t, w, part, own, n);
         if (!moves) continue;
-        load_link(t, w, l, &at, of->mean, k), place_slots(t, w, l, &at, other, of, 0, k, n);
+        load_link(t, w, l, &at, of->mean, t->slot[5 * t->reach[place]] == TURN, k), place_slots(t, w, l, &at, other, of, 0, k, n);
         if (more) place_slots(t, w, l, &at, other, of, 1, k, n);
         contract(t, w, place, other, n);
     }

@@ -46,6 +46,14 @@ class Planes:
     axes: Array
     span: float
 
+    @property
+    def members(self) -> tuple[Array, Array]:
+        """Where the bodies of each port's tree that stand for themselves begin among them all, and these."""
+        bodies = np.flatnonzero((self.through[: len(self.axes)] >= 0) & (self.model[: len(self.axes)] == np.arange(len(self.axes))))
+        ports = self.gate[self.through[bodies], 0]
+        order = np.argsort(ports, kind="stable")
+        return np.searchsorted(ports[order], np.arange(len(self.copies) - len(self.axes) + 1)), bodies[order]
+
     def later(self, scheme: Scheme) -> Array:
         """The later body of every edge, or the port that stands for the platform."""
         bodies = len(scheme.graph.order)
