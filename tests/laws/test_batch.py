@@ -151,7 +151,8 @@ def told_and_stepped(stage: Mechanism, names: tuple[str, ...]) -> None:
             result = set_value(result, name, number)
         return result
 
-    stepped, found, numbers = slopes_of(drawn_family(draw, names, own.nominal), values), slopes_of(own, values), np.abs(numbers_of(own, values))
+    stepped, found = slopes_of(drawn_family(draw, names, own.nominal), values), slopes_of(own, values)
+    numbers = np.abs(numbers_of(own, values))
     known, others = (dict(each_change(slopes)) for slopes in (found, stepped))
     assert known.keys() <= others.keys()
     for (variable, place, row), other in others.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -53,7 +53,7 @@ _PLANES = (*_OWN, "tree", "member")
 _TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "still", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
-_RESULTS = ("values", "share", "good", "slopes")
+_RESULTS = ("values", "share", "good", "slopes", "between", "crossed")
 
 
 class _Task(ctypes.Structure):
@@ -84,8 +84,9 @@ class Tables:
     def arrays(self) -> Mapping[str, Array]:
         """Every table."""
         tree, member = self.planes.members
-        own = {"later": self.planes.later(self.scheme), "tree": tree, "member": member, **{name: getattr(self.planes, name) for name in _OWN}}
-        return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **own}
+        trees = {"later": self.planes.later(self.scheme), "tree": tree, "member": member}
+        own = {name: getattr(self.planes, name) for name in _OWN}
+        return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **trees, **own}
 
 
 def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) -> Solution:
@@ -108,12 +109,19 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
     count = stage.numbers.shape[1]
     values, share, slopes = (job.results[name][..., :count].T for name in ("values", "share", "slopes"))
     good = job.results["good"][:count]
-    found, other = Solution(values, share, good > 0, slopes), np.flatnonzero(good < 0)
-    if len(other):
-        whole = by_kernel(library, stage.take(other), start, tables.whole)
-        for field in fields(Solution):
-            getattr(found, field.name)[other] = getattr(whole, field.name)
-    return found
+    found = Solution(values, share, good > 0, slopes, _between(job.results, count))
+    other = np.flatnonzero(good < 0)
+    return found.put(other, by_kernel(library, stage.take(other), start, tables.whole)) if len(other) else found
+
+
+def _between(results: Mapping[str, Array], count: int) -> Array | None:
+    """What is between modes of clusters, where there are any."""
+    used = np.flatnonzero(results["crossed"])
+    if not len(used):
+        return None
+    found = np.zeros_like(results["between"])
+    found[used] = results["between"][used]
+    return np.moveaxis(found, 3, 1).reshape(-1, *found.shape[1:3])[:count].swapaxes(1, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +155,9 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
         "values": np.empty((modes, stride)),
         "share": np.empty((modes, stride)),
         "good": np.zeros(stride, dtype=np.int64),
-        "slopes": np.zeros((modes * (modes + 1) // 2, stage.variables, stride)),
+        "slopes": np.empty((modes, stage.variables, stride)),
+        "between": np.empty((stride // width, modes * (modes - 1) // 2, stage.variables, width)),
+        "crossed": np.zeros(stride // width, dtype=np.int64),
     }
     task = _task(stage, start, tables, (count, number.strides[0] // 8, change.strides[0] // 8, stride))
     for name, item in (held | results).items():

@@ -281,9 +281,7 @@ def iterate(plan_: Plan, stage: Stage, method: Method = Method.FASTEST) -> Solut
     found = _from(plan_, stage, plan_.start, method)
     left = np.flatnonzero(~found.good)
     if plan_.wider is not None and len(left):
-        more = _from(plan_, stage.take(left), plan_.wider, method)
-        for field in fields(Solution):
-            getattr(found, field.name)[left] = getattr(more, field.name)
+        return found.put(left, _from(plan_, stage.take(left), plan_.wider, method))
     return found
 
 

@@ -63,7 +63,9 @@ typedef struct {
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
     int64_t *good;          /* designs: 1, 0 for what is not proved, -1 where legs have not these planes */
-    double *slopes;         /* pairs (i, i), then (i, j > i), x variables x stride, zero */
+    double *slopes;         /* count x variables x stride: of each mode with itself */
+    double *between;        /* vectors of designs x pairs (i, j > i) by rows x variables x WIDTH, where `crossed` */
+    int64_t *crossed;       /* vectors of designs: whether some modes are clusters in one of them; 0 before */
 } Task;
 
 #define INLINE inline __attribute__((always_inline))
@@ -268,7 +270,7 @@ typedef struct {
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
     lanes *now, *next, *force, *ahead, *start; /* blocks of vectors; those to begin with are the same in all lanes */
-    lanes *shapes, *placed;          /* modes found (rows, count), and of each body in the stage's axes (6 bodies, count) */
+    lanes *found, *shapes, *placed;  /* modes (count, rows), where they are kept, and of each body in the stage's axes (6 bodies, count) */
     View *view;                      /* of every gate */
     Side *side;                      /* of every link of a leg with a plane */
     lanes *sum, *slope;              /* slots of a group x pairs, variables x pairs */
@@ -1358,11 +1360,11 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
         }
     }
     for (int64_t b = 0; b < t->bodies; b++) {
-        const lanes *x = w->shapes + t->row[b] * k;
+        const lanes *x = w->found + t->row[b];
         lanes u[6], *to = w->placed + 6 * k * b;
-        const int64_t own = t->through[b], next = t->copies[b] * k;
+        const int64_t own = t->through[b], next = t->copies[b];
         for (int c = 0; c < k; c++) {
-            UNROLL for (int i = 0; i < 6; i++) u[own < 0 ? i : SPOT[i]] = x[i * next + c];
+            UNROLL for (int i = 0; i < 6; i++) u[own < 0 ? i : SPOT[i]] = x[c * t->rows + i * next];
             if (own < 0)
                 UNROLL for (int i = 0; i < 6; i++) to[i * k + c] = u[i];
             else {
@@ -1380,39 +1382,41 @@ static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
     if (k == 6 && pairs == 6) sum_slots(t, w, &of, 6, 6); /* the usual case, unrolled by the compiler */
     else if (k == 6) sum_slots(t, w, &of, 6, pairs);
     else sum_slots(t, w, &of, k, pairs);
-    for (int p = 0; p < pairs; p++) {
-        const int i = pair[p].i, j = pair[p].j, row = p < k ? p : k + i * (2 * k - i - 1) / 2 + j - i - 1;
+    for (int p = 0; p < k; p++)
         for (int64_t variable = 0; variable < t->variables; variable++)
-            store(t->slopes + (row * t->variables + variable) * t->stride + design, (lanes)(same[i * k + j] & (marks)w->slope[variable * pairs + p]));
+            store(t->slopes + (p * t->variables + variable) * t->stride + design, w->slope[variable * pairs + p]);
+    if (pairs == k) return;
+    double *const between = t->between + design / WIDTH * (k * (k - 1) / 2) * t->variables * WIDTH;
+    t->crossed[design / WIDTH] = 1;
+    memset(between, 0, sizeof(lanes) * (k * (k - 1) / 2) * t->variables);
+    for (int p = k; p < pairs; p++) {
+        const int i = pair[p].i, j = pair[p].j, row = i * (2 * k - i - 1) / 2 + j - i - 1;
+        for (int64_t variable = 0; variable < t->variables; variable++)
+            store(between + (row * t->variables + variable) * WIDTH, (lanes)(same[i * k + j] & (marks)w->slope[variable * pairs + p]));
     }
 }
 
 /* ---- one vector of designs ---- */
 
-/* The modes of the lanes that are done in this round and were not before. */
+/* The modes of the lanes that are done in this round and were not before. Where they all are, and are the same ones, they stay where they are. */
 static void keep(const Task *t, Room *w, const Ritz *known, const Verdict *verdict, marks fresh, lanes *value, lanes *share)
 {
     const int m = (int)t->single, k = (int)t->count;
-    const int64_t n = 6 * t->bodies;
-    for (int c = 0; c < k; c++) {
-        int from[WIDTH], first = -1, alike = 1;
+    int from[MODES][WIDTH], whole = !any(~fresh);
+    for (int c = 0; c < k; c++)
         for (int lane = 0; lane < WIDTH; lane++) {
             if (!fresh[lane]) continue;
             int at = 0;
             for (int seen = -1; at < m; at++)
                 if (verdict[lane].mask[at] && ++seen == c) break;
-            from[lane] = at, first = first < 0 ? at : first, alike &= at == first;
+            from[c][lane] = at, whole &= at == c;
             value[c][lane] = known->values[at][lane], share[c][lane] = known->share[at][lane];
         }
-        if (!t->variables) continue;
-        for (int64_t r = 0; r < n; r++) {
-            lanes *to = w->shapes + r * k + c;
-            if (alike) *to = pick(fresh, w->now[first * t->rows + r], *to);
-            else
-                for (int lane = 0; lane < WIDTH; lane++)
-                    if (fresh[lane]) (*to)[lane] = w->now[from[lane] * t->rows + r][lane];
-        }
-    }
+    w->found = whole ? w->now : w->shapes;
+    for (int c = 0; c < k && t->variables && !whole; c++)
+        for (int64_t r = 0; r < 6 * t->bodies; r++)
+            for (int lane = 0; lane < WIDTH; lane++)
+                if (fresh[lane]) w->shapes[c * t->rows + r][lane] = w->now[from[c][lane] * t->rows + r][lane];
 }
 
 static void designs(const Task *t, Room *w, int64_t design)
@@ -1423,7 +1427,7 @@ static void designs(const Task *t, Room *w, int64_t design)
     Count told = {all(0.0), all(INFINITY)};
     int left = WIDTH;
     for (int i = 0; i < t->count; i++) value[i] = all(1.0), share[i] = all(0.0);
-    if (t->variables) memset(w->shapes, 0, sizeof(lanes) * 6 * t->bodies * t->count);
+    w->found = w->shapes; /* of lanes that are never done some modes or other: they are not told */
     for (int lane = 0; lane < WIDTH; lane++) verdict[lane].done = 0;
     const marks bad = assemble(t, w);
     if (!any(~bad)) {
@@ -1518,9 +1522,9 @@ int64_t flexstage_width(void) { return WIDTH; }
 /* Every design of the task; 0, or 1 where that is too much. */
 int64_t flexstage_modes(const Task *t)
 {
-    const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, shapes = 6 * t->bodies * t->count, pairs = t->count * (t->count + 1) / 2;
+    const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, pairs = t->count * (t->count + 1) / 2;
     const int64_t sizes[] = {block, t->numbers, AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
-                             shapes, shapes, t->widest * pairs, t->variables * pairs};
+                             t->rows * t->count, 6 * t->bodies * t->count, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
     for (int i = 0; i < count; i++) total += sizes[i] + 1;
@@ -1530,6 +1534,7 @@ int64_t flexstage_modes(const Task *t)
     lanes **parts[] = {&w.start, &w.number, &w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
                        &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.placed, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
+    if (memory) memset(w.shapes, 0, sizeof(lanes) * t->rows * t->count);
     int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
     char *const filled = malloc(t->numbers);
     int64_t *const crossing = malloc(sizeof(int64_t) * 180 * t->links);

@@ -37,16 +37,18 @@ def locked_solution(family: Family, values: Array, choice: Choice, *, slopes: bo
     found, shapes = modes.values[None, picked], modes.shapes[:, picked]
     group = groups(found, choice.cluster)
     value = means(found, group)[0]
-    result = np.zeros((1, variables, len(picked), len(picked)))
+    (rows, columns), diagonal = np.triu_indices(len(picked), 1), range(len(picked))
+    own, between = np.zeros((1, variables, len(picked))), np.zeros((1, variables, len(rows)))
     for variable in range(variables):
         change = lumped(step_numbers(family, mechanism, values[None], (variable,)))
         stiff, heavy = (_project(items, shapes) / width(family, variable) for items in (change.stiffness, change.inertia))
-        result[0, variable] = np.where(group[0][:, None] == group[0], stiff - value * heavy, 0.0)
-    return Solution(found, modes.share[None, picked], np.array([True]), result)
+        slope = np.where(group[0][:, None] == group[0], stiff - value * heavy, 0.0)
+        own[0, variable], between[0, variable] = slope[diagonal, diagonal], slope[rows, columns]
+    return Solution(found, modes.share[None, picked], np.array([True]), own, between)
 
 
 def _none(variables: int) -> Solution:
-    return Solution(np.zeros((1, 0)), np.zeros((1, 0)), np.array([False]), np.zeros((1, variables, 0, 0)))
+    return Solution(np.zeros((1, 0)), np.zeros((1, 0)), np.array([False]), *2 * (np.zeros((1, variables, 0)),))
 
 
 def _modes(model: LinearModel) -> Whole:

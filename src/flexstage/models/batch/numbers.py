@@ -139,7 +139,7 @@ class Family:
 
     @cached_property
     def moving(self) -> tuple[Change, ...]:
-        """Every change that is not zero at three designs near the nominal one: the others are zero by the form of the formulas, or by units.
+        """Every change that is not zero at three designs near the nominal one: others are zero by the form of the formulas, or by units.
 
         Every one there can be where no three of them can be described.
         """
@@ -429,7 +429,10 @@ def _slopes(
     told: Mapping[Key, tuple[Told, ...]],
     dropped: Mapping[int, tuple[Change, ...]],
 ) -> tuple[Array, Array, Array, Array | None]:
-    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers, which `still`."""
+    """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers.
+
+    And which of the numbers are the same in all designs.
+    """
     features_ = {place.key: place for place in family_.topology.features}
     numbers, missed = empty_rows(family_.topology.count, len(values)), np.zeros(len(values), dtype=bool)
     still = np.zeros(family_.topology.count, dtype=bool)

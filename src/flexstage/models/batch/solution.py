@@ -41,33 +41,42 @@ class Stage:
 class Solution:
     """Eigenvalues `values` (b, k) of the platform's modes, ascending, and its `share` (b, k); `good` (b,) where they are proved.
 
-    `slopes` (b, P, k (k + 1) / 2): Phi^T (dK - lambda dM) Phi of each mode with itself, then of those within clusters, zero between them:
-    the upper half of `matrices`, by its diagonal and then by its rows.
+    `slopes` (b, P, k): Phi^T (dK - lambda dM) Phi of each mode with itself; `between` (b, P, k (k - 1) / 2) of pairs i < j by rows,
+    zero but within clusters: none where there are no clusters.
     """
 
     values: Array
     share: Array
     good: Array
     slopes: Array
+    between: Array | None
 
     @property
     def matrices(self) -> Array:
         """The slopes as symmetric matrices (b, P, k, k)."""
         count = self.values.shape[1]
-        place = np.empty((count, count), dtype=int)
-        for number, (row, column) in enumerate(zip(*_upper(count), strict=True)):
-            place[row, column] = place[column, row] = number
-        return self.slopes[..., place]
+        result = np.zeros((*self.slopes.shape, count))
+        result[..., range(count), range(count)] = self.slopes
+        if self.between is not None:
+            rows, columns = np.triu_indices(count, 1)
+            result[..., rows, columns] = result[..., columns, rows] = self.between
+        return result
 
     def take(self, designs: Array | slice) -> Solution:
         """Those of some designs."""
-        return Solution(self.values[designs], self.share[designs], self.good[designs], self.slopes[designs])
+        between = None if self.between is None else self.between[designs]
+        return Solution(self.values[designs], self.share[designs], self.good[designs], self.slopes[designs], between)
 
-
-def _upper(count: int) -> tuple[Array, Array]:
-    """Rows and columns of the upper half of a matrix: its diagonal, then by rows."""
-    diagonal, (rows, columns) = np.arange(count), np.triu_indices(count, 1)
-    return np.concatenate([diagonal, rows]), np.concatenate([diagonal, columns])
+    def put(self, designs: Array, other: Solution) -> Solution:
+        """The same with another solution of some designs."""
+        for name in ("values", "share", "good", "slopes"):
+            getattr(self, name)[designs] = getattr(other, name)
+        if self.between is None and other.between is None:
+            return self
+        count = self.values.shape[1]
+        between = np.zeros((*self.slopes.shape[:2], count * (count - 1) // 2)) if self.between is None else self.between
+        between[designs] = 0.0 if other.between is None else other.between
+        return replace(self, between=between)
 
 
 def by_iteration(stage: Stage, start: Start) -> Solution:
@@ -87,9 +96,9 @@ def by_iteration(stage: Stage, start: Start) -> Solution:
     picked = np.argsort(~found.mask, axis=1, kind="stable")[:, : start.choice.count]
     values, share = (np.take_along_axis(item, picked, axis=1) for item in (found.ritz.values, found.ritz.share))
     if stage.slopes is None:
-        return Solution(values, share, good, np.zeros((len(values), 0, len(_upper(values.shape[1])[0]))))
+        return Solution(values, share, good, *_no_slopes(stage, values))
     shapes = np.take_along_axis(found.ritz.shapes, picked[:, None, None, :], axis=-1)
-    return Solution(values, share, good, _slopes(stage, shapes, values, start.choice.cluster))
+    return Solution(values, share, good, *_slopes(stage, shapes, values, start.choice.cluster))
 
 
 def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array, start: Start) -> Found:
@@ -112,19 +121,27 @@ def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array
     return Found(found.ritz, found.mask, found.proved & firm)
 
 
-def _slopes(stage: Stage, shapes: Array, values: Array, gap: float) -> Array:
-    group = groups(values, gap)
-    rows, columns = _upper(values.shape[1])
-    result = np.zeros((len(values), stage.variables, len(rows)))
+def _slopes(stage: Stage, shapes: Array, values: Array, gap: float) -> tuple[Array, Array]:
+    """Slopes of each mode with itself, and those between modes."""
+    group, count = groups(values, gap), values.shape[1]
+    (rows, columns), diagonal = np.triu_indices(count, 1), range(count)
+    own, between = _no_slopes(stage, values)
     if stage.slopes is None:
-        return result
+        return own, between
     seen = motion(stage.scheme, stage.numbers, shapes, means(values, group))
     start = 0
     for change in stage.slopes.changes:
         stop = start + len(change.rows)
-        result[:, change.variable] += slope(stage.scheme, seen, change, stage.slopes.values[start:stop])[:, rows, columns]
+        found = slope(stage.scheme, seen, change, stage.slopes.values[start:stop])
+        own[:, change.variable] += found[:, diagonal, diagonal]
+        between[:, change.variable] += found[:, rows, columns]
         start = stop
-    return np.where((group[:, rows] == group[:, columns])[:, None], result, 0.0)
+    return own, np.where((group[:, rows] == group[:, columns])[:, None], between, 0.0)
+
+
+def _no_slopes(stage: Stage, values: Array) -> tuple[Array, Array]:
+    count = values.shape[1]
+    return np.zeros((len(values), stage.variables, count)), np.zeros((len(values), stage.variables, count * (count - 1) // 2))
 
 
 def wholly(stage: Stage, choice: Choice) -> list[Solution]:
@@ -147,9 +164,8 @@ def wholly(stage: Stage, choice: Choice) -> list[Solution]:
         values, share = (np.stack([getattr(modes[at], name)[picked[at]] for at in designs]) for name in ("values", "share"))
         shapes = np.stack([modes[at].shapes[order][:, picked[at]] for at in designs])
         shapes = shapes.reshape(len(designs), len(stage.scheme.graph.order), 6, count)
-        slopes = _slopes(stage.take(np.array(designs)), shapes, values, choice.cluster)
         good = np.array([bool(len(modes[at].values)) for at in designs])
-        found = Solution(values, share, good, slopes)
+        found = Solution(values, share, good, *_slopes(stage.take(np.array(designs)), shapes, values, choice.cluster))
         result |= {at: found.take(np.array([place])) for place, at in enumerate(designs)}
     return [result[design] for design in range(len(modes))]
 
@@ -184,20 +200,19 @@ def platform_indices(modes: Whole, choice: Choice) -> Array:
 def keep(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
     """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
 
-    >>> slopes = np.array([[[1.0, 2.0, 4.0, 0.0, 0.0, 0.0]]])
-    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), slopes)
+    >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.array([[[1.0, 2.0, 4.0]]]), None)
     >>> left, mean = keep(both, Choice(count=2))
     >>> left.values.tolist(), mean.tolist()
     ([[1.0, 4.0]], [[[1.0, 3.0]]])
     """
     group = groups(solution.values, choice.cluster)
-    diagonal = solution.slopes[..., : solution.values.shape[1]]
-    mean = np.swapaxes(means(np.swapaxes(diagonal, 1, 2), group), 1, 2)
+    mean = np.swapaxes(means(np.swapaxes(solution.slopes, 1, 2), group), 1, 2)
     if solution.values.shape[1] <= choice.count:
         return solution, mean
     whole_share = means(solution.share, groups(np.sqrt(solution.values), choice.cluster))
     best = np.sort(np.argsort(-whole_share, axis=1, kind="stable")[:, : choice.count], axis=1)
     values, share = (np.take_along_axis(item, best, axis=1) for item in (solution.values, solution.share))
     slopes = np.take_along_axis(np.take_along_axis(solution.matrices, best[:, None, None, :], 3), best[:, None, :, None], 2)
-    slopes = slopes[:, :, *_upper(choice.count)]
-    return Solution(values, share, solution.good, slopes), np.take_along_axis(mean, best[:, None, :], axis=2)
+    own, (rows, columns) = range(choice.count), np.triu_indices(choice.count, 1)
+    left = Solution(values, share, solution.good, slopes[..., own, own], slopes[..., rows, columns])
+    return left, np.take_along_axis(mean, best[:, None, :], axis=2)
