@@ -506,6 +506,55 @@ def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> Non
         assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
 
 
+@pytest.mark.skipif(kernel() is None, reason="no compiler")
+@pytest.mark.parametrize("kind", ["first", "turn", "inertia"])
+def test_legs_that_are_equal_near_the_nominal_design_need_not_be_so_elsewhere(kind: str) -> None:
+    """Arms, axes and bodies of B3 are those of B1, whose matrices serve for both, but in every other design."""
+    family_plan = plan(double_triangle(), ("parts.neck.thickness",))
+    assert set(family_plan.planes.copies.tolist()) == {1, 3}
+    stage = stage_of(family_plan, designs(family_plan, 9, 0.05))
+    names = list(expand(double_triangle()).links)
+    owner = stage.scheme.topology.bodies.index("B3/tip") if kind == "inertia" else names.index("B3/front")
+    place = next(place for place in stage.scheme.topology.features if (place.kind, place.owner) == (kind, owner))
+    odd = stage.numbers[place.slots, 1::2]
+    if kind == "turn":
+        odd[:] = np.roll(odd.reshape(3, 3, -1), 1, axis=1).reshape(9, -1)  # the hinge turned by a third about its diagonal
+    else:
+        odd[:] *= 1.01  # an arm in the leg's plane, a body that is heavier
+    found, known = iterate(family_plan, stage), wholly(stage, family_plan.choice)
+    assert found.good.all()
+    np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-11)
+    scale = np.max(np.abs(found.slopes), axis=(0, 2))[:, None]
+    assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-8
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_one_end_of_a_mirrored_mass_tells_what_both_tell(method: Method) -> None:
+    family_plan = plan(double_triangle(), SHARED + SINGLE)
+    values = designs(family_plan, 9, 0.05)
+    assert len(family_plan.family.mirrored) == family_plan.family.topology.parts
+    stages = [Stage(family_plan.scheme, *numbered(family_plan.family, values, wide=wide)) for wide in (False, True)]
+    assert len(stages[0].slopes.values) < len(stages[1].slopes.values)  # type: ignore[union-attr]
+    one, both = (iterate(family_plan, stage, method) for stage in stages)
+    scale = np.max(np.abs(both.slopes), axis=(0, 2))[:, None]
+    np.testing.assert_allclose(one.slopes / scale, both.slopes / scale, rtol=0.0, atol=1e-12)
+
+
+def numbered(family: Family, values: np.ndarray, *, wide: bool) -> tuple[np.ndarray, int, Slopes]:
+    numbers, slopes = numbers_and_slopes(family, values, wide=wide)
+    return numbers, values.shape[1], slopes
+
+
+def test_a_mass_that_is_not_mirrored_in_a_design_is_missed_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such designs are solved again with both ends."""
+    family_plan = plan(double_triangle(), ("parts.neck.thickness",))
+    values = designs(family_plan, 4, 0.05)
+    whole = platform_modes(family_plan, values, slopes=True)
+    monkeypatch.setattr("flexstage.models.batch.numbers.is_mirrored", lambda numbers, place: np.arange(numbers.shape[1]) % 2 == 0)
+    assert slopes_of(family_plan.family, values).missed.tolist() == [False, True, False, True]
+    np.testing.assert_allclose(platform_modes(family_plan, values, slopes=True).gradient, whole.gradient, rtol=1e-9)
+
+
 @given(st.integers(2, 9).flatmap(lambda count: st.tuples(st.just(count), st.sets(st.tuples(st.integers(0, 8), st.integers(0, 8))))))
 @examples(50, 1000)
 def test_elimination_orders_any_graph(drawn) -> None:
