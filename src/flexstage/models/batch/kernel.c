@@ -71,8 +71,10 @@ typedef struct {
 #define INLINE inline __attribute__((always_inline))
 #if defined(__clang__)
 #define UNROLL /* does so by itself, and worse where told to */
+#define EACH_MODE
 #else
 #define UNROLL _Pragma("GCC unroll 36") /* small fixed loops: what they work on stays in registers */
+#define EACH_MODE _Pragma("GCC unroll 12")
 #endif
 
 /* ---- lanes ---- */
@@ -559,7 +561,7 @@ static INLINE void eliminate_tree(const Task *t, Room *w, int64_t v, lanes shift
 }
 
 /* A product of two edges of body v, which elimination subtracts from what is between later bodies. */
-static INLINE void join_update(const Task *t, Room *w, int64_t v, const int64_t *edges)
+static INLINE void join_update(Room *w, int64_t v, const int64_t *edges)
 {
     const lanes *own = w->other + OWN * v, *x = w->other_edge + 36 * edges[0], *y = w->other_edge + 36 * edges[1];
     for (int c = 0; c < 6; c++) {
@@ -579,7 +581,7 @@ static INLINE void eliminate_whole(const Task *t, Room *w, int64_t v, lanes shif
     for (int64_t u = t->product[v]; u < t->product[v + 1]; u++) {
         lanes *later = w->other + OWN * t->later[t->update[3 * u]];
         const lanes *x = w->other_edge + 36 * t->update[3 * u];
-        if (t->update[3 * u + 2] >= 0) join_update(t, w, v, t->update + 3 * u);
+        if (t->update[3 * u + 2] >= 0) join_update(w, v, t->update + 3 * u);
         else update(later, x, own, 3), update(later, x, own, 0);
     }
 }
@@ -1157,24 +1159,24 @@ static INLINE void gain(lanes *sum, const lanes *a, const lanes *b, double facto
             sum[p] = more ? sum[p] + x : x;
         }
     else
-        UNROLL for (int p = 0; p < k; p++) sum[p] = more ? sum[p] + factor * a[p] * b[p] : factor * a[p] * b[p];
+        EACH_MODE for (int p = 0; p < k; p++) sum[p] = more ? sum[p] + factor * a[p] * b[p] : factor * a[p] * b[p];
 }
 
 /* out (k) = the entries of a row of a law times x (k columns). */
 static INLINE void weigh_row(lanes *out, const lanes *row, const int *column, int entries, const lanes *x, const int k)
 {
     lanes sum[MODES];
-    UNROLL for (int c = 0; c < k; c++) sum[c] = all(0.0);
+    for (int c = 0; c < MODES; c++) sum[c] = all(0.0);
     for (int at = 0; at < entries; at++) {
         const lanes own = row[column[at]], *y = x + column[at] * k;
-        UNROLL for (int c = 0; c < k; c++) sum[c] += own * y[c];
+        EACH_MODE for (int c = 0; c < k; c++) sum[c] += own * y[c];
     }
-    UNROLL for (int c = 0; c < k; c++) out[c] = sum[c];
+    EACH_MODE for (int c = 0; c < k; c++) out[c] = sum[c];
 }
 
 /* A link in the modes: twists of its ends in its axes (12, k), strains (6, k), motions of its place as either body moves it (3, k each) in the stage's
  * axes, forces less lambda times momenta on its ends (12, k) and their first halves in the stage's axes. */
-typedef struct { lanes twist[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES]; } Moved;
+typedef struct { lanes twist[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES], pull[MODES]; } Moved;
 
 static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to, const int k)
 {
@@ -1187,7 +1189,7 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
             continue;
         }
         const lanes *a = w->number + t->start[3 + side] + 3 * l, *x = w->placed + 6 * k * body, *o = x + 3 * k;
-        UNROLL for (int c = 0; c < k; c++) {
+        EACH_MODE for (int c = 0; c < k; c++) {
             const lanes one = o[c], two = o[k + c], three = o[2 * k + c];
             const lanes p = u[c] = x[c] + (a[1] * three - a[2] * two);
             const lanes q = u[k + c] = x[k + c] + (a[2] * one - a[0] * three);
@@ -1199,7 +1201,7 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
         }
     }
     for (int i = 0; i < 6; i++)
-        UNROLL for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
+        EACH_MODE for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
 }
 
 /* `turned`: moments too, which only axes feel. */
@@ -1209,20 +1211,21 @@ static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to,
     const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
     const Law *law = w->law + t->link[4 * l];
     for (int i = 0; i < (turned ? 6 : 3); i++) {
-        lanes pull[MODES];
+        lanes *const pull = to->pull;
         weigh_row(pull, stiff + 6 * i, law->column + law->start[i], law->start[i + 1] - law->start[i], to->strain, k);
         for (int side = 0; side < 2; side++) {
             const int row = 6 * side + i;
-            lanes *f = to->force + row * k, push[MODES];
+            lanes *const f = to->force + row * k;
+            const double sign = side ? 1.0 : -1.0;
             if (t->link[4 * l + 1 + side] < 0) continue;
-            weigh_row(push, mass + 12 * row, law->column + law->start[6 + row], law->start[7 + row] - law->start[6 + row], to->twist, k);
-            UNROLL for (int c = 0; c < k; c++) f[c] = side ? pull[c] - mean[c] * push[c] : -pull[c] - mean[c] * push[c];
+            weigh_row(f, mass + 12 * row, law->column + law->start[6 + row], law->start[7 + row] - law->start[6 + row], to->twist, k);
+            EACH_MODE for (int c = 0; c < k; c++) f[c] = sign * pull[c] - mean[c] * f[c];
         }
     }
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
             const lanes *f = to->force + 6 * side * k;
-            UNROLL for (int c = 0; c < k; c++)
+            EACH_MODE for (int c = 0; c < k; c++)
                 to->world[(3 * side + i) * k + c] = r[3 * i] * f[c] + r[3 * i + 1] * f[k + c] + r[3 * i + 2] * f[2 * k + c];
         }
 }
@@ -1243,7 +1246,7 @@ static INLINE void law_slots(const Task *t, int64_t l, const Moved *at, lanes *s
         const int own = row >= least && column < most, mirrored = other != 0.0 && one >= least && two >= least && one < most && two < most;
         const lanes *u = at->twist + one * k, *v = at->twist + two * k;
         if (own && mirrored && !crossed)
-            UNROLL for (int p = 0; p < k; p++) sum[p] += factor * x[p] * y[p] + other * u[p] * v[p];
+            EACH_MODE for (int p = 0; p < k; p++) sum[p] += factor * x[p] * y[p] + other * u[p] * v[p];
         else {
             if (own) gain(sum, x, y, factor, 1, of, crossed, k);
             if (mirrored) gain(sum, u, v, other, 1, of, crossed, k);
@@ -1280,10 +1283,13 @@ static INLINE void weigh_slots(const Task *t, int64_t group, lanes *sum, const W
 {
     for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
         if (t->slot[5 * s] == STIFFNESS) continue;
-        UNROLL for (int p = 0; p < k; p++) sum[p] *= -of->mean[p];
+        EACH_MODE for (int p = 0; p < k; p++) sum[p] *= -of->mean[p];
         for (int p = k; p < n; p++) sum[p] *= -of->mean[of->pair[p].i];
     }
 }
+
+/* Whether the compiler knows a number. */
+#define KNOWN(n) __builtin_constant_p(n)
 
 /* From the slots of a group (a part, a link, a body) to variables; n is the number of pairs. */
 static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *sum, const int n)
@@ -1291,18 +1297,18 @@ static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *
     sum -= t->reach[group] * n;
     for (int64_t e = t->about[group]; e < t->about[group + 1];) {
         const int64_t variable = t->entry[3 * e];
-        lanes own[MODES], *to = w->slope + variable * n;
-        if (n > MODES) {
+        lanes own[6], *to = w->slope + variable * n; /* the usual six modes where their number is known */
+        if (!KNOWN(n)) {
             for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++)
                 for (int p = 0; p < n; p++) to[p] += w->change[e] * sum[t->entry[3 * e + 1] * n + p];
             continue;
         }
-        UNROLL for (int p = 0; p < n; p++) own[p] = to[p];
+        EACH_MODE for (int p = 0; p < n; p++) own[p] = to[p];
         for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++) {
             const lanes change = w->change[e], *of = sum + t->entry[3 * e + 1] * n;
-            UNROLL for (int p = 0; p < n; p++) own[p] += change * of[p];
+            EACH_MODE for (int p = 0; p < n; p++) own[p] += change * of[p];
         }
-        UNROLL for (int p = 0; p < n; p++) to[p] = own[p];
+        EACH_MODE for (int p = 0; p < n; p++) to[p] = own[p];
     }
 }
 
@@ -1342,7 +1348,7 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
 
 static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
 {
-    const int k = (int)t->count;
+    const int k = t->count < MODES ? (int)t->count : MODES;
     Pair pair[MODES * MODES];
     marks same[MODES * MODES];
     lanes mean[MODES];

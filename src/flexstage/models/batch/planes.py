@@ -131,8 +131,8 @@ def planes(scheme: Scheme, numbers: Array, near: Array | None = None) -> Planes:
 
 
 def _span(scheme: Scheme, numbers: Array) -> float:
-    """The longest arm."""
-    return float(max(np.max(np.abs(of_kind(scheme, numbers, kind))) for kind in ("first", "second")))
+    """The longest arm; 1 where all links are at the points of their bodies."""
+    return float(max(np.max(np.abs(of_kind(scheme, numbers, kind))) for kind in ("first", "second"))) or 1.0
 
 
 def _way_out(scheme: Scheme, leg: Leg) -> tuple[int, int]:
