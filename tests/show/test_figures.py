@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import base64
+import contextlib
+import io
 import json
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
+from matplotlib.image import imread
 
 from flexstage.analysis.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
@@ -16,6 +22,7 @@ from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import compact_svg, share_styles, to_png, to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
+from flexstage.show.figures.ruler import ruled
 from flexstage.show.figures.spectrum import spectrum_figure
 from flexstage.show.figures.style import canvas, style_context
 from flexstage.show.figures.workspace import workspace_figure
@@ -105,7 +112,7 @@ def test_marks_of_one_look_are_one_path_and_stand_where_matplotlib_puts_them() -
         axes = figure.add_axes((0.2, 0.2, 0.7, 0.7))
         axes.plot(x, x**2, "s", color="#009988")
     text = sound(figure, "marks")
-    mark, places = re.findall(r'<marker id="([^"]+)".*?<path d="M([^"]+)"', text)[0]
+    mark, places = re.findall(r'<marker id="([^"]+)".*?<path d="M([^"]+)"', text)[-1]  # the first are the marks of the axes
     assert f"marker:url(#{mark})" in text
     ends = axes.transData.transform(np.stack([x, x**2], axis=1)) * 72.0 / figure.dpi
     assert np.allclose(np.array(places.split(), dtype=float).reshape(-1, 2), np.stack([ends[:, 0], 144.0 - ends[:, 1]], axis=1), atol=0.051)
@@ -122,6 +129,70 @@ def test_pictures_of_a_page_share_their_styles_and_keep_their_looks() -> None:
     assert len(shared) == len(set(looks.values())) < len(looks)
     assert "<style>" not in page
     assert page.count("class=&quot;one-0&quot;") == 2
+
+
+def test_what_styles_refer_to_is_in_the_page_that_shares_them() -> None:
+    """Marks of the same look in four axes: their style has a place of its own, so that their new name reaches it."""
+    with style_context():
+        figure = canvas(3.0, 3.0)
+        for axes in figure.subplots(2, 2).ravel():
+            axes.plot([0.0, 1.0], [0.0, 1.0])
+    page, sheet = share_styles(sound(figure, "n"))
+    assert set() != set(re.findall(r"url\(#([^)]+)\)", page + sheet)) <= set(re.findall(r' id="([^"]+)"', page))
+
+
+def straight(axes: Any) -> None:
+    axes.plot([1.0, 2.0, 5.0], [0.003, 0.2, 0.1], "o-")
+    axes.set(xlabel="time [s]", ylabel="stroke [µm]")
+    axes.tick_params(labelsize=6.0, pad=1.0, length=5.0)
+
+
+def logarithmic(axes: Any) -> None:
+    axes.loglog([0.8, 20.0, 3000.0], [1e-3, 20.0, 5.0])
+    axes.set(xlabel="frequency [Hz]", ylabel="magnitude")
+    axes.grid(which="minor", linewidth=0.2)
+
+
+def named(axes: Any) -> None:
+    axes.barh(range(3), [1.0, -2.0, 4.0])
+    axes.set_yticks(range(3), ["B1", "lever_notch.rz", "a\nb"])
+    axes.set_xticks([0.0, 3.0], ["none", "three"], rotation=90, fontsize=5)
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    axes.set(xlim=(-1.0, 3.5), xlabel="share", ylabel="link")
+
+
+def on_the_right(axes: Any) -> None:
+    axes.plot([1.0e6, 1.0e6 + 1.0], [3.0, 4.0])
+    axes.yaxis.tick_right()
+    axes.set(xlabel="x", ylabel="y")
+
+
+@pytest.mark.parametrize("draw", [straight, logarithmic, named, on_the_right])
+def test_axes_of_one_tick_look_as_those_of_matplotlib(draw: Callable[[Any], None], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numbers, names, marks and grid stand where matplotlib puts them, and the figure is afterwards what it was."""
+    with style_context():
+        figure = canvas(3.0, 2.0)
+        draw(figure.add_axes((0.3, 0.3, 0.6, 0.6)))
+    before = to_png(figure)
+    ours = sound(figure, "n")
+    assert to_png(figure) == before
+    with style_context(), rc_context({"path.snap": False}):
+        alone = pixels(figure)
+        with ruled(figure):
+            assert np.max(np.abs(pixels(figure) - alone)) < 0.02
+    monkeypatch.setattr("flexstage.show.figures.ruler.ruled", contextlib.nullcontext)
+    assert written(ours) == written(sound(figure, "n")) != []
+
+
+def written(text: str) -> list[tuple[str, str]]:
+    """The places of texts, and the texts."""
+    return sorted(re.findall(r'<text.*? ((?:x|transform)="[^>]*>)(.*?)</text>', text))
+
+
+def pixels(figure: Any) -> Any:
+    figure.savefig(seen := io.BytesIO(), format="png", dpi=160, facecolor="white")
+    return imread(io.BytesIO(seen.getvalue()))
 
 
 def test_a_dollar_sign_is_a_dollar_sign() -> None:

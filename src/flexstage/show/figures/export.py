@@ -43,9 +43,11 @@ def to_svg(figure: Any, name: str, description: str) -> str:
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
     '<svg viewBox="0 0 72 72" role="im'
     """
+    from flexstage.show.figures.ruler import ruled  # loads matplotlib
+
     buffer = io.StringIO()
     scenery = [each for axes in figure.axes for each in axes.artists if each.get_gid() == SCENERY]
-    with style_context():
+    with style_context(), ruled(figure):
         for each in scenery:
             each.set_visible(False)
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
@@ -248,11 +250,11 @@ def _join_marks(body: str) -> str:
 
 
 def _classes(body: str, name: str) -> tuple[str, str]:
-    """Styles used more than twice become classes of a style sheet of the figure's own."""
+    """Styles used more than twice become classes of a style sheet of the figure's own, but for those that refer to something of it."""
     counts: dict[str, int] = {}
     for style in _STYLE.findall(body):
         counts[style] = counts.get(style, 0) + 1
-    common = [style for style, count in counts.items() if count > 2]
+    common = [style for style, count in counts.items() if count > 2 and "url(#" not in style]
     names = {style: f"{name}-{number}" for number, style in enumerate(common)}
     body = _STYLE.sub(lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], body)
     rules = "".join(f".{names[style]}{{{style}}}" for style in common)
