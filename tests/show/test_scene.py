@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -15,7 +16,7 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.address import get, set_value
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.show.figures.style import canvas
-from flexstage.show.plan import plan_figure
+from flexstage.show.plan import plan_figure, plan_picture
 from flexstage.show.scene.facet import Facet, Kind, Paint, extrude, loft, rectangle
 from flexstage.show.scene.hidden import are_visible
 from flexstage.show.scene.inner import outer
@@ -219,8 +220,10 @@ def test_stages_of_very_many_parts_show_the_outline_of_each(side: Side, monkeypa
 
 
 def test_the_plan_carries_its_dimensions() -> None:
+    """As a file of its own and in a page."""
     mechanism = double_triangle()
     texts = {text.get_text() for axes in plan_figure(mechanism, scene(mechanism)).axes for text in axes.texts}
+    assert set(re.findall(r"<text[^>]*>([^<]+)<", plan_picture(mechanism, scene(mechanism)).svg("plan", "plan"))) == texts - {""}
     assert {"R 85", "R 120", "R 130", "340.64", "90°", "−90°", "envelope 380 × 380", "clear opening 110 × 110", "B1", "S6"} <= texts
 
 

@@ -16,30 +16,32 @@ from matplotlib.path import Path
 from flexstage.base.number import Array
 from flexstage.base.text import printable
 from flexstage.show.figures.export import SCENERY, head, theme_colour
-from flexstage.show.figures.style import PAPER
+from flexstage.show.figures.style import INK, PAPER
 
 Colour: TypeAlias = tuple[float, ...]
 """Red, green, blue and opacity from 0 to 1."""
 
 _NONE: Colour = (0.0, 0.0, 0.0, 0.0)
-_DASHES = (3.7, 1.6)
+DASHES = (3.7, 1.6)
+"""Lengths of a dash and of the gap after it, of a stroke's width."""
+
 _UNITS = 10.0
 """Units of a picture's numbers in a point: steps of a tenth, 0.035 mm on paper, are less than what a printer or a screen resolves."""
-_LETTER = 0.68
-"""Width of a bold letter, of the height of a font."""
+_LETTER = {"bold": 0.68, "normal": 0.6}
+"""Width of a letter, of the height of a font."""
 _ANCHORS = {"left": "start", "center": "middle", "right": "end"}
-_FEET = {"baseline": 0.0, "center": 0.32}
+_FEET = {"baseline": 0.0, "center": 0.32, "bottom": -0.24}
 """How far the foot of letters lies below the place that they are written at, of the height of a font."""
 
 
 @dataclass(frozen=True)
 class Style:
-    """How a stroke is filled and edged; `width` in points."""
+    """How a stroke is filled and edged; `width` in points, `dashes` and the gaps between them in widths."""
 
     fill: Colour = _NONE
     edge: Colour = _NONE
     width: float = 0.0
-    dashed: bool = False
+    dashes: tuple[float, ...] = ()
 
     @property
     def rule(self) -> str:
@@ -49,8 +51,10 @@ class Style:
             said.append(f"fill-opacity:{self.fill[3]:g};shape-rendering:crispEdges")  # or the seams between neighbours show
         if self.edge[3] > 0.0:
             said.append(f"stroke:{_colour(self.edge)};stroke-width:{_UNITS * self.width:g}")
-        if self.dashed:
-            said.append("stroke-dasharray:" + ",".join(f"{_UNITS * each * self.width:g}" for each in _DASHES))
+        if 0.0 < self.edge[3] < 1.0:
+            said.append(f"stroke-opacity:{self.edge[3]:g}")
+        if self.dashes:
+            said.append("stroke-dasharray:" + ",".join(f"{_UNITS * each * self.width:g}" for each in self.dashes))
         return ";".join(said)
 
 
@@ -81,7 +85,7 @@ class Scenery(Artist):
             facecolors=[each.fill for each in styles],
             edgecolors=[each.edge for each in styles],
             linewidths=[each.width for each in styles],
-            linestyles=[(0.0, _DASHES if each.dashed else None) for each in styles],
+            linestyles=[(0.0, each.dashes or None) for each in styles],
             clip_on=False,
         )
         axes: Any = self.axes
@@ -122,20 +126,22 @@ class Paper:
         """Draw strokes over what is there."""
         self.strokes += scenery.strokes
 
-    def plot(self, x: Array, y: Array, *, color: str, linewidth: float) -> None:
-        """A line through points."""
+    def plot(self, x: Array, y: Array, *, color: str, linewidth: float, linestyle: str | tuple[float, tuple[float, ...]] = "-") -> None:
+        """A line through points, whole, dashed ("--") or with other dashes, (0, dashes)."""
         ends = list(pairwise(range(len(x))))
-        self.strokes.append(Stroke(np.stack([x, y], axis=1), Style(edge=channels(color), width=linewidth), ends))
+        dashes = {"-": (), "--": DASHES}[linestyle] if isinstance(linestyle, str) else linestyle[1]
+        self.strokes.append(Stroke(np.stack([x, y], axis=1), Style(edge=channels(color), width=linewidth, dashes=dashes), ends))
 
     def annotate(self, _: str, *, xy: tuple[float, float], xytext: tuple[float, float], arrowprops: Mapping[str, Any]) -> None:
-        """An arrow with a filled head from `xytext` to `xy`."""
+        """An arrow with a filled head from `xytext` to `xy`, or one with two heads ("<|-|>")."""
         tip, start, look = np.array(xy), np.array(xytext), channels(arrowprops["color"])
         along = (tip - start) / np.sqrt((tip - start) @ (tip - start))
-        head = self.per_point * arrowprops["mutation_scale"] * np.stack([0.4 * along, 0.2 * along[::-1] * [1.0, -1.0]])
-        back = tip - head[0]
+        back, side = self.per_point * arrowprops["mutation_scale"] * np.stack([-0.4 * along, 0.2 * along[::-1] * [1.0, -1.0]])
+        heads = {"-|>": [(tip, back)], "<|-|>": [(tip, back), (start, -back)]}[arrowprops["arrowstyle"]]
         style = Style(edge=look, width=arrowprops["lw"])
-        self.strokes.append(Stroke(np.stack([start, back]), style, [(0, 1)]))
-        self.strokes.append(Stroke(np.stack([tip, back + head[1], back - head[1]]), replace(style, fill=look)))
+        self.strokes.append(Stroke(np.stack([start - (len(heads) - 1) * back, tip + back]), style, [(0, 1)]))
+        for end, foot in heads:
+            self.strokes.append(Stroke(np.stack([end, end + foot + side, end + foot - side]), replace(style, fill=look)))
 
     def text(  # noqa: PLR0913 (what matplotlib's axes are told)
         self,
@@ -144,21 +150,23 @@ class Paper:
         text: str,
         *,
         fontsize: float,
-        color: str,
+        color: str = INK,
         ha: str = "center",
         va: str = "center",
         fontweight: str = "normal",
         style: str = "normal",
-        bbox: object = None,
+        rotation: float = 0.0,
+        bbox: Mapping[str, Any] | None = None,
     ) -> None:
-        """A name at a place, on a lighter ground if it is to have a `bbox`."""
+        """A name at a place, turned about it, on a lighter ground if it is to have a `bbox`."""
         across, up = self._points(np.array([[x, y]]))[0]
+        turned = f' transform="rotate({-rotation:g} {across:.1f} {up:.1f})"' if rotation else ""
         if bbox is not None and text:
-            wide, high = _LETTER * fontsize * len(text) + 2.5, 1.2 * fontsize
+            wide, high = _LETTER[fontweight] * fontsize * len(text) + 2.5, 1.2 * fontsize
             place = f'x="{across - 0.5 * wide:.1f}" y="{up - 0.5 * high:.1f}" width="{wide:.1f}" height="{high:.1f}" rx="1.3"'
-            self.words.append(f'<rect {place} style="fill:{theme_colour(PAPER)};fill-opacity:.8"/>')
+            self.words.append(f'<rect {place}{turned} style="fill:{theme_colour(PAPER)};fill-opacity:{bbox["alpha"]:g}"/>')
         look = f"font-size:{fontsize:g}px;fill:{theme_colour(color)};text-anchor:{_ANCHORS[ha]};font-weight:{fontweight};font-style:{style}"
-        self.words.append(f'<text x="{across:.1f}" y="{up + _FEET[va] * fontsize:.1f}" style="{look}">{escape(text)}</text>')
+        self.words.append(f'<text x="{across:.1f}" y="{up + _FEET[va] * fontsize:.1f}"{turned} style="{look}">{escape(text)}</text>')
 
     def svg(self, name: str, description: str) -> str:
         """The picture as an SVG element to stand inside a page; see `to_svg`."""

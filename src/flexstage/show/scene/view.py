@@ -195,9 +195,9 @@ def _fill_style(kind: Kind, tone: int, *, edged: bool) -> Style:
 
 @cache
 def _line_style(colour: str = INK, width: float = 0.4, *, dashed: bool = False) -> Style:
-    from flexstage.show.figures.scenery import Style, channels
+    from flexstage.show.figures.scenery import DASHES, Style, channels
 
-    return Style(edge=channels(colour), width=width, dashed=dashed)
+    return Style(edge=channels(colour), width=width, dashes=DASHES if dashed else ())
 
 
 def outline(axes: Any, facets: Sequence[Facet], seen: View) -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Abreast, Folded, Joined, Legend, Picture, Prose, Section, Viewer, section
-from flexstage.show.plan import plan_figure, rings
+from flexstage.show.plan import plan_picture, rings
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.scene.view import Side, legend
@@ -95,7 +94,7 @@ def drawing_section(mechanism: Mechanism, seen: Scene) -> Section | None:
     'Drawings and composition'
     """
     sides = tuple(_side(seen, *each) for each in _SIDES)
-    plan = to_svg(plan_figure(mechanism, seen), "plan", "Dimensioned plan of the stage")
+    plan = plan_picture(mechanism, seen).svg("plan", "Dimensioned plan of the stage")
     plan_caption = " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism), *([_LARGE] if seen.is_large else [])])
     return section(
         "Drawings and composition",
