@@ -21,13 +21,13 @@ class Ruler(Artist):
         self.set_zorder(axis.get_zorder())
 
     def draw(self, renderer: Any) -> None:
-        """Grid and marks as one line each, numbers, and the axis' name beside the widest of them."""
-        axis, corner = self.axis, self.axis.axes.bbox
-        reach = [corner.x0, corner.y0]
+        """Grid and marks as one line each, numbers, and the axis' name beside the longest of them."""
+        axis, reach = self.axis, self.axis.axes.bbox.min
         for tick, places, texts in self._ticks():
             _lines(tick, places, along=axis.axis_name, renderer=renderer)
             if tick.label1.get_visible() and any(texts):
-                reach = np.minimum(reach, _numbers(tick, places, texts, renderer))
+                _write(tick, places, texts, renderer)
+                reach = np.minimum(reach, _reach(tick, texts, renderer)) if axis.label.get_text() else reach
         pad = axis.labelpad * renderer.points_to_pixels(1.0)
         axis.label.set(**({"y": reach[1] - pad} if axis.axis_name == "x" else {"x": reach[0] - pad}))
         axis.label.draw(renderer)
@@ -66,22 +66,20 @@ def _lines(tick: Any, places: Array, *, along: str, renderer: Any) -> None:
         drawn.set_data(*before)
 
 
-def _numbers(tick: Any, places: Array, texts: Sequence[str], renderer: Any) -> Array:
-    """Write the texts at their places; how far to the left and down they reach."""
-    label = tick.label1
+def _write(tick: Any, places: Array, texts: Sequence[str], renderer: Any) -> None:
     for place, text in zip(places, texts, strict=True):
         tick.update_position(place)
-        label.set_text(text)
-        label.draw(renderer)
-    fonts = label.get_fontproperties()
+        tick.label1.set_text(text)
+        tick.label1.draw(renderer)
 
-    def width(text: str) -> float:
-        return max(renderer.get_text_width_height_descent(line, fonts, ismath=False)[0] for line in text.split("\n"))
 
+def _reach(tick: Any, texts: Sequence[str], renderer: Any) -> Array:
+    """How far to the left and down texts reach, of which those about as long as the longest are measured."""
+    long = 0.7 * max(map(len, texts))
     extents: list[Array] = []
-    for text in {max(texts, key=width), max(texts, key=lambda text: text.count("\n"))}:
-        label.set_text(text)
-        extents.append(label.get_window_extent(renderer).min)
+    for text in {text for text in texts if len(text) > long}:
+        tick.label1.set_text(text)
+        extents.append(tick.label1.get_window_extent(renderer).min)
     return np.min(extents, axis=0)
 
 
