@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
 
+from flexstage.base.number import Number
 from flexstage.base.quantity import Quantity
 from flexstage.mechanism.address import get, provenance, quantity_of
 from flexstage.mechanism.expand import copy_names, expand
+from flexstage.mechanism.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.show.display import field_unit, number
@@ -86,6 +89,10 @@ def link_table(mechanism: Mechanism) -> Table:
     return make_table("Links as drawn", ["link", "joins", "part", Column("copies")], rows)
 
 
+_Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
+"""Numbers that stand in a description by address; departures have their values where they are made."""
+
+
 def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
     """Every number of the description with unit, tag (stated, derived, assumed) and source; one table a kind of thing.
 
@@ -95,6 +102,7 @@ def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, 
     ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']
     """
     tags = provenance(mechanism)
+    known = {address: (value, node.measures) for address, value, node in node_of(Mechanism).numbers(mechanism)}
     groups: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
     for addresses in _join_components(tuple(tags)):
         group, name = _group_of(mechanism, addresses)
@@ -104,7 +112,7 @@ def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, 
         make_table(
             title,
             heads,
-            [_row(mechanism, name, addresses, tags[addresses[0]]) for name, addresses in groups[group][:most]],
+            [_row(mechanism, name, addresses, tags[addresses[0]], known) for name, addresses in groups[group][:most]],
             notes=[] if most is None or len(groups[group]) <= most else [further(len(groups[group]) - most)],
         )
         for group, title in TITLES.items()
@@ -173,8 +181,8 @@ def _group_of(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, st
     return first, rest
 
 
-def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str) -> tuple[Cell, ...]:
-    values = [_value(mechanism, address) for address in addresses]
+def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str, known: _Numbers) -> tuple[Cell, ...]:
+    values = [_value(*(known.get(address) or (get(mechanism, address), quantity_of(mechanism, address)))) for address in addresses]
     word, _, source = tag.partition(" ")
     unit = values[0][1]
     text = values[0][0] if len(values) == 1 else f"({', '.join(text for text, _ in values)})"
@@ -183,7 +191,6 @@ def _row(mechanism: Mechanism, name: str, addresses: tuple[str, ...], tag: str) 
     return Cell(name, Mark.STRONG), Cell(text), Cell("" if unit == "1" else unit), Cell(word, _TAGS.get(word, Mark.PLAIN)), Cell(origin)
 
 
-def _value(mechanism: Mechanism, address: str) -> tuple[str, str]:
-    quantity: Quantity = quantity_of(mechanism, address)
+def _value(value: Number, quantity: Quantity) -> tuple[str, str]:
     form = field_unit(quantity)
-    return number(first_value(get(mechanism, address)) * form.factor, _NUMBER_DIGITS), form.unit
+    return number(first_value(value) * form.factor, _NUMBER_DIGITS), form.unit
