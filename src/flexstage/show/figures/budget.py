@@ -11,7 +11,7 @@ from flexstage.analysis.error_budget import ErrorBudget
 from flexstage.analysis.lost_motion import LostMotion
 from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, number, percent, to_typography
-from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context, text_width
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, name_rows, panels, style_context, text_width
 from flexstage.show.table import first_design
 from flexstage.show.tables.lost_motion import energy_shares, foreign_links, named_budget
 
@@ -70,7 +70,7 @@ def _share_figure(shares: Mapping[str, Mapping[str, float]], totals: Mapping[str
             right, left = right + np.maximum(widths, 0.0), left + np.minimum(widths, 0.0)
         for row, name in enumerate(names):
             _place_beside(axes, (right[row], row), totals[name], INK)
-        axes.set_yticks(rows, names)
+        name_rows(axes, rows, names)
         _format_axes(axes, label)
         _widen_right(axes, 1.13)
         if parts:  # massless axial springs lose nothing: there is nothing to name
@@ -174,7 +174,7 @@ def _error_panel(axes: Any, budget: ErrorBudget, rows: slice, unit: str) -> None
             _bars(axes, places + offset, start, widths, height=0.32, colour=SERIES[index % len(SERIES)], label=label)
             start = start + widths
         _bar_texts(axes, places + offset, start, name)
-    axes.set_yticks(places, list(budget.ideal.rows[rows]))
+    name_rows(axes, places, budget.ideal.rows[rows])
     _format_axes(axes, to_typography(f"largest error [{form.unit}]"))
     _widen_right(axes, 1.3)
 

@@ -68,12 +68,15 @@ def _magnitudes(axes: Any, curves: Sequence[Curve], response: Response, unit: st
 
 
 def _phases(axes: Any, curves: Sequence[Curve], response: Response) -> None:
+    from matplotlib.ticker import MultipleLocator
+
     for index, curve in enumerate(curves):
         phase = np.rad2deg(np.unwrap(np.angle(curve.values)))
         turns = 360.0 * np.round(phase[0] / 360.0)
         axes.semilogx(response.frequencies, phase - turns, color=SERIES[index], linewidth=1.0)
     low, high = axes.get_ylim()
-    axes.set_yticks(np.arange(180.0 * np.floor(low / 180.0), 180.0 * np.ceil(high / 180.0) + 1.0, 180.0))
+    axes.set_ylim(180.0 * np.floor(low / 180.0), 180.0 * np.ceil(high / 180.0))
+    axes.yaxis.set_major_locator(MultipleLocator(180.0))
 
 
 def _mode_marks(axes: Any, modes: Modes | None, response: Response) -> None:

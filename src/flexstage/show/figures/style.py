@@ -126,6 +126,19 @@ def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int
     return Margins(x * margins.left, x * margins.right, y * margins.bottom, y * margins.top, x * margins.across, y * margins.down)
 
 
+def name_rows(axes: Any, places: Iterable[float], names: Sequence[str]) -> None:
+    """Names at places along y. matplotlib's own way to say them makes five artists a name at once, which pages do without.
+
+    >>> axes = canvas(2.0, 1.0).add_subplot()
+    >>> name_rows(axes, [0.0, 1.0], ["B1", "B2"])
+    >>> axes.yaxis.get_majorticklocs().tolist()
+    [0.0, 1.0]
+    """
+    from matplotlib.ticker import FixedFormatter, FixedLocator
+
+    axes.yaxis.set(major_locator=FixedLocator(list(places)), major_formatter=FixedFormatter(list(names)))
+
+
 def text_width(texts: Iterable[str], size: float = 8.0) -> float:
     """About how wide the longest of some texts is, in inches.
 

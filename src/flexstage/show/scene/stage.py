@@ -96,7 +96,8 @@ def displace(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array],
         return []
     points, change = _displacement(facets, still, twists, factor)
     ends = np.cumsum([len(facet.points) for facet in facets])[:-1]
-    return [replace(facet, points=piece) for facet, piece in zip(facets, np.split(points + change, ends), strict=True)]
+    pieces = np.split(points + change, ends)
+    return [Facet(piece, facet.edges, facet.paint, facet.share, facet.whole) for facet, piece in zip(facets, pieces, strict=True)]
 
 
 def _displacement(facets: Sequence[Facet], still: Scene, twists: Mapping[str, Array], factor: float) -> tuple[Array, Array]:
