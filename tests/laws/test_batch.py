@@ -506,6 +506,15 @@ def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> Non
         assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
 
 
+def test_links_at_the_points_of_their_bodies_have_no_arms() -> None:
+    """Nothing is divided by the longest arm where it is nought."""
+    parts = {"spring": Given(tuple(map(tuple, np.diag([1e-6, 1e-6, 1e-6, 1e-3, 1e-3, 1e-3]).tolist())), free=(), mass=0.0)}
+    body = Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=Inertia(xx=1e-3, yy=1e-3, zz=1e-3))
+    stage = Mechanism("point", parts=parts, bodies={PLATFORM: body}, links={"one": Link((GROUND, PLATFORM), "spring", (0.0, 0.0, 0.0), X)})
+    found = platform_modes(plan(stage, ()), np.zeros((1, 0)))
+    np.testing.assert_allclose(found.frequencies[0], np.sqrt(1e6) / (2.0 * np.pi), rtol=1e-12)
+
+
 @pytest.mark.skipif(kernel() is None, reason="no compiler")
 @pytest.mark.parametrize("kind", ["first", "turn", "inertia"])
 def test_legs_that_are_equal_near_the_nominal_design_need_not_be_so_elsewhere(kind: str) -> None:
@@ -550,7 +559,7 @@ def test_a_mass_that_is_not_mirrored_in_a_design_is_missed_there(monkeypatch: py
     family_plan = plan(double_triangle(), ("parts.neck.thickness",))
     values = designs(family_plan, 4, 0.05)
     whole = platform_modes(family_plan, values, slopes=True)
-    monkeypatch.setattr("flexstage.models.batch.numbers.is_mirrored", lambda numbers, place: np.arange(numbers.shape[1]) % 2 == 0)
+    monkeypatch.setattr("flexstage.models.batch.numbers.is_mirrored", lambda numbers, _: np.arange(numbers.shape[1]) % 2 == 0)
     assert slopes_of(family_plan.family, values).missed.tolist() == [False, True, False, True]
     np.testing.assert_allclose(platform_modes(family_plan, values, slopes=True).gradient, whole.gradient, rtol=1e-9)
 

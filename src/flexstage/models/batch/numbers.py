@@ -147,11 +147,14 @@ class Family:
         if own.shape[1] < 3:
             return self.widest
         moves = np.split((own != 0.0).any(axis=1), np.cumsum([len(change.rows) for change in self.widest], dtype=int))[:-1]
-        for change, rows in zip(self.widest, moves, strict=True):
-            for item in self.told.get(change.key, ()):
-                if item.variable == change.variable and not item.rest:
-                    rows &= item.powers(change.place.kind, change.rows) != 0.0
-        return tuple(replace(change, rows=change.rows[rows]) for change, rows in zip(self.widest, moves, strict=True) if rows.any())
+        felt = [rows & ~self._is_told_nought(change) for change, rows in zip(self.widest, moves, strict=True)]
+        return tuple(replace(change, rows=change.rows[rows]) for change, rows in zip(self.widest, felt, strict=True) if rows.any())
+
+    def _is_told_nought(self, change: Change) -> Array:
+        """Which rows of a change are zero, as units tell."""
+        own = [item for item in self.told.get(change.key, ()) if item.variable == change.variable and not item.rest]
+        powers = [item.powers(change.place.kind, change.rows) for item in own]
+        return np.any(np.array(powers).reshape(len(own), len(change.rows)) == 0.0, axis=0)
 
     @cached_property
     def mirrored(self) -> frozenset[int]:
@@ -192,7 +195,7 @@ def is_mirrored(numbers: Array, place: Feature) -> Array:
     [True]
     """
     own = numbers[place.slots]
-    rows = np.flatnonzero((MIRROR > np.arange(144)) & (np.arange(144) // 12 <= np.arange(144) % 12))
+    rows = np.flatnonzero((np.arange(144) < MIRROR) & (np.arange(144) // 12 <= np.arange(144) % 12))
     return np.asarray((own[rows] == MIRROR_SIGN[rows, None] * own[MIRROR[rows]]).all(axis=0))
 
 
