@@ -501,7 +501,7 @@ def factorise_kinds(space: Field, form: ngsolve.BilinearForm) -> KindSolver:
     >>> factorise_kinds(space, stiffness(space))(Columns(np.zeros((space.size, 4)), np.arange(4))).shape == (space.size, 4)
     True
     """
-    solvers = [factorise(space, form, kind) for kind in range(space.meshed.mirrors.copies)]
+    solvers = _solvers(space, form, range(space.meshed.mirrors.copies))
 
     def solve(forces: Columns) -> Array:
         result = np.empty_like(forces.values)
@@ -526,15 +526,25 @@ def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver
     >>> round(1e-6 / float((mean @ factorise(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
     100.0
     """
+    (solve,) = _solvers(space, form, [kind])
+    return lambda forces: solve(forces.reshape(len(forces), -1)).reshape(forces.shape)
+
+
+def _solvers(space: Field, form: ngsolve.BilinearForm, kinds: Iterable[int]) -> list[Solver]:
+    """Solvers for forces (n, k) of each of some kinds."""
     values, columns, starts = form.mat.CSR()
     whole = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values))
-    also = held_at_mirrors(space, kind)
+    held = np.array([held_at_mirrors(space, kind) for kind in kinds])
     try:
-        solve = factorise_fronts(space.fronts, whole, also).solve
+        solvers = [found.solve for found in factorise_fronts(space.fronts, whole, held)]
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
-        inverse = form.mat.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky")
-        solve = functools.partial(_apply_by_columns, inverse.Mult)
-    return lambda forces: solve(np.where(also[:, None], 0.0, forces.reshape(len(also), -1))).reshape(forces.shape)
+        inverses = [form.mat.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky") for also in held]
+        solvers = [functools.partial(_apply_by_columns, inverse.Mult) for inverse in inverses]
+    return [functools.partial(_solve_held, solve, also) for solve, also in zip(solvers, held, strict=True)]
+
+
+def _solve_held(solve: Solver, held: Array, forces: Array) -> Array:
+    return solve(np.where(held[:, None], 0.0, forces))
 
 
 def grid(space: Field) -> Grid:

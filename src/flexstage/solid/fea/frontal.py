@@ -193,29 +193,43 @@ class Factorised:
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrix: Matrix, held: Array) -> Factorised:
-    """Factorise a matrix that is positive definite on the free nodes; degrees of freedom `held` (mask) are coupled to no other.
+def factorise_fronts(order: Fronts, matrix: Matrix, held: Array) -> tuple[Factorised, ...]:
+    """Factorise a matrix that is positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
-    Raises `numpy.linalg.LinAlgError` where it is not.
+    Those of a set (masks (k, n)) are coupled to no other. A front that meets none of any set, nor do those before it, is the same for all.
+    Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
     """
-    by_node = held.reshape(3, -1).T[order.nodes]
+    by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     entries, local = _Entries.of(order, matrix), np.empty(len(order.nodes), dtype=np.int64)
-    traces: dict[int, Array] = {}
-    factors: list[_Factor] = []
+    traces: dict[int, list[Array]] = {}
+    factors: list[list[_Factor]] = []
     for number, front in enumerate(order.fronts):
-        own, size = front.last - front.first, front.last - front.first + len(front.beyond)
-        local[front.first : front.last], local[front.beyond] = np.arange(own), np.arange(own, size)
-        panel, trace = np.zeros((3 * size, 3 * own), order="F"), np.zeros((3 * (size - own), 3 * (size - own)), order="F")
+        nodes = np.concatenate([np.arange(front.first, front.last), front.beyond])
+        local[nodes] = np.arange(len(nodes))
+        panel = np.zeros((3 * len(nodes), 3 * (front.last - front.first)), order="F")
         entries.add(panel, front, local)
-        _uncouple(panel, np.flatnonzero(np.concatenate([by_node[front.first : front.last], by_node[front.beyond]])))
-        for child in front.children:
-            met, left = local[order.fronts[child].beyond], traces.pop(child)
-            cut = int(np.searchsorted(met, own))
-            _add_trace(panel, met, left[:, : 3 * cut], met[:cut])
-            _add_trace(trace, met[cut:] - own, left[3 * cut :, 3 * cut :], met[cut:] - own)
-        factor, traces[number] = _eliminate(panel, trace)
-        factors.append(factor)
-    return Factorised(order, tuple(factors))
+        below = [(local[order.fronts[child].beyond], traces.pop(child)) for child in front.children]
+        alike = not by_node[:, nodes].any() and all(len(left) == 1 for _, left in below)
+        factors.append([])
+        traces[number] = []
+        for kind in range(1 if alike else len(held)):
+            law = panel if alike else panel.copy(order="F")
+            _uncouple(law, np.flatnonzero(by_node[kind, nodes]))
+            factor, trace = _eliminate(law, _gather(law, [(met, left[kind % len(left)]) for met, left in below]))
+            factors[-1].append(factor)
+            traces[number].append(trace)
+    return tuple(Factorised(order, tuple(own[kind % len(own)] for own in factors)) for kind in range(len(held)))
+
+
+def _gather(panel: Array, below: list[tuple[Array, Array]]) -> Array:
+    """Add the traces of the fronts before, on the nodes that they met, to a front's own columns, and to what is beyond: a new trace."""
+    own, size = panel.shape[1] // 3, len(panel) // 3
+    trace = np.zeros((3 * (size - own), 3 * (size - own)), order="F")
+    for met, left in below:
+        cut = int(np.searchsorted(met, own))
+        _add_trace(panel, met, left[:, : 3 * cut], met[:cut])
+        _add_trace(trace, met[cut:] - own, left[3 * cut :, 3 * cut :], met[cut:] - own)
+    return trace
 
 
 def _uncouple(panel: Array, held: Array) -> None:

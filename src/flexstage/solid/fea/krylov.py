@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,33 +19,66 @@ _MOST = 20
 Operator = Callable[[Array], Array]
 
 
-def lowest_modes(mass: Operator, inverse: Operator, size: int, count: int) -> Array:
-    """The `count` lowest modes (size, count) of a stiffness, by its `inverse`, and a `mass`: block Lanczos, orthogonalised in full.
+@dataclass(frozen=True, eq=False)
+class Pencil:
+    """A `mass` and the `inverse` of a stiffness, of vectors of a size."""
 
-    Fewer where the mass has a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
+    mass: Operator
+    inverse: Operator
+    size: int
+
+
+def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
+    """The `count` lowest modes of some pencils in all, (size, k) of each: block Lanczos, orthogonalised in full.
+
+    Fewer where masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
 
     >>> stiffness = np.arange(1.0, 41.0)[:, None]
-    >>> found = lowest_modes(lambda x: x, lambda x: x / stiffness, 40, 3)
-    >>> np.abs(found).round(6).argmax(axis=0).tolist()
-    [0, 1, 2]
+    >>> pencils = [Pencil(lambda x: x, lambda x: x / stiffness, 40), Pencil(lambda x: x, lambda x: x / (0.5 + stiffness), 40)]
+    >>> [found.round(6).argmax(axis=0).tolist() for found in map(np.abs, lowest_modes(pencils, 5))]
+    [[0, 1, 2], [0, 1]]
     """
-    block = np.random.default_rng(0).standard_normal((size, min(size, _BLOCK)))
-    vectors, momenta, projected = np.zeros((size, 0)), np.zeros((size, 0)), np.zeros((0, 0))
-    before, weights = np.zeros(0), np.zeros((0, 0))
+    chains = [_Chain(pencil, -(-_BLOCK // len(pencils))) for pencil in pencils]
+    before, owners = np.zeros(0), np.zeros(0, dtype=np.int64)
     for _ in range(_MOST):
-        block, momentum = _orthonormal(block, mass(block), vectors, momenta)
-        if not block.shape[1]:
-            break
-        vectors, momenta = np.hstack([vectors, block]), np.hstack([momenta, momentum])
-        block = inverse(momentum)
-        rows = momenta.T @ block
-        projected = np.hstack([np.vstack([projected, rows[: projected.shape[0]].T]), rows])
-        values, weights = np.linalg.eigh(0.5 * (projected + projected.T))
-        now = values[::-1][:count]
+        for chain in chains:
+            chain.extend()
+        values = np.concatenate([chain.values for chain in chains])
+        order = np.argsort(-values, kind="stable")[:count]
+        owners, now = np.repeat(np.arange(len(chains)), [len(chain.values) for chain in chains])[order], values[order]
         if len(now) == len(before) == count and np.all(np.abs(now - before) <= _EIGENVALUES * now):
             break
         before = now
-    return vectors @ weights[:, ::-1][:, :count]
+    return [chain.modes(int(np.sum(owners == number))) for number, chain in enumerate(chains)]
+
+
+class _Chain:
+    """Blocks of one pencil, orthonormal in mass, and the `values` of the inverse on them, the largest first."""
+
+    def __init__(self, pencil: Pencil, width: int) -> None:
+        self.pencil, size = pencil, pencil.size
+        self.block = np.random.default_rng(0).standard_normal((size, min(size, width)))
+        self.vectors, self.momenta, self.projected = np.zeros((size, 0)), np.zeros((size, 0)), np.zeros((0, 0))
+        self.values, self.weights = np.zeros(0), np.zeros((0, 0))
+
+    def extend(self) -> None:
+        """One block more, where there is one that does not depend on those before."""
+        if not self.block.shape[1]:
+            return
+        block, momentum = _orthonormal(self.block, self.pencil.mass(self.block), self.vectors, self.momenta)
+        self.block = block
+        if not block.shape[1]:
+            return
+        self.vectors, self.momenta = np.hstack([self.vectors, block]), np.hstack([self.momenta, momentum])
+        self.block = self.pencil.inverse(momentum)
+        rows = self.momenta.T @ self.block
+        self.projected = np.hstack([np.vstack([self.projected, rows[: len(self.projected)].T]), rows])
+        values, weights = np.linalg.eigh(0.5 * (self.projected + self.projected.T))
+        self.values, self.weights = values[::-1], weights[:, ::-1]
+
+    def modes(self, count: int) -> Array:
+        """The lowest."""
+        return self.vectors @ self.weights[:, :count]
 
 
 def _orthonormal(block: Array, momentum: Array, vectors: Array, momenta: Array) -> tuple[Array, Array]:

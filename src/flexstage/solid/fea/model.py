@@ -17,7 +17,7 @@ from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Parts, Ways, reduce_parts
-from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.remote import Limits, Pool
 from flexstage.solid.fea.sound import sound_components
 from flexstage.solid.fea.superelement import Superelement
 
@@ -86,8 +86,8 @@ def model_with_parts(
 
     Calibrated hinges are read as the shapes they stand for.
     """
-    ways = Ways(cache, progress, Limits(memory=memory))
     shape = with_drawn_parts(mechanism)
-    reduced = reduce_parts(sound_components(shape, cache), reduction, ways)
+    with Pool() as pool:
+        reduced = reduce_parts(sound_components(shape, cache, pool=pool), reduction, Ways(cache, progress, Limits(memory=memory), pool))
     model = linear_model(shape, expand(shape), reduced.parts, f"solid model of {digest(shape, physics=True)[:16]}")
     return SolidModel(model, reduced.parts, reduction, reduced.notices)

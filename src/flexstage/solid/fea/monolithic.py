@@ -16,7 +16,7 @@ from flexstage.solid.fea.casing import casing, end_face_twist
 from flexstage.solid.fea.component import Component, Cut
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.parts import Ways, reduce_parts
-from flexstage.solid.fea.remote import Limits
+from flexstage.solid.fea.remote import Limits, Pool
 from flexstage.solid.fea.sound import sound_components
 
 _CACHE, _STANDARD = Cache(), Reduction(modes=18)
@@ -42,9 +42,10 @@ def monolithic(
     flexstage.base.finding.DesignError: ...
     """
     assembly = expand(mechanism)
-    parts = sound_components(mechanism, cache, Cut.NONE)
-    springs = {part.name: _springs(assembly, part) for part in parts}
-    whole = reduce_parts(parts, reduction, Ways(cache, progress, Limits(memory=memory)), springs)
+    with Pool() as pool:
+        parts = sound_components(mechanism, cache, Cut.NONE, pool)
+        springs = {part.name: _springs(assembly, part) for part in parts}
+        whole = reduce_parts(parts, reduction, Ways(cache, progress, Limits(memory=memory), pool), springs)
     return linear_model(mechanism, assembly, whole.parts, f"monolithic solid model of {digest(mechanism, physics=True)[:16]}")
 
 

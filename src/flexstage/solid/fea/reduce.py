@@ -35,7 +35,7 @@ from flexstage.solid.fea.field import (
 )
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hold import Support, is_rigid, middle, support
-from flexstage.solid.fea.krylov import lowest_modes
+from flexstage.solid.fea.krylov import Pencil, lowest_modes
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.piece import span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
@@ -157,30 +157,25 @@ def _seat(problem: _Problem, end: End) -> Array:
 
 def _modes(problem: _Problem, count: int, springs: Array | None) -> Columns:
     """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs."""
-    copies = problem.field.meshed.mirrors.copies
-    found = [_modes_of_kind(problem, count, springs, kind) for kind in range(copies)]
-    modes = beside([Columns(each, np.full(each.shape[1], kind)) for kind, each in enumerate(found)])
-    if copies == 1:
-        return modes
-    stiffnesses = np.einsum("ij,ij->j", modes.values, times(problem.stiffness, modes.values))  # of modes of unit mass
-    lowest = np.sort(np.argsort(stiffnesses, kind="stable")[:count])
-    return Columns(modes.values[:, lowest], modes.kinds[lowest])
+    if count <= 0:
+        return Columns.of(np.zeros((problem.field.size, 0)))
+    kinds = range(problem.field.meshed.mirrors.copies)
+    held = [np.flatnonzero(problem.field.free & ~held_at_mirrors(problem.field, kind)) for kind in kinds]
+    found = lowest_modes([_pencil(problem, springs, kind, free) for kind, free in zip(kinds, held, strict=True)], count)
+    result = beside([Columns(np.zeros((problem.field.size, own.shape[1])), np.full(own.shape[1], kind)) for kind, own in enumerate(found)])
+    for kind, (free, own) in enumerate(zip(held, found, strict=True)):
+        result.values[np.ix_(free, result.kinds == kind)] = own[: len(free)]
+    return result
 
 
-def _modes_of_kind(problem: _Problem, count: int, springs: Array | None, kind: int) -> Array:
-    """The lowest modes (n, count) of a kind.
+def _pencil(problem: _Problem, springs: Array | None, kind: int, free: Array) -> Pencil:
+    """Inertia and stiffness of a kind on its `free` degrees of freedom and, joined by springs, the interfaces.
 
     Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
     """
     faces = problem.held.faces.values
-    free = np.flatnonzero(problem.field.free & ~held_at_mirrors(problem.field, kind))
     joined = faces if springs is not None else faces[:, :0]
     boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
-    size = len(free) + joined.shape[1]
-    count = min(count, size)
-    result = np.zeros((problem.field.size, count))
-    if count <= 0:
-        return result
 
     def weighed(x: Array) -> Array:
         full = joined @ x[len(free) :]
@@ -194,9 +189,7 @@ def _modes_of_kind(problem: _Problem, count: int, springs: Array | None, kind: i
         moved = problem.held.solve(Columns(full, np.full(force.shape[1], kind)))
         return np.vstack([moved[free], np.linalg.solve(boundary, force[len(free) :])])
 
-    found = lowest_modes(weighed, inverse, size, count)
-    result[free, : found.shape[1]] = found[: len(free)]
-    return result
+    return Pencil(weighed, inverse, len(free) + joined.shape[1])
 
 
 def _independent_columns(problem: _Problem, motions: Columns) -> Columns:
