@@ -1,8 +1,12 @@
-"""The shipped stage by substructures and in one mesh: time and memory from nothing, time with the units in the cache, six platform modes.
+"""The shipped stage by substructures and in one mesh of equal error: time, processor and memory from nothing, time from the cache.
 
-Each run is a process of its own with the workers it starts; memory is the largest sum over all of them. Both read the same description
-with the same fineness at order two, but each draws its own mesh: what the frequencies differ by is the cut and the meshes'. The run in one
-mesh takes some minutes and 7 GB. Targets: 3 times less time and memory, 50 times less time from the cache, frequencies within 0.5 %.
+Each run is a process of its own with the workers it starts; memory is the largest sum over all of them, processor counts what the process
+loads too. Both read the same description, use elements of order two, three in notches, the same factors and the same search for modes. The error is
+the most that one of six platform frequencies lies above that of substructures at order four. Both kinds of model give upper bounds, and of all
+that was computed that reference is the lowest: what it is still too high, by its elements and its cuts, is missing in both errors alike.
+Elements of one mesh are 13/15 as large as those of substructures: so the errors are equal, or that of one mesh is larger. The mesher, whose
+elements fold, needs more than one attempt at one mesh: the seconds of all are told apart. Seven GB and some minutes.
+Targets: 15 times less time than in one mesh, 3 times less memory, 50 times less time from the cache, frequencies within 0.5 %.
 """
 
 from __future__ import annotations
@@ -12,12 +16,14 @@ import os
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
+import resource
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -25,22 +31,28 @@ import numpy as np
 PERIOD = 0.05
 """Seconds between two looks at the memory of the processes."""
 MEGABYTE = 1024.0
-TIME, CACHED, MEMORY, APART = 3.0, 50.0, 3.0, 5e-3
+TIME, CACHED, MEMORY, APART = 15.0, 50.0, 3.0, 5e-3
+EQUAL = 1.15
+"""How many times larger the error of one mesh may be for both to be equal, or smaller."""
+SIZE = 1.3
+"""Elements of one mesh in thicknesses; those of substructures have the usual size, 1.5."""
 COUNT = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Seconds of the model alone, peak memory of its processes together [MB], and the platform's frequencies [Hz]."""
+    """Seconds of the model alone, those in which it was meshing, of all its processors; peak memory [MB]; frequencies of the platform [Hz]."""
 
     seconds: float
+    meshing: float
+    processor: float
     memory: float
     frequencies: np.ndarray
 
 
 def run(how: str, folder: Path) -> Run:
     """One model in a process of its own."""
-    peak = 0.0
+    peak, before = 0.0, spent()
     with subprocess.Popen([sys.executable, str(Path(__file__).resolve()), how, str(folder)]) as process:
         while process.poll() is None:
             peak = max(peak, tree_memory(process.pid))
@@ -48,7 +60,13 @@ def run(how: str, folder: Path) -> Run:
     if process.returncode:
         raise RuntimeError(f"the {how} model ended with {process.returncode}")
     with np.load(folder / f"{how}.npz") as stored:
-        return Run(float(stored["seconds"]), peak, stored["frequencies"])
+        return Run(float(stored["seconds"]), float(stored["meshing"]), spent() - before, peak, stored["frequencies"])
+
+
+def spent() -> float:
+    """Seconds of processor of all processes that were started and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def tree_memory(process: int) -> float:
@@ -90,39 +108,55 @@ def _memory(process: int) -> float:
 def child(how: str, folder: Path) -> None:
     """What the process of one model does."""
     from flexstage.analysis.modes import modes
+    from flexstage.base.progress import Step
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.solid.fea.cache import Cache
     from flexstage.solid.fea.fineness import Fineness, Reduction
     from flexstage.solid.fea.model import model as solid
     from flexstage.solid.fea.monolithic import monolithic
 
-    plan, start = Fineness(order=2), time.perf_counter()
+    told = [(0.0, "")]
+
+    def listen(step: Step) -> None:
+        told.append((time.perf_counter(), step.text))
+
+    start = time.perf_counter()
     if how == "monolithic":
-        model = monolithic(double_triangle(), Reduction(plan, modes=18), cache=None)
+        model = monolithic(double_triangle(), Reduction(Fineness(SIZE, SIZE, order=2), modes=18), cache=None, progress=listen)
+    elif how == "reference":
+        model = solid(double_triangle(), Reduction(Fineness(order=4)), cache=None)
     else:
-        model = solid(double_triangle(), Reduction(plan), cache=Cache(folder / "cache"))
+        model = solid(double_triangle(), Reduction(Fineness(order=2)), cache=Cache(folder / "cache"), progress=listen)
     seconds = time.perf_counter() - start
+    meshing = sum(after - before for (before, text), (after, _) in pairwise(told) if "meshing" in text)
     found = modes(model)
-    np.savez(folder / f"{how}.npz", seconds=seconds, frequencies=found.frequencies[list(found.platform[:COUNT])])
+    np.savez(folder / f"{how}.npz", seconds=seconds, meshing=meshing, frequencies=found.frequencies[list(found.platform[:COUNT])])
 
 
 def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        cold, kept, whole = (run(how, folder) for how in ("substructured", "cached", "monolithic"))
+        cold, kept, whole, finest = (run(how, folder) for how in ("substructured", "cached", "monolithic", "reference"))
     print(f"{os.cpu_count()} cores, order two; platform modes in Hz")
-    for how, found in (("substructured", cold), ("from the cache", kept), ("in one mesh", whole)):
-        print(f"{how:16} {found.seconds:8.2f} s {found.memory:8.0f} MB  ", " ".join(f"{value:8.3f}" for value in found.frequencies))
-    apart = cold.frequencies / whole.frequencies - 1.0
-    print(f"{'differences, %':16} {'':22}", " ".join(f"{100.0 * value:8.3f}" for value in apart))
-    for what, value, target in (
-        ("time, one mesh over substructured", whole.seconds / cold.seconds, TIME),
-        ("memory, one mesh over substructured", whole.memory / cold.memory, MEMORY),
-        ("time, one mesh over cached", whole.seconds / kept.seconds, CACHED),
+    found = {"substructured": cold, "from the cache": kept, "in one mesh": whole, "at order four": finest}
+    for how, each in found.items():
+        taken = f"{each.seconds:8.2f} s ({each.meshing:5.1f} s meshing) {each.processor:8.1f} s of processor {each.memory:6.0f} MB  "
+        print(f"{how:16} {taken}", " ".join(f"{value:8.3f}" for value in each.frequencies))
+    above = {how: each.frequencies / finest.frequencies - 1.0 for how, each in found.items()}
+    for how in ("substructured", "in one mesh"):
+        print(f"{how:16} {'above order four, %':>55}", " ".join(f"{100.0 * value:8.3f}" for value in above[how]))
+    error, other = (float(np.max(above[how])) for how in ("substructured", "in one mesh"))
+    print(f"lowest of all: {'order four' if all(np.all(each >= 0.0) for each in above.values()) else 'NOT order four'}")
+    print(f"processor, one mesh over substructured: {whole.processor / cold.processor:.1f}; time but for meshes: ", end="")
+    print(f"{(whole.seconds - whole.meshing) / cold.seconds:.1f}")
+    for what, value, target, met in (
+        ("error, one mesh over substructured", other / error, EQUAL, 1.0 / EQUAL <= other / error <= EQUAL),
+        ("time, one mesh over substructured", whole.seconds / cold.seconds, TIME, whole.seconds >= TIME * cold.seconds),
+        ("memory, one mesh over substructured", whole.memory / cold.memory, MEMORY, whole.memory >= MEMORY * cold.memory),
+        ("time, one mesh over cached", whole.seconds / kept.seconds, CACHED, whole.seconds >= CACHED * kept.seconds),
+        ("error of substructures, %", 100.0 * error, 100.0 * APART, error <= APART),
     ):
-        print(f"{what:38} {value:8.1f}; target {target:g}: {'met' if value >= target else 'MISSED'}")
-    worst = float(np.max(np.abs(apart)))
-    print(f"{'largest difference, %':38} {100.0 * worst:8.2f}; target {100.0 * APART:g}: {'met' if worst <= APART else 'MISSED'}")
+        print(f"{what:38} {value:8.2f}; target {target:g}: {'met' if met else 'MISSED'}")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ _COPIES = 4.0
 _LANCZOS = 40
 _START, _PER_MESHED = 2.7, 3e-4
 """Seconds to start a process and draw; seconds an element to mesh."""
-_PER_FREEDOM, _PER_PROJECTED = 8e-5, 5e-6
+_PER_FREEDOM, _PER_PROJECTED = 2e-4, 1e-6
 """Seconds an unknown, and an unknown and coordinate."""
 _COARSER, _COARSEST = 1.25, 12.0
 
@@ -113,7 +113,7 @@ def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
 
     >>> round(reduction_seconds(Counts.of(1000.0), 2, 24)), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
-    (4, 134)
+    (4, 95)
     """
     return _START + _PER_MESHED * counts.elements + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
 
