@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.field import factorise, field, grid, inertia, stiffness
+from flexstage.solid.fea.field import factorise, field, grid, inertia, nodes_on, stiffness
 from flexstage.solid.fea.fineness import Fineness
 from flexstage.solid.fea.frontal import Matrix, dissect, factorise_fronts
 from flexstage.solid.fea.krylov import Pencil, lowest_modes
@@ -61,11 +61,27 @@ def test_every_node_is_eliminated_once_and_its_traces_lie_beyond() -> None:
     assert len(order.fronts) > 4
 
 
-def test_what_is_not_definite_is_refused() -> None:
+def test_fronts_are_shared_by_those_that_hold_nothing_there_and_only_by_them() -> None:
+    held, forces = np.zeros((2, 3, SPACE.size // 3), dtype=bool), np.random.default_rng(3).standard_normal((SPACE.size, 2))
+    held[1, 1] = nodes_on(SPACE, "end")
+    held = held.reshape(2, -1)
+    together = factorise_fronts(SPACE.fronts, sparse(1.0), held)
+    for found, own in zip(together, held, strict=True):
+        (alone,) = factorise_fronts(SPACE.fronts, sparse(1.0), own[None])
+        np.testing.assert_array_equal(found.solve(forces), alone.solve(forces))
+    shared = [one is other for one, other in zip(*(found.factors for found in together), strict=True)]
+    assert any(shared)
+    assert not shared[-1]
+
+
+def sparse(factor: float) -> Matrix:
     values, columns, starts = ELASTIC.mat.CSR()
-    matrix = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), -np.asarray(values))
+    return Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), factor * np.asarray(values))
+
+
+def test_what_is_not_definite_is_refused() -> None:
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
-        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), matrix, ~SPACE.free[None])
+        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), sparse(-1.0), ~SPACE.free[None])
 
 
 def test_lowest_modes_are_the_dense_ones() -> None:
