@@ -666,17 +666,16 @@ static INLINE void backward_tree(const Task *t, const Room *w, lanes *x, lanes *
         UNROLL for (int i = 0; i < 3; i++)
             UNROLL for (int c = 0; c < 3; c++)
                 UNROLL for (int k = 0; k < n; k++) s[i * n + k] += g[i > c ? HALF(h, i, c) : HALF(h, c, i)] * u[c * n + k];
-        if (t->heavy[at])
-            UNROLL for (int c = 0; c < 3; c++) {
-                lanes more[4];
-                UNROLL for (int k = 0; k < n; k++) more[k] = fresh ? all(0.0) : on[(3 * h + c) * wide + k];
-                UNROLL for (int i = 0; i < 3; i++)
-                    UNROLL for (int k = 0; k < n; k++) {
-                        s[i * n + k] += f[9 * h + 3 * i + c] * p[c * n + k];
-                        more[k] += f[9 * h + 3 * i + c] * u[i * n + k];
-                    }
-                UNROLL for (int k = 0; k < n; k++) on[(3 * h + c) * wide + k] = more[k];
-            }
+        UNROLL for (int c = 0; c < 3; c++) {
+            lanes more[4];
+            UNROLL for (int k = 0; k < n; k++) more[k] = fresh ? all(0.0) : on[(3 * h + c) * wide + k];
+            UNROLL for (int i = 0; i < 3; i++)
+                UNROLL for (int k = 0; k < n; k++) {
+                    s[i * n + k] += f[9 * h + 3 * i + c] * p[c * n + k];
+                    more[k] += f[9 * h + 3 * i + c] * u[i * n + k];
+                }
+            UNROLL for (int k = 0; k < n; k++) on[(3 * h + c) * wide + k] = more[k];
+        }
         UNROLL for (int i = 0; i < 3; i++)
             UNROLL for (int k = 0; k < n; k++) force[(3 * h + i) * wide + k] = s[i * n + k];
     }
