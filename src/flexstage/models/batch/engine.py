@@ -23,7 +23,7 @@ from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
-from flexstage.models.batch.numbers import Family, Slopes, family, near_numbers, numbers_and_slopes, numbers_of
+from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of
 from flexstage.models.batch.planes import Planes, no_planes, planes
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
@@ -158,7 +158,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Arr
         return Plan(family_, scheme_, choice, no_planes(scheme_), None)
     fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
     starts = _starts(scheme_, dense(scheme_, blocks(scheme_, numbers)[1])[0], modes, choice)
-    return Plan(family_, scheme_, choice, planes(scheme_, numbers, near_numbers(family_)), *starts, fitted)
+    return Plan(family_, scheme_, choice, planes(scheme_, numbers, family_.near), *starts, fitted)
 
 
 def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:

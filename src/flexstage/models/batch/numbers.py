@@ -157,9 +157,17 @@ class Family:
         return np.any(np.array(powers).reshape(len(own), len(change.rows)) == 0.0, axis=0)
 
     @cached_property
+    def near(self) -> Array | None:
+        """Features' numbers (features, 1) of a design near the nominal one; none where none can be described."""
+        for trial in _trials(self)[1:]:
+            with contextlib.suppress(DesignError):
+                return numbers_of(self, trial[None])
+        return None
+
+    @cached_property
     def mirrored(self) -> frozenset[int]:
         """The parts whose masses are the same seen from either end, to the bit, in the nominal design and near it."""
-        known = [numbers for numbers in (numbers_of(self, self.nominal[None]), near_numbers(self)) if numbers is not None]
+        known = [numbers for numbers in (numbers_of(self, self.nominal[None]), self.near) if numbers is not None]
         masses = [place for place in self.topology.features if place.kind == "mass"]
         return frozenset(place.owner for place in masses if len(known) > 1 and all(is_mirrored(each, place).all() for each in known))
 
@@ -215,20 +223,6 @@ def _trials(family_: Family) -> Array:
     scale = np.where(family_.nominal != 0.0, 0.01 * family_.nominal, 1e-4)
     steps = np.stack([0.0 * number, np.cos(number), -0.7 * np.cos(number), *(np.cos(turns * number) for turns in range(2, _TRIALS))])
     return np.asarray(family_.nominal + steps * scale)
-
-
-def near_numbers(family_: Family) -> Array | None:
-    """Features' numbers (features, 1) of a design near the nominal one; none where none can be described.
-
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> found = near_numbers(family(double_triangle(), ("parts.neck.thickness",)))
-    >>> found is not None and found.shape[1]
-    1
-    """
-    for trial in _trials(family_)[1:]:
-        with contextlib.suppress(DesignError):
-            return numbers_of(family_, trial[None])
-    return None
 
 
 def _told_slopes(family_: Family, design: Array) -> Iterator[Array]:
