@@ -157,7 +157,7 @@ def _equal(scheme: Scheme, numbers: Array, legs: list[Leg], span: float) -> list
     """Legs by those that are equal in all of these designs."""
     groups: list[list[Leg]] = []
     for leg in legs:
-        alike = [group for group in groups if _alike(scheme, numbers, (group[0], leg), span)]
+        alike = [group for group in groups if _alike(scheme, numbers, group[0], leg, span=span)]
         if alike:
             alike[0].append(leg)
         else:
@@ -165,11 +165,11 @@ def _equal(scheme: Scheme, numbers: Array, legs: list[Leg], span: float) -> list
     return groups
 
 
-def _alike(scheme: Scheme, numbers: Array, legs: tuple[Leg, Leg], span: float) -> bool:
+def _alike(scheme: Scheme, numbers: Array, one: Leg, other: Leg, *, span: float) -> bool:
     """Whether two legs have the same parts in the same places of their own axes, up to rounding."""
-    if len({_form(scheme, leg) for leg in legs}) > 1:
+    if _form(scheme, one) != _form(scheme, other):
         return False
-    (turns, arms, inertia), others = (_own(scheme, numbers, leg) for leg in legs)
+    (turns, arms, inertia), others = (_own(scheme, numbers, leg) for leg in (one, other))
     own = np.diagonal(inertia, axis1=-2, axis2=-1)
     return bool(
         np.all(np.abs(turns - others[0]) <= SKEW)
