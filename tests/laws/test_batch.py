@@ -532,9 +532,9 @@ def test_legs_that_are_equal_near_the_nominal_design_need_not_be_so_elsewhere(ki
         odd[:] *= 1.01  # an arm in the leg's plane, a body that is heavier
     found, known = iterate(family_plan, stage), wholly(stage, family_plan.choice)
     assert found.good.all()
-    np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-11)
+    np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-12)
     scale = np.max(np.abs(found.slopes), axis=(0, 2))[:, None]
-    assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-8
+    assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
 
 
 @pytest.mark.parametrize("method", METHODS)
