@@ -260,12 +260,16 @@ def _taken(value: Any, designs: slice) -> Any:
 
 
 def empty_rows(rows: int, count: int) -> Array:
-    """An empty (rows, count) whose rows do not begin on the same line of a processor's cache, as powers of two would.
+    """An empty (rows, count) whose rows begin on lines of a cache, and not on the same one of each page, as powers of two would.
 
-    >>> empty_rows(3, 512).strides[0] % 128
-    64
+    >>> found = empty_rows(3, 512)
+    >>> found.strides[0] % 128, found.ctypes.data % 64
+    (64, 0)
     """
-    return np.empty((rows, count + -count % 16 + 8))[:, :count]
+    wide = count + -count % 16 + 8
+    room = np.empty(rows * wide + 7)
+    first = -(room.ctypes.data // 8) % 8
+    return room[first : first + rows * wide].reshape(rows, wide)[:, :count]
 
 
 def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], count: int) -> Array:

@@ -22,7 +22,6 @@
 #define MODES 12    /* modes that may be asked for */
 #define BESIDE 1e-6 /* how far below its value a single mode's shift is: its matrix is never singular */
 #define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
-#define AHEAD 4     /* vectors of designs whose numbers are gathered at once: rows are far apart, and a page holds few */
 
 typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
@@ -90,6 +89,12 @@ static inline lanes load_at(const double *p, int64_t design, int64_t designs)
     return r;
 }
 static inline void store(double *p, lanes a) { *(loose *)p = a; }
+/* The same, and asks for the next ones: rows are far apart. */
+static inline lanes read_row(const double *p, int64_t design, int64_t designs)
+{
+    __builtin_prefetch(p + design + WIDTH, 0, 2);
+    return load_at(p, design, designs);
+}
 
 /* ---- 6x6 blocks ---- */
 
@@ -266,8 +271,8 @@ typedef struct {
     Law *law;
     int64_t *crossing, crossings;    /* entries of laws that are zero where the plane is one of symmetry, and are not in every design */
     int fills;                       /* whether elimination makes edges */
-    lanes *number, *change;          /* the numbers of these designs, and their derivatives */
-    lanes *numbers, *changes;        /* what of them varies, of AHEAD vectors of designs */
+    int64_t design;                  /* the first of these designs */
+    lanes *number;                   /* their numbers */
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
     lanes *other, *other_edge;       /* K - shift M factored */
@@ -1290,6 +1295,11 @@ static INLINE void weigh_slots(const Task *t, int64_t group, lanes *sum, const W
 /* Whether the compiler knows a number. */
 #define KNOWN(n) __builtin_constant_p(n)
 
+static INLINE lanes change_of(const Task *t, const Room *w, int64_t e)
+{
+    return read_row(t->changes + t->entry[3 * e + 2] * t->slopes_stride, w->design, t->designs);
+}
+
 /* From the slots of a group (a part, a link, a body) to variables; n is the number of pairs. */
 static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *sum, const int n)
 {
@@ -1299,12 +1309,12 @@ static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *
         lanes own[6], *to = w->slope + variable * n; /* the usual six modes where their number is known */
         if (!KNOWN(n)) {
             for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++)
-                for (int p = 0; p < n; p++) to[p] += w->change[e] * sum[t->entry[3 * e + 1] * n + p];
+                for (int p = 0; p < n; p++) to[p] += change_of(t, w, e) * sum[t->entry[3 * e + 1] * n + p];
             continue;
         }
         EACH_MODE for (int p = 0; p < n; p++) own[p] = to[p];
         for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++) {
-            const lanes change = w->change[e], *of = sum + t->entry[3 * e + 1] * n;
+            const lanes change = change_of(t, w, e), *of = sum + t->entry[3 * e + 1] * n;
             EACH_MODE for (int p = 0; p < n; p++) own[p] += change * of[p];
         }
         EACH_MODE for (int p = 0; p < n; p++) to[p] = own[p];
@@ -1345,8 +1355,9 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
     }
 }
 
-static void derive(const Task *t, Room *w, int64_t design, const lanes *value)
+static void derive(const Task *t, Room *w, const lanes *value)
 {
+    const int64_t design = w->design;
     const int k = t->count < MODES ? (int)t->count : MODES;
     Pair pair[MODES * MODES];
     marks same[MODES * MODES];
@@ -1424,8 +1435,9 @@ static void keep(const Task *t, Room *w, const Ritz *known, const Verdict *verdi
                 if (fresh[lane]) w->shapes[c * t->rows + r][lane] = w->now[from[c][lane] * t->rows + r][lane];
 }
 
-static void designs(const Task *t, Room *w, int64_t design)
+static void designs(const Task *t, Room *w)
 {
+    const int64_t design = w->design;
     Verdict verdict[WIDTH];
     Ritz known;
     lanes value[MODES], share[MODES], shift = all(0.0);
@@ -1461,42 +1473,27 @@ static void designs(const Task *t, Room *w, int64_t design)
         t->good[design + lane] = bad[lane] ? -1 : verdict[lane].done && told.least[lane] > t->pivot && told.negative[lane] == (double)verdict[lane].below;
     for (int i = 0; i < t->count; i++)
         store(t->values + i * t->stride + design, value[i]), store(t->share + i * t->stride + design, share[i]);
-    if (t->variables) derive(t, w, design, value);
+    if (t->variables) derive(t, w, value);
 }
 
 /* ---- what of the numbers is the same in every design ---- */
 
-/* Rows (those of a list, each third of its numbers, or all) that are not the same in all designs, and how many; the others go where they are used, `apart`
- * from one another in each of `ahead` vectors, once. What is below the diagonal of symmetric matrices is never read: its `mirror` stands for both. */
-static int64_t vary(
-    lanes *to, int64_t ahead, const double *from, const int64_t *row, int64_t rows, int64_t stride, int64_t designs, const int64_t *mirror,
-    const int64_t *still, int64_t *varying)
+/* Rows of numbers that are not the same in all designs, and how many; the others go where they are used, once. What is below the diagonal of symmetric
+ * matrices is never read: its `mirror` stands for both. */
+static int64_t vary(const Task *t, lanes *to, int64_t *varying)
 {
     int64_t count = 0;
-    for (int64_t i = 0; i < rows; i++) {
-        if (mirror && mirror[i] < i) continue;
-        const double *own = from + (row ? row[3 * i] : i) * stride;
+    for (int64_t i = 0; i < t->numbers; i++) {
+        if (t->mirror[i] < i) continue;
+        const double *own = t->numbers_ + i * t->numbers_stride;
         const lanes first = all(*own);
         marks other = {0};
-        for (int64_t design = 0; !(still && still[i]) && design < designs && !any(other); design += 4 * WIDTH)
-            for (int64_t k = 0; k < 4 && design + k * WIDTH < designs; k++) other |= load_at(own, design + k * WIDTH, designs) != first;
+        for (int64_t design = 0; !t->still[i] && design < t->designs && !any(other); design += 4 * WIDTH)
+            for (int64_t k = 0; k < 4 && design + k * WIDTH < t->designs; k++) other |= load_at(own, design + k * WIDTH, t->designs) != first;
         if (any(other)) varying[count++] = i;
-        else
-            for (int64_t k = 0; k < ahead; k++) to[k * rows + i] = to[k * rows + (mirror ? mirror[i] : i)] = first;
+        else to[i] = to[t->mirror[i]] = first;
     }
     return count;
-}
-
-/* The varying rows of AHEAD vectors of designs, vector by vector: where they are used, or one after the other. */
-static void gather(
-    lanes *to, const double *from, const int64_t *row, int64_t next, int64_t stride, int64_t design, int64_t designs, const int64_t *varying, int64_t count,
-    const int in_place)
-{
-    for (int64_t i = 0; i < count; i++) {
-        const int64_t at = varying[i], place = in_place ? at : i;
-        for (int64_t k = 0; k < AHEAD && design + k * WIDTH < designs; k++)
-            to[k * next + place] = load_at(from + (row ? row[3 * at] : at) * stride, design + k * WIDTH, designs);
-    }
 }
 
 /* A matrix of a law (`rows` x `rows`), whose entries in all designs are zero where it is not `filled`. */
@@ -1528,7 +1525,7 @@ int64_t flexstage_width(void) { return WIDTH; }
 int64_t flexstage_modes(const Task *t)
 {
     const int64_t own = OWN * (t->bodies + t->ports), edge = 36 * t->edges, block = t->rows * t->m, pairs = t->count * (t->count + 1) / 2;
-    const int64_t sizes[] = {block, t->numbers, AHEAD * t->numbers, AHEAD * t->entries, own, edge, own, edge, own, edge, block, block, block, block,
+    const int64_t sizes[] = {block, t->numbers, own, edge, own, edge, own, edge, block, block, block, block,
                              t->rows * t->count, 6 * t->bodies * t->count, t->widest * pairs, t->variables * pairs};
     const int count = sizeof sizes / sizeof *sizes;
     int64_t total = 0;
@@ -1536,11 +1533,11 @@ int64_t flexstage_modes(const Task *t)
     if (t->m > MOST || t->count > MODES || t->single > t->m) return 1;
     lanes *memory = aligned_alloc(sizeof(lanes), sizeof(lanes) * total), *at = memory;
     Room w;
-    lanes **parts[] = {&w.start, &w.number, &w.numbers, &w.changes, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
+    lanes **parts[] = {&w.start, &w.number, &w.stiff, &w.stiff_edge, &w.mass, &w.mass_edge, &w.other, &w.other_edge,
                        &w.now, &w.next, &w.force, &w.ahead, &w.shapes, &w.placed, &w.sum, &w.slope};
     for (int i = 0; i < count; i++) *parts[i] = at, at += sizes[i] + 1;
     if (memory) memset(w.shapes, 0, sizeof(lanes) * t->rows * t->count);
-    int64_t *const varying = malloc(sizeof(int64_t) * (t->numbers + t->entries)), *const changing = varying + t->numbers;
+    int64_t *const varying = malloc(sizeof(int64_t) * t->numbers);
     char *const filled = malloc(t->numbers);
     int64_t *const crossing = malloc(sizeof(int64_t) * 180 * t->links);
     w.law = malloc(sizeof(Law) * t->parts);
@@ -1549,8 +1546,7 @@ int64_t flexstage_modes(const Task *t)
     for (int64_t u = 0; u < t->updates; u++) w.fills |= t->update[3 * u + 2] >= 0;
     const int short_of = !memory || !varying || !filled || !crossing || !w.law || !w.view || !w.side;
     if (!short_of) {
-        const int64_t some = vary(w.number, 1, t->numbers_, 0, t->numbers, t->numbers_stride, t->designs, t->mirror, t->still, varying);
-        const int64_t other = vary(w.changes, AHEAD, t->changes, t->entry + 2, t->entries, t->slopes_stride, t->designs, 0, 0, changing);
+        const int64_t some = vary(t, w.number, varying);
         outlines(t, w.law, w.number, varying, some, filled);
         for (int64_t i = 0; i < 6 * t->bodies * t->m; i++) w.start[i] = all(t->force[i]);
         w.crossing = crossing, w.crossings = 0;
@@ -1560,14 +1556,10 @@ int64_t flexstage_modes(const Task *t)
                 const int64_t at = i < 36 ? t->start[0] + 36 * t->link[4 * l] + i : t->start[1] + 144 * t->link[4 * l] + i - 36;
                 if (filled[at] && (row / 3 == column / 3) != ((row % 3 == t->normal[l]) == (column % 3 == t->normal[l]))) w.crossing[w.crossings++] = at;
             }
-        for (int64_t first = 0; first < t->designs; first += AHEAD * WIDTH) {
-            gather(w.numbers, t->numbers_, 0, some, t->numbers_stride, first, t->designs, varying, some, 0);
-            gather(w.changes, t->changes, t->entry + 2, t->entries, t->slopes_stride, first, t->designs, changing, other, 1);
-            for (int64_t k = 0; k < AHEAD && first + k * WIDTH < t->designs; k++) {
-                for (int64_t i = 0; i < some; i++) w.number[varying[i]] = w.number[t->mirror[varying[i]]] = w.numbers[k * some + i];
-                w.change = w.changes + k * t->entries;
-                designs(t, &w, first + k * WIDTH);
-            }
+        for (w.design = 0; w.design < t->designs; w.design += WIDTH) {
+            for (int64_t i = 0; i < some; i++)
+                w.number[varying[i]] = w.number[t->mirror[varying[i]]] = read_row(t->numbers_ + varying[i] * t->numbers_stride, w.design, t->designs);
+            designs(t, &w);
         }
     }
     free(memory), free(varying), free(filled), free(crossing), free(w.law), free(w.view), free(w.side);
