@@ -506,6 +506,23 @@ def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> Non
         assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
 
 
+@pytest.mark.skipif(kernel() is None, reason="no compiler")
+def test_legs_are_equal_wherever_on_the_platform_they_end() -> None:
+    """Feet reach into a thicker plate, not all as far: its reference point moves. In a longer one no two modes are alike."""
+    stage, sizes = double_triangle(), {"x": 1.3, "z": 1.05}
+    for axis, more in sizes.items():
+        name = f"bodies.platform.solids.plate.size.{axis}"
+        stage = set_value(stage, name, more * get(stage, name))
+    family_plan = plan(stage, ("parts.neck.thickness", "bodies.platform.solids.plate.size.z"))
+    assert family_plan.planes.copies[-2:].tolist() == [3, 3]
+    read = stage_of(family_plan, designs(family_plan, 9, 0.02))
+    found, known = iterate(family_plan, read), wholly(read, family_plan.choice)
+    assert found.good.all()
+    np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-12)
+    scale = np.max(np.abs(found.slopes), axis=(0, 2))[:, None]
+    assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
+
+
 def test_links_at_the_points_of_their_bodies_have_no_arms() -> None:
     """Nothing is divided by the longest arm where it is nought."""
     parts = {"spring": Given(tuple(map(tuple, np.diag([1e-6, 1e-6, 1e-6, 1e-3, 1e-3, 1e-3]).tolist())), free=(), mass=0.0)}

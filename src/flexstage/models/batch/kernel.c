@@ -13,7 +13,7 @@
  *
  * A leg that is symmetric about a plane, in which every body has one that comes later, is a tree: in axes of its own its blocks are two of 3x3,
  * which have nothing in common: x, y, rz and z, rx, ry. Own blocks are two lower triangles there, edges two of 3x3. It ends at a port: the platform as it
- * moves in the leg's axes at the point of the plane next to its reference point. Equal legs have equal matrices there, which are assembled
+ * moves in the leg's axes where a link of the leg ends on it. Equal legs have equal matrices there, wherever on the platform they end, which are assembled
  * and eliminated once; their motions are columns side by side.
  */
 #include "lanes.h"
@@ -261,8 +261,8 @@ static INLINE void join(lanes *out, const lanes *p, const lanes *a, double sign,
 /* What of a part's law and mass is not zero in every design: 3x3 blocks (4 and 16) that are; columns by row (6 and 12). */
 typedef struct { int zero[20], start[19], column[180]; } Law;
 
-/* The axes of a leg (columns, the normal last), and how far its plane is from the platform's reference point. */
-typedef struct { lanes q[9], far; } View;
+/* The axes of a leg (columns, the normal last), and the arm of its port in them. */
+typedef struct { lanes q[9], arm[3]; } View;
 
 /* A link's axes in those of its leg: the two in the plane (2x2) and the normal; arms in the leg's axes. */
 typedef struct { lanes p[4], s, arm[2][2]; int spot[6]; } Side;
@@ -308,8 +308,10 @@ static INLINE marks lay(const Task *t, const Room *w, int64_t l, const View *vie
         out->arm[side][0] = out->arm[side][1] = all(0.0);
         if (body < 0) continue;
         const lanes *arm = w->number + t->start[3 + side] + 3 * l;
-        out->arm[side][0] = along(q, 0, arm, 1), out->arm[side][1] = along(q, 1, arm, 1);
-        bad |= ~(size_of(along(q, 2, arm, 1) - (body == t->bodies - 1 ? view->far : all(0.0))) <= t->skew * t->span);
+        lanes own[3];
+        for (int i = 0; i < 3; i++) own[i] = along(q, i, arm, 1) - (body == t->bodies - 1 ? view->arm[i] : all(0.0));
+        out->arm[side][0] = own[0], out->arm[side][1] = own[1];
+        bad |= ~(size_of(own[2]) <= t->skew * t->span);
     }
     return bad;
 }
@@ -376,13 +378,17 @@ static INLINE void join_plane(lanes *out, const lanes *p, const lanes *a, double
 /* An own block of the platform += one of a port, as the platform moves in the stage's axes. */
 static INLINE void open_own(lanes *own, const lanes *s, const View *at)
 {
-    const lanes *q = at->q, far = at->far, zero = all(0.0), square = far * far;
-    const lanes a = s[HALF(0, 0, 0)], b = s[HALF(0, 1, 0)], c = s[HALF(0, 1, 1)], e = s[HALF(0, 2, 0)], f = s[HALF(0, 2, 1)];
+    const lanes *q = at->q, one = at->arm[0], two = at->arm[1], far = at->arm[2], zero = all(0.0), square = far * far;
+    const lanes a = s[HALF(0, 0, 0)], b = s[HALF(0, 1, 0)], c = s[HALF(0, 1, 1)], z = s[HALF(1, 0, 0)];
+    const lanes e = s[HALF(0, 2, 0)] + a * two - b * one, f = s[HALF(0, 2, 1)] + b * two - c * one; /* about the platform's point, in the plane */
+    const lanes g = s[HALF(1, 1, 0)] - z * two, h = s[HALF(1, 2, 0)] + z * one;
+    const lanes spin = s[HALF(0, 2, 2)] + two * (s[HALF(0, 2, 0)] + e) - one * (s[HALF(0, 2, 1)] + f);
+    const lanes roll = s[HALF(1, 1, 1)] - two * (s[HALF(1, 1, 0)] + g), mixed = s[HALF(1, 2, 1)] - two * s[HALF(1, 2, 0)] + one * g;
+    const lanes pitch = s[HALF(1, 2, 2)] + one * (s[HALF(1, 2, 0)] + h);
     const lanes turned[9] = {c * far, -b * far, f, -a * far, zero, zero, zero, zero, zero};
-    const lanes push[9] = {a, b, zero, b, c, zero, zero, zero, s[HALF(1, 0, 0)]};
-    const lanes cross[9] = {b * far, turned[3], e, turned[0], turned[1], f, s[HALF(1, 1, 0)], s[HALF(1, 2, 0)], zero}; /* of forces by turns */
-    const lanes twist[9] = {s[HALF(1, 1, 1)] + c * square, s[HALF(1, 2, 1)] - b * square, f * far, zero, s[HALF(1, 2, 2)] + a * square,
-                            -e * far, zero, zero, s[HALF(0, 2, 2)]};
+    const lanes push[9] = {a, b, zero, b, c, zero, zero, zero, z};
+    const lanes cross[9] = {b * far, turned[3], e, turned[0], turned[1], f, g, h, zero}; /* of forces by turns */
+    const lanes twist[9] = {roll + c * square, mixed - b * square, f * far, zero, pitch + a * square, -e * far, zero, zero, spin};
     UNROLL for (int i = 0; i < 3; i++) {
         const lanes x = q[3 * i], y = q[3 * i + 1], z = q[3 * i + 2];
         const lanes p[3] = {x * push[0] + y * push[1], x * push[1] + y * push[4], z * push[8]};
@@ -502,7 +508,7 @@ static marks assemble(const Task *t, Room *w)
         const lanes *r = w->number + t->start[2] + 9 * gate[1];
         View *view = w->view + g;
         for (int i = 0; i < 9; i++) view->q[i] = r[3 * (i / 3) + (gate[2] + 1 + i % 3) % 3];
-        view->far = along(view->q, 2, w->number + t->start[3 + gate[4]] + 3 * gate[3], 1);
+        for (int i = 0; i < 3; i++) view->arm[i] = along(view->q, i, w->number + t->start[3 + gate[4]] + 3 * gate[3], 1);
     }
     for (int copies = 0; copies < 2; copies++) { /* models first */
         for (int64_t b = 0; b < t->bodies; b++)
@@ -737,14 +743,14 @@ static INLINE void enter_ports(const Task *t, const Room *w, lanes *x, const int
     const lanes *from = x + t->row[t->bodies - 1] * m;
     for (int64_t g = 0; g < t->gates; g++) {
         const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
-        const lanes *q = w->view[g].q, far = w->view[g].far;
+        const lanes *q = w->view[g].q, *arm = w->view[g].arm;
         lanes *to = columns_of(t, x, g, m);
         for (int c = 0; c < m; c++) {
             lanes u[6];
             UNROLL for (int i = 0; i < 6; i++)
                 u[i] = q[i % 3] * from[(i - i % 3) * m + c] + q[3 + i % 3] * from[(i - i % 3 + 1) * m + c] + q[6 + i % 3] * from[(i - i % 3 + 2) * m + c];
-            to[c] = u[0] - far * u[4], to[wide + c] = u[1] + far * u[3], to[2 * wide + c] = u[5];
-            to[3 * wide + c] = u[2], to[4 * wide + c] = u[3], to[5 * wide + c] = u[4];
+            to[c] = u[0] + arm[1] * u[5] - arm[2] * u[4], to[wide + c] = u[1] + arm[2] * u[3] - arm[0] * u[5], to[2 * wide + c] = u[5];
+            to[3 * wide + c] = u[2] + arm[0] * u[4] - arm[1] * u[3], to[4 * wide + c] = u[3], to[5 * wide + c] = u[4];
         }
     }
 }
@@ -758,8 +764,10 @@ static INLINE void leave_ports(const Task *t, const Room *w, lanes *y, const int
         UNROLL for (int i = 0; i < 6; i++) sum[i] = to[i * m + c];
         for (int64_t g = 0; g < t->gates; g++) {
             const int64_t wide = t->copies[t->bodies + t->gate[6 * g]] * m;
-            const lanes *q = w->view[g].q, far = w->view[g].far, *from = columns_of(t, y, g, m) + c;
-            const lanes f[6] = {from[0], from[wide], from[3 * wide], from[4 * wide] + far * from[wide], from[5 * wide] - far * from[0], from[2 * wide]};
+            const lanes *q = w->view[g].q, *arm = w->view[g].arm, *from = columns_of(t, y, g, m) + c;
+            const lanes one = from[0], two = from[wide], three = from[3 * wide];
+            const lanes f[6] = {one, two, three, from[4 * wide] + arm[2] * two - arm[1] * three, from[5 * wide] + arm[0] * three - arm[2] * one,
+                                from[2 * wide] + arm[1] * one - arm[0] * two};
             UNROLL for (int i = 0; i < 6; i++) sum[i] += q[3 * (i % 3)] * f[i - i % 3] + q[3 * (i % 3) + 1] * f[i - i % 3 + 1] + q[3 * (i % 3) + 2] * f[i - i % 3 + 2];
         }
         UNROLL for (int i = 0; i < 6; i++) to[i * m + c] = sum[i];

@@ -191,7 +191,8 @@ def _own(scheme: Scheme, numbers: Array, leg: Leg) -> tuple[Array, Array, Array]
     turns = np.einsum("bji,bnjk->bnik", frame, of_kind(scheme, numbers, "turn")[:, links])
     arms = np.stack([of_kind(scheme, numbers, kind)[:, links] for kind in ("first", "second")], axis=2) @ frame[:, None]
     out = np.array([[end == 0 for end in scheme.topology.links[link][1:]] for link in links])
-    arms[..., 2] = np.where(out, 0.0, arms[..., 2])  # a port is in the plane
+    link, side = _way_out(scheme, leg)
+    arms -= np.where(out[..., None], arms[:, links.index(link), side, None, None], 0.0)  # to its port
     return turns, arms, _turned(scheme, numbers, leg.bodies, frame)
 
 
