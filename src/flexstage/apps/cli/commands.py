@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from flexstage.apps.cli.plain import PlainOptions
 from flexstage.apps.cli.signature import signature_of
 from flexstage.base.finding import Finding, require
 from flexstage.show.command.models import Models
@@ -152,11 +153,15 @@ class LazyCommand(TyperCommand):
         home = self.command.signature()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
-            home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)
+            home.command(self.command.name, cls=PlainCommand, epilog=f"Example: {self.command.example}")(function)
         return get_command(home)
 
 
-class GroupedCommands(TyperGroup):
+class PlainCommand(PlainOptions, TyperCommand):
+    """A command whose options need no pydantic for texts and paths."""
+
+
+class GroupedCommands(PlainOptions, TyperGroup):
     """A group that lists its commands by purpose, and loads the one that is called."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:

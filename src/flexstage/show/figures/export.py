@@ -11,17 +11,7 @@ from typing import Any
 from flexstage.base.text import printable
 from flexstage.show.figures.style import ABOUT, ALONG, DRIVE, GAUGE, GRID, INK, MUTED, PAPER, style_context
 
-_NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
-_PATH = re.compile(r'<path([^>]*?) d="([^"]*)"([^>]*)>')
-_STRAIGHT = re.compile(r"[MLz\d.\s-]+")
-_STEP = re.compile(r"([MLz])\s*(?:(-?[\d.]+)\s+(-?[\d.]+))?")
-_GEOMETRY = re.compile(r'(?<=\s)(x|y|x1|x2|y1|y2|width|height|transform|points|viewBox)="([^"]*)"')
-_GROUP = re.compile(r"<g>([^<]*(?:<(?!/?g\b)[^<]*)*)</g>")
 _STYLE = re.compile(r' style="([^"]+)"')
-_MARKS = re.compile(
-    r'<use href="#(?P<mark>[^"]+)" x="[^"]*" y="[^"]*"(?P<look>[^>]*)/>(?:<use href="#(?P=mark)" x="[^"]*" y="[^"]*"(?P=look)/>){2,}'
-)
-_PLACE = re.compile(r' x="([^"]*)" y="([^"]*)"')
 _PICTURE = re.compile(r"<svg .*?</svg>", re.DOTALL)
 _SHEET = re.compile(r"<style>([^<]*)</style>")
 _RULE = re.compile(r"\.([\w-]+)(\{[^}]*\})")
@@ -43,18 +33,23 @@ def to_svg(figure: Any, name: str, description: str) -> str:
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
     '<svg viewBox="0 0 72 72" role="im'
     """
-    from flexstage.show.figures.ruler import ruled  # loads matplotlib
+    from flexstage.show.figures.pen import Pen  # both load matplotlib
+    from flexstage.show.figures.ruler import ruled
 
-    buffer = io.StringIO()
+    wide, high = 72.0 * figure.get_size_inches()
+    dots, pen = figure.dpi, Pen(wide, high, name)
     scenery = [each for axes in figure.axes for each in axes.artists if each.get_gid() == SCENERY]
     with style_context(), ruled(figure):
+        figure.dpi = 72.0
         for each in scenery:
             each.set_visible(False)
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        figure.draw(pen)
         for each in scenery:
             each.set_visible(True)
-    opening, start, rest = compact_svg(buffer.getvalue(), name, description).partition(">")
-    return opening + start + "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery)) + rest
+        figure.dpi = dots
+    under = "".join(each.markup(f"{name}-{number}") for number, each in enumerate(scenery))
+    body, classes = _classes("".join(pen.said), name)
+    return printable(f"{head((wide, high), description)}{under}{classes}{body}</svg>", keep="\n\t")
 
 
 def to_png(figure: Any, *, dots_per_inch: int = 160) -> bytes:
@@ -99,30 +94,6 @@ def theme_colour(colour: str) -> str:
     return f"var(--{_THEME[colour]},{colour})" if colour in _THEME else colour
 
 
-def compact_svg(text: str, name: str, description: str) -> str:
-    """matplotlib's SVG without header, metadata, unused identifiers and digits nobody sees; repeated styles become classes.
-
-    >>> compact_svg('<?xml version="1.0"?><svg width="72pt" viewBox="0 0 72 72"><g id="a"><path d="M 1.23456 2"/></g></svg>', "f", "a path")
-    '<svg viewBox="0 0 72 72" role="img" aria-label="a path" style="--width:96px;max-width:96px"><path d="M1.2 2"/></svg>'
-    """
-    body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<\?xml.*?\?>|<!DOCTYPE.*?>", "", text, flags=re.DOTALL)
-    body = body[body.index("<svg") :].replace("xlink:href", "href")
-    view = re.search(r'viewBox="([^"]*)"', body)
-    box = view[1] if view else "0 0 100 100"
-    body = re.sub(r"<svg[^>]*>", "", body, count=1).removesuffix("\n").removesuffix("</svg>")
-    # matplotlib's own rule would reach the whole page.
-    body = re.sub(r"<style type=.text/css.>.*?</style>", "", body, flags=re.DOTALL)
-    body = re.sub(r' transform="rotate\(-?0(?:\.0)? [^"]*\)"', "", body)
-    body = _prefix_ids(body, name)
-    body = _PATH.sub(_path, body)
-    body = _GEOMETRY.sub(lambda found: f'{found[1]}="{_shorten_numbers(found[2])}"', body)
-    body = _STYLE.sub(lambda found: f' style="{_styling(found[1])}"', body)
-    body = _drop_empty(re.sub(r">\s+<", "><", body))
-    body, classes = _classes(_join_marks(body), name)
-    size = [float(each) for each in box.split()[2:]]
-    return printable(f"{head(size, description)}{classes}{body.strip()}</svg>", keep="\n\t")
-
-
 def head(size: Sequence[float], description: str) -> str:
     """How a picture of that size [pt] begins; `description` is read to those who cannot see it.
 
@@ -130,123 +101,39 @@ def head(size: Sequence[float], description: str) -> str:
     '<svg viewBox="0 0 72 36" role="img" aria-label="a &lt; b" style="--width:96px;max-width:96px">'
     """
     width = round(float(size[0]) * 96.0 / 72.0)
-    box = " ".join(_round(f"{float(each):f}", 1) for each in (0.0, 0.0, *size))
-    return f'<svg viewBox="{box}" role="img" aria-label="{_attribute(description)}" style="--width:{width}px;max-width:{width}px">'
+    box = " ".join(short(each) for each in (0.0, 0.0, *size))
+    return f'<svg viewBox="{box}" role="img" aria-label="{escaped(description)}" style="--width:{width}px;max-width:{width}px">'
 
 
-def _attribute(text: str) -> str:
+def escaped(text: str) -> str:
+    """Text as it stands in SVG, within an attribute too.
+
+    >>> escaped("a < b")
+    'a &lt; b'
+    """
     for sign, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
         text = text.replace(sign, entity)
     return text
 
 
-def _prefix_ids(body: str, name: str) -> str:
-    """Identifiers that are referred to get the figure's name in front, the others go."""
-    used = set(re.findall(r'(?:url\(#|href="#)([^)"]+)', body))
-    body = re.sub(r' id="([^"]+)"', lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
-    return re.sub(r'(url\(#|href="#)([^)"]+)', rf"\g<1>{name}-\g<2>", body)
+def short(value: float, decimals: int = 1) -> str:
+    """A number as short as it goes.
 
-
-def _shorten_numbers(numbers: str, decimals: int = 1) -> str:
-    """Numbers to a tenth of a point, without zeros that say nothing."""
-    text = _NUMBER.sub(lambda found: _round(found[0], decimals), numbers)
-    text = re.sub(r"\s+", " ", text).strip()
-    return re.sub(r"(?<=[A-Za-z]) (?=[-\d])| (?=[A-Za-z])", "", text) if text[:1] == "M" else text
-
-
-def _path(found: re.Match[str]) -> str:
-    """A path with fewer digits; translucent areas keep one more, or their seams show."""
-    decimals = 2 if "fill-opacity" in found[3] else 1
-    text = found[2].replace("\n", " ")
-    outline = _to_relative(text, decimals) if _STRAIGHT.fullmatch(text) else _shorten_numbers(text, decimals)
-    return f'<path{found[1]} d="{outline}"{found[3]}>'
-
-
-def _to_relative(text: str, decimals: int) -> str:
-    """A path of straight lines with steps instead of points; a line that goes on from the last point needs no new start."""
-    scale = 10**decimals
-    here: tuple[int, int] | None = None
-    pieces: list[str] = []
-    drawing = False
-    for sign, x, y in _STEP.findall(text):
-        if not x:
-            pieces.append("z")
-            here = None
-            continue
-        point = (round(float(x) * scale), round(float(y) * scale))
-        if sign == "L" and here is not None:
-            pieces.append(_step("" if drawing else "l", point[0] - here[0], point[1] - here[1], decimals))
-            drawing = True
-        elif point != here:
-            pieces.append(f"M{_decimal(point[0], decimals)} {_decimal(point[1], decimals)}")
-            drawing = False
-        here = point
-    return "".join(pieces)
-
-
-def _step(sign: str, across: int, up: int, decimals: int) -> str:
-    first, second = _decimal(across, decimals), _decimal(up, decimals)
-    start = sign or ("" if first.startswith("-") else " ")
-    return f"{start}{first}{'' if second.startswith('-') else ' '}{second}"
+    >>> short(-0.04), short(12.0), short(-0.5), short(1.444, 2)
+    ('0', '12', '-.5', '1.44')
+    """
+    return decimal(round(value * 10**decimals), decimals)
 
 
 @lru_cache(maxsize=1 << 12)
-def _decimal(value: int, decimals: int) -> str:
+def decimal(value: int, decimals: int) -> str:
     """An integer number of units of the last decimal, as short as it goes.
 
-    >>> _decimal(-5, 1), _decimal(120, 1)
+    >>> decimal(-5, 1), decimal(120, 1)
     ('-.5', '12')
     """
     text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
-
-
-def _round(number: str, decimals: int) -> str:
-    text = f"{float(number):.{decimals}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-@lru_cache(maxsize=256)
-def _styling(style: str) -> str:
-    """A style with the page's colours and font, without blanks."""
-    style = re.sub(r"font: (?:(bold|\d+) )?([\d.]+)px [^;]+", _font, style)
-    for colour in _THEME:
-        style = style.replace(colour, theme_colour(colour))
-    style = re.sub(r"stroke-linejoin: \w+;? ?|font-family: [^;]+;? ?", "", style)
-    if "fill-opacity" in style:
-        style += "; shape-rendering: crispEdges"  # or the seams between neighbours show
-    style = _NUMBER.sub(lambda found: f"{float(found[0]):.2f}".rstrip("0").rstrip("."), style)
-    return style.replace(": ", ":").replace("; ", ";").rstrip("; ")
-
-
-def _font(found: re.Match[str]) -> str:
-    weight = f"; font-weight: {found[1]}" if found[1] else ""
-    return f"font-size: {found[2]}px{weight}"
-
-
-def _drop_empty(body: str) -> str:
-    """Groups without attributes unwrapped, empty ones removed."""
-    before = ""
-    while before != body:
-        before = body
-        body = _GROUP.sub(r"\1", body)
-        body = re.sub(r"<defs>\s*</defs>|<defs/>|<g/>", "", body)
-    return body
-
-
-def _join_marks(body: str) -> str:
-    """Runs of equal marks as one path, at whose points they stand; their look is the mark's own."""
-    numbers: dict[tuple[str, str], int] = {}
-
-    def path(found: re.Match[str]) -> str:
-        key, first = (found["mark"], found["look"]), (found["mark"], found["look"]) not in numbers
-        name = f"{found['mark']}-{numbers.setdefault(key, len(numbers))}"
-        mark = f'<use href="#{found["mark"]}"{found["look"]}/>'
-        made = f'<marker id="{name}" overflow="visible" markerUnits="userSpaceOnUse">{mark}</marker>' if first else ""
-        points = " ".join(f"{x} {y}" for x, y in _PLACE.findall(found[0]))
-        return f'{made}<path d="M{points}" style="fill:none;marker:url(#{name})"/>'
-
-    return _MARKS.sub(path, body)
 
 
 def _classes(body: str, name: str) -> tuple[str, str]:

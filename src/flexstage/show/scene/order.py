@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from flexstage.show.scene.facet import Edge, Facet
 
 _CANDIDATES = 8
 _TOLERANCE = 1e-6
+_Corner: TypeAlias = tuple[list[float], float, Edge]
+"""Of a clipped facet: a point, its share and the edge that starts there (Sutherland and Hodgman)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,30 +97,26 @@ def split(facet: Facet, distance: Array) -> tuple[Facet, Facet]:
     >>> [half.points[:, 0].tolist() for half in halves]
     [[0.0, 1.0], [-1.0, 0.0]]
     """
-    return _clip(facet, distance), _clip(facet, -distance)
+    before: list[_Corner] = []
+    behind: list[_Corner] = []
+    corners = list(zip(facet.points.tolist(), facet.share.tolist(), facet.edges, distance.tolist(), strict=True))
+    for (point, share, edge, here), (after, onward, _, there) in zip(corners, [*corners[1:], corners[0]], strict=True):
+        part = here / (here - there) if here != there else 0.0
+        for piece, inside, stays in ((before, here >= 0.0, there >= 0.0), (behind, here <= 0.0, there <= 0.0)):
+            if inside:
+                piece.append((point, share, edge))
+            if inside != stays:
+                cut = [first + part * (last - first) for first, last in zip(point, after, strict=True)]
+                piece.append((cut, share + part * (onward - share), None if inside else edge))
+    return _piece(facet, before), _piece(facet, behind)
 
 
-def _clip(facet: Facet, distance: Array) -> Facet:
-    """Sutherland and Hodgman's clip to the side of positive distances; the cut is no edge."""
-    points: list[Array] = []
-    share: list[float] = []
-    edges: list[Edge] = []
-    count, reach = len(facet.points), distance.tolist()
-    for index in range(count):
-        after = (index + 1) % count
-        inside, onward = reach[index] >= 0.0, reach[after] >= 0.0
-        if inside:
-            points.append(facet.points[index])
-            share.append(facet.share[index])
-            edges.append(facet.edges[index])
-        if inside != onward:
-            part = reach[index] / (reach[index] - reach[after])
-            points.append(facet.points[index] + part * (facet.points[after] - facet.points[index]))
-            share.append(facet.share[index] + part * (facet.share[after] - facet.share[index]))
-            edges.append(None if inside else facet.edges[index])
-    if count == 2:
-        points, share, edges = points[:2], share[:2], [facet.edges[0], None]
-    return Facet(np.array(points), tuple(edges), facet.paint, np.array(share), facet.whole or facet)
+def _piece(facet: Facet, corners: Sequence[_Corner]) -> Facet:
+    """A part of a facet, whose cut is no edge."""
+    kept = corners if len(facet.points) > 2 else corners[:2]
+    points, share, edges = zip(*kept, strict=True)
+    rest = edges if len(kept) > 2 else (edges[0], None)
+    return Facet(np.array(points), rest, facet.paint, np.array(share), facet.whole or facet)
 
 
 def sort_by_depth(tree: Partition | None, eye: Array) -> Iterator[Facet]:
