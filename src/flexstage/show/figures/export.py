@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Sequence
 from functools import lru_cache
+from html import escape
 from typing import Any
 
 from flexstage.base.text import printable
@@ -102,18 +103,7 @@ def head(size: Sequence[float], description: str) -> str:
     """
     width = round(float(size[0]) * 96.0 / 72.0)
     box = " ".join(short(each) for each in (0.0, 0.0, *size))
-    return f'<svg viewBox="{box}" role="img" aria-label="{escaped(description)}" style="--width:{width}px;max-width:{width}px">'
-
-
-def escaped(text: str) -> str:
-    """Text as it stands in SVG, within an attribute too.
-
-    >>> escaped("a < b")
-    'a &lt; b'
-    """
-    for sign, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        text = text.replace(sign, entity)
-    return text
+    return f'<svg viewBox="{box}" role="img" aria-label="{escape(description)}" style="--width:{width}px;max-width:{width}px">'
 
 
 def short(value: float, decimals: int = 1) -> str:

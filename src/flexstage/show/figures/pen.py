@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 from functools import lru_cache
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.transforms import Affine2D
 
 from flexstage.base.number import Array
-from flexstage.show.figures.export import decimal, escaped, short, theme_colour
+from flexstage.show.figures.export import decimal, short, theme_colour
 
 _HATCH = 72
 _ANCHORS = {"left": "start", "center": "middle", "right": "end"}
@@ -87,7 +88,7 @@ class Pen(RendererBase):
             place = f'x="{across}" y="{up}"' + (f' transform="rotate({-angle:g} {across} {up})"' if angle else "")
         alpha = gc.get_alpha() if gc.get_forced_alpha() else gc.get_rgb()[3]
         look += f";fill:{_fill(gc.get_rgb())}" + ("" if alpha == 1.0 else f";opacity:{short(alpha, 2)}")
-        self.said.append(f'<text style="{look}" {place}{self._clip(gc)}>{escaped(s)}</text>')
+        self.said.append(f'<text style="{look}" {place}{self._clip(gc)}>{escape(s)}</text>')
 
     def draw_image(self, gc: Any, x: float, y: float, im: Any, transform: Any = None) -> None:
         """A raster, its first row below."""
