@@ -117,7 +117,11 @@ def test_only_the_module_of_a_command_that_runs_is_imported() -> None:
 def test_options_that_are_texts_or_paths_load_no_pydantic(tmp_path: Path) -> None:
     """It takes longer to import than all of a short command's options to read."""
     code = "import sys; from flexstage.apps.cli import run; run(sys.argv[1:]); print('pydantic' in sys.modules)"
-    for words in (["new", "stage.toml", "--case", "bridge"], ["modes", "stage.toml", "--set", "bridge.thickness=1 mm"], ["check", "stage.toml"]):
+    for words in (
+        ["new", "stage.toml", "--case", "bridge"],
+        ["modes", "stage.toml", "--set", "bridge.thickness=1 mm"],
+        ["check", "stage.toml"],
+    ):
         done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True, cwd=tmp_path)
         assert done.stdout.splitlines()[-1] == "False"
 
