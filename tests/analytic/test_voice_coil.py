@@ -12,6 +12,7 @@ from flexstage.analysis.judge import judge
 from flexstage.analysis.response import response
 from flexstage.analysis.workspace.reach import reach
 from flexstage.base.scale import X, Z, mm
+from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, StructuralDamping
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.ideal import ideal
@@ -146,6 +147,14 @@ def test_reach_is_the_least_limit_over_stiffness():
     assert found.held_briefly == pytest.approx([2.0 * per_ampere], rel=1e-9)
     needs = [each.values.item() for each in (found.current, found.voltage, found.power, found.rise)]
     assert needs == pytest.approx([2.0**0.5, 6.0 * 2.0**0.5, 12.0, 60.0], rel=1e-9)
+
+
+def test_a_coil_does_not_bound_what_it_does_not_move():
+    """Crosstalk that is rounding is no slope: the other axis' coil never reaches its limit."""
+    mechanism = case("voice-coil-xy")
+    bounds = reach(mechanism, ideal(mechanism), lumped(mechanism)).bounds
+    for axis, other, row in zip(bounds.rows, ("D2", "D1"), np.isinf(bounds.values), strict=True):
+        assert row.tolist() == [cause.startswith(other) for cause in bounds.columns], axis
 
 
 def test_travel_and_a_stress_end_the_reach_too():

@@ -29,6 +29,8 @@ from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, Frame, twist_transform
 
+_ROUNDING = 1e-12
+
 _STRESS_STEPS = 60
 _YIELD = "yield stress"
 _LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
@@ -166,9 +168,10 @@ def _by_input(inputs: tuple[str, ...], limits: list[list[tuple[str, Number]]], p
 
 
 def _over(limit: Array, slope: Array) -> Array:
-    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does."""
+    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does, as far as rounding tells."""
     size = magnitude(slope)
-    return np.where(size > 0.0, limit / np.where(size > 0.0, size, 1.0), np.inf)
+    known = np.real(size) > _ROUNDING * np.max(np.real(size), axis=-1, keepdims=True)
+    return np.where(known, limit / np.where(known, size, 1.0), np.inf)
 
 
 def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
