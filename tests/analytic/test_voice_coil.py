@@ -152,9 +152,10 @@ def test_reach_is_the_least_limit_over_stiffness():
 def test_a_coil_does_not_bound_what_it_does_not_move():
     """Crosstalk that is rounding is no slope: the other axis' coil never reaches its limit."""
     mechanism = case("voice-coil-xy")
-    bounds = reach(mechanism, ideal(mechanism), lumped(mechanism)).bounds
-    for axis, other, row in zip(bounds.rows, ("D2", "D1"), np.isinf(bounds.values), strict=True):
-        assert row.tolist() == [cause.startswith(other) for cause in bounds.columns], axis
+    found = reach(mechanism, ideal(mechanism), lumped(mechanism))
+    for axis, other, row in zip(found.bounds.rows, ("D2", "D1"), np.isinf(found.bounds.values), strict=True):
+        assert row.tolist() == [cause.startswith(other) for cause in found.bounds.columns], axis
+    assert np.count_nonzero(found.per_motion.values) == 2
 
 
 def test_travel_and_a_stress_end_the_reach_too():

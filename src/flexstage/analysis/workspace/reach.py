@@ -96,6 +96,7 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     gain = static_gain(model, tuple(f"{point}.{name}" for name in names), inputs).values
     limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
     per_motion, alone = _inverse(gain, _sizes(limits[False]))
+    per_motion = _without_rounding(per_motion)
     others = [
         *_travel(assembly, model, inputs, per_motion),
         *_stops(assembly, model, inputs, per_motion),
@@ -168,10 +169,17 @@ def _by_input(inputs: tuple[str, ...], limits: list[list[tuple[str, Number]]], p
 
 
 def _over(limit: Array, slope: Array) -> Array:
-    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does, as far as rounding tells."""
-    size = magnitude(slope)
-    known = np.real(size) > _ROUNDING * np.max(np.real(size), axis=-1, keepdims=True)
+    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does."""
+    size = magnitude(_without_rounding(slope))
+    known = np.real(size) > 0.0
     return np.where(known, limit / np.where(known, size, 1.0), np.inf)
+
+
+def _without_rounding(slope: Array) -> Array:
+    """Slopes per motion (..., f), zero where they are rounding beside those of other motions; their derivatives stay."""
+    size = np.abs(np.real(slope))
+    known = size > _ROUNDING * np.max(size, axis=-1, keepdims=True)
+    return np.where(known, slope, slope - np.real(slope))
 
 
 def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
