@@ -105,6 +105,11 @@ def test_a_channel_that_comes_later_than_the_others_is_named(side: str, number: 
     assert told[0].startswith(f"{name} looks {word} by 1.2 ms")
 
 
+def test_a_channel_that_hardly_moves_in_a_mode_is_not_called_late_by_it() -> None:
+    """The phase of little is noise: a whole period of another mode would have explained it."""
+    assert not any("looks" in each for each in identify(record(truth(seed=1006), 6, seconds=7.2)).warnings)
+
+
 @pytest.mark.parametrize("noise", [2e-3, 2e-2])
 def test_both_modes_of_a_pair_are_found_where_noise_goes_with_the_response(noise: float) -> None:
     known = truth((118.0, 118.0, 231.0), outputs=3, inputs=3)

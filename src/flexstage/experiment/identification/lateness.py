@@ -87,7 +87,9 @@ def _told(found: Identified, channel: tuple[str, int] | None, least: float = _SU
     turning = np.abs(np.imag(poles))
     weights = 1.0 / (spreads**2 + _UNSURE**2)
     longest = (_FEW if len(terms) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
-    tried = np.arange(0.0 if channel is None else -longest, longest, 2.0 * np.pi / (_FINE * np.max(turning)))
+    step = 2.0 * np.pi / (_FINE * np.max(turning))
+    count = int(np.ceil(longest / step))
+    tried = step * np.arange(0 if channel is None else -count, count)  # none is among them
     real = np.real(np.exp(2j * np.outer(tried, turning)) @ (weights * squares)) / np.sum(weights)
     if np.max(real) < _LEAST_REAL:
         return None
@@ -130,7 +132,10 @@ def _groups(found: Identified) -> list[tuple[int, ...]]:
 
 
 def _residue(found: Identified, group: tuple[int, ...], channel: tuple[str, int] | None) -> tuple[complex, complex, float]:
-    """Of a group: its residues' mean square over their mean power (1 where all are imaginary), its mean pole, how sure its phase is."""
+    """Of a group: its residues' mean square over their mean power (1 where all are imaginary), its mean pole, how sure its phase is.
+
+    A channel's phase is less sure where the channel has little of the mode.
+    """
     chosen = list(group)
     pole = complex(np.mean(found.poles[chosen]))
     rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
@@ -141,7 +146,8 @@ def _residue(found: Identified, group: tuple[int, ...], channel: tuple[str, int]
     power = float(np.sum(np.abs(scaled) ** 2))
     square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
     spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
-    return square, pole, spread
+    part = 1.0 if channel is None else np.sqrt(power / scaled.size) + np.finfo(float).eps
+    return square, pole, spread / part
 
 
 def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
