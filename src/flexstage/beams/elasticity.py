@@ -114,10 +114,10 @@ def fillet_rz(slot: Slot, p: Numbers) -> Array:
     return _plate_share(slot, moment_factor, p[2], p[3]) * (slot.beam[..., 5] + _root_rotation(slot, p))
 
 
-def _block_as_plate(slot: Slot, share: float, power: float) -> Array:
+def _block_as_plate(slot: Slot, share: float, scale: float) -> Array:
     """What a beam of block about as long as high yields more than a plate of it: so much too much is taken off beside a hinge."""
     block = 2.0 / slot.width * (12.0 / slot.height**2 * (slot.half + 0.5 * slot.height) ** 2 + 1.0)
-    return slot.poisson**2 * share / (1.0 + (power * slot.height / slot.width) ** 2) * block
+    return slot.poisson**2 * share / (1.0 + (scale * slot.height / slot.width) ** 2) * block
 
 
 def _root_rotation(slot: Slot, p: Numbers) -> Array:

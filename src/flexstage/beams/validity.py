@@ -37,9 +37,9 @@ class Validity:
 def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity:
     """What to expect of beam theory for a part; `where` names it in the findings. Poisson's ratio is 0.3 unless a material is given.
 
-    The errors are right within 1 % of the compliance against three-dimensional elements: notches with their roots, grown on blocks of their
-    full height and width; straight ones, leaves and rods between rigid faces. Along z and about x a notch has none: beside the blocks it
-    grows on, there is too little of its own to tell. Parts that are stated have no error here.
+    The errors are right within 1 % of the compliance (fillets along y and about z: 2 %) against three-dimensional elements: notches with
+    their roots, grown on blocks of their full height and width; straight ones, leaves and rods between rigid faces. Along z and about x a
+    notch has none: beside the blocks it grows on, there is too little of its own to tell. Parts that are stated have no error here.
 
     >>> from flexstage.parts.notch import Notch
     >>> hinge = validity(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))

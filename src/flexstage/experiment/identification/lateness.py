@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.lines import Lines
-from flexstage.experiment.record import Channel
+from flexstage.experiment.record import Channel, Role
 from flexstage.experiment.unit import same_dimension, unit_problem
 
 _LEAST_REAL, _SURE = 0.9, 5.0
@@ -29,6 +29,23 @@ class Delay:
 
     value: float
     deviation: float
+
+
+@dataclass(frozen=True)
+class _Single:
+    """A channel by its place among the inputs or the outputs."""
+
+    role: Role
+    number: int
+
+
+@dataclass(frozen=True)
+class _Residue:
+    """Of a group: residues' mean `square` over their mean power (1 where all are imaginary), mean `pole`, `spread` of their phase."""
+
+    square: complex
+    pole: complex
+    spread: float
 
 
 def common_delay(found: Identified) -> Delay | None:
@@ -58,10 +75,10 @@ def late_channels(found: Identified) -> Iterator[str]:
     """
     if len(_groups(found)) < _ENOUGH:
         return
-    for side, channels in (("outputs", found.outputs), ("inputs", found.inputs)):
+    for role, channels in ((Role.OUTPUT, found.outputs), (Role.INPUT, found.inputs)):
         if len(channels) < _ENOUGH:
             continue
-        own = [_told(found, (side, number), least=-np.inf) for number in range(len(channels))]
+        own = [_told(found, _Single(role, number), least=-np.inf) for number in range(len(channels))]
         known = [each.value for each in own if each is not None]
         if len(known) < len(channels):
             continue
@@ -73,17 +90,18 @@ def late_channels(found: Identified) -> Iterator[str]:
             for channel, by, _ in late:
                 word = "late" if by > 0.0 else "early"
                 yield (
-                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {side}: with that taken out, its part in "
-                    f"the modes is in phase with theirs."
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {role.value}s: with that taken out, its part "
+                    f"in the modes is in phase with theirs."
                 )
 
 
-def _told(found: Identified, channel: tuple[str, int] | None, least: float = _SURE) -> Delay | None:
+def _told(found: Identified, channel: _Single | None, least: float = _SURE) -> Delay | None:
     """The delay that residues tell, all or those of one channel; `None` where it is not `least` deviations from none."""
     terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
     if not terms:
         return None
-    squares, poles, spreads = (np.array(column) for column in zip(*terms, strict=True))
+    squares, poles = np.array([each.square for each in terms]), np.array([each.pole for each in terms])
+    spreads = np.array([each.spread for each in terms])
     turning = np.abs(np.imag(poles))
     weights = 1.0 / (spreads**2 + _UNSURE**2)
     longest = (_FEW if len(terms) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
@@ -131,23 +149,20 @@ def _groups(found: Identified) -> list[tuple[int, ...]]:
     return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
 
 
-def _residue(found: Identified, group: tuple[int, ...], channel: tuple[str, int] | None) -> tuple[complex, complex, float]:
-    """Of a group: its residues' mean square over their mean power (1 where all are imaginary), its mean pole, how sure its phase is.
-
-    A channel's phase is less sure where the channel has little of the mode.
-    """
+def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> _Residue:
+    """All residues of a group, or those of one channel, whose phase is less sure where it has little of the mode."""
     chosen = list(group)
     pole = complex(np.mean(found.poles[chosen]))
     rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
     residues = (found.shapes[:, chosen] / rates[:, None]) @ (found.participation[chosen] * driven)
     size = np.max(np.abs(found.shapes[:, :, None] * found.participation), axis=1)
     scaled = residues / np.where(size > 0.0, size, 1.0)
-    scaled = scaled if channel is None else np.take(scaled, [channel[1]], axis=0 if channel[0] == "outputs" else 1)
+    scaled = scaled if channel is None else np.take(scaled, [channel.number], axis=0 if channel.role is Role.OUTPUT else 1)
     power = float(np.sum(np.abs(scaled) ** 2))
     square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
     spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
     part = 1.0 if channel is None else np.sqrt(power / scaled.size) + np.finfo(float).eps
-    return square, pole, spread / part
+    return _Residue(square, pole, spread / part)
 
 
 def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
