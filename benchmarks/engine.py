@@ -33,10 +33,11 @@ from flexstage.mechanism.address import set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism, Unit
 from flexstage.models.batch.blocks import Blocks, blocks, dense, of_kind
-from flexstage.models.batch.engine import PORTION, Method, Plan, iterate, plan, platform_modes, stage_of
+from flexstage.models.batch.engine import Method, Plan, iterate, plan, platform_modes, stage_of
+from flexstage.models.batch.features import PORTION
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import numbers_of
-from flexstage.models.batch.solution import Stage, found_modes
+from flexstage.models.batch.solution import found_modes
 from flexstage.models.batch.subspace import Start
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body
@@ -142,7 +143,7 @@ def compare(label: str, stage: Mechanism) -> None:
 
     values = drawn()
     numbers = numbers_of(family_plan.family, values)
-    plain = Stage(family_plan.scheme, numbers)
+    plain = stage_of(family_plan, values, slopes=False)
     whole = stage_of(family_plan, values, slopes=True)
     stiffness, inertia = (dense(family_plan.scheme, each) for each in blocks(family_plan.scheme, numbers[:, :ALONE]))
     stages = [single(family_plan, each) for each in values[:ALONE]]

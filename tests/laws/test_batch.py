@@ -168,7 +168,7 @@ def told_and_stepped(stage: Mechanism, names: tuple[str, ...]) -> None:
 def each_change(slopes: Slopes) -> Iterator[tuple[tuple[int, Feature, int], np.ndarray]]:
     """The derivatives of designs by variable, feature and number of it."""
     keys = ((change.variable, change.place, int(row)) for change in slopes.changes for row in change.rows)
-    yield from zip(keys, slopes.values, strict=True)
+    yield from zip(keys, slopes.values[:], strict=True)
 
 
 def test_units_of_time_tell_a_stiffness_by_mass_and_frequency() -> None:

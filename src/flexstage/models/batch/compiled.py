@@ -13,7 +13,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme
-from flexstage.models.batch.features import GROUNDED, Feature
+from flexstage.models.batch.features import GROUNDED, PORTION, Feature, Rows
 from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.models.batch.planes import SKEW, Planes, no_planes
 from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
@@ -26,7 +26,7 @@ _ROUNDS = 2
 """How often modes are found one by one at most."""
 
 _KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
-_DESIGNS = ("designs", "numbers_stride", "slopes_stride", "stride")
+_DESIGNS = ("designs", "numbers_stride", "numbers_portion", "slopes_stride", "slopes_portion", "stride")
 _SIZES = (
     *_DESIGNS,
     "bodies",
@@ -40,7 +40,6 @@ _SIZES = (
     "steps",
     "variables",
     "widest",
-    "entries",
     "single",
     "parts",
     "ports",
@@ -50,7 +49,7 @@ _SIZES = (
 _GRAPH = ("link", "range", "later", "heavy", "product", "update", "mirror", "inertia", "start")
 _OWN = ("gate", "through", "normal", "model", "row", "copies", "nth")
 _PLANES = (*_OWN, "tree", "member")
-_TABLES = (*_GRAPH, "slot", "reach", "about", "entry", "alike", *_PLANES)
+_TABLES = (*_GRAPH, "slot", "reach", "about", "run", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "still", "changes")
 _SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
 _RESULTS = ("values", "share", "good", "slopes", "between", "crossed")
@@ -146,10 +145,10 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     (6, 8)
     """
     count, modes = stage.numbers.shape[1], start.choice.count
-    number = _rows(stage.numbers)
-    change = np.zeros((0, count)) if stage.slopes is None else _rows(stage.slopes.values)
+    number = _held(stage.numbers)
+    change = _held(np.zeros((0, count)) if stage.slopes is None else stage.slopes.values)
     held = {**tables.arrays, "force": np.ascontiguousarray(tables.planes.inside(start.force)), "numbers_": number, "changes": change}
-    held["still"] = np.zeros(len(number), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
+    held["still"] = np.zeros(len(stage.numbers), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
     stride = count + -count % width
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
@@ -159,15 +158,22 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
         "between": np.empty((stride // width, modes * (modes - 1) // 2, stage.variables, width)),
         "crossed": np.zeros(stride // width, dtype=np.int64),
     }
-    task = _task(stage, start, tables, (count, number.strides[0] // 8, change.strides[0] // 8, stride))
+    task = _task(stage, start, tables, (count, *_strides(number), *_strides(change), stride))
     for name, item in (held | results).items():
         setattr(task, name, item.ctypes.data)
     return Job(task, held, results)
 
 
-def _rows(array: Array) -> Array:
-    """The array with its rows' designs side by side; rows may be farther apart than they are long."""
-    return array if array.strides[1] == array.itemsize else np.ascontiguousarray(array)
+def _held(rows: Array | Rows) -> Array:
+    """The numbers where they are: by portions or (rows, designs), designs beside each other. Rows may be farther apart than they are long."""
+    if isinstance(rows, Rows):
+        return rows.held
+    return rows if rows.strides[1] == rows.itemsize else np.ascontiguousarray(rows)
+
+
+def _strides(held: Array) -> tuple[int, int]:
+    """How many numbers it is from row to row, and from a portion of designs to the next."""
+    return held.strides[-2] // 8, held.strides[0] // 8 if held.ndim == 3 else PORTION
 
 
 def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) -> _Task:
@@ -185,7 +191,6 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "steps": 1 if np.isinf(start.angle) else 2,
         "variables": stage.variables,
         "widest": int(np.diff(tables.arrays["reach"], prepend=0).max(initial=0)) * 2,
-        "entries": len(tables.arrays["entry"]),
         "single": start.needed,
         "parts": stage.scheme.topology.parts,
         "ports": len(tables.planes.copies) - len(graph.order),
@@ -227,7 +232,7 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
 
 
 def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
-    """Slots, the single numbers that derivatives are about, by the group they are of, and entries (variable, slot, row) by group, too."""
+    """Slots, the single numbers that derivatives are about, by group, entries (slot, row), and runs of entries of one variable."""
     found: list[tuple[int, tuple[int, int, int, int, int, int]]] = []
     for change in changes:
         group, kind, owner = _owner(scheme, change.place)
@@ -239,12 +244,15 @@ def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
         ]
     slots = {key: number for number, key in enumerate(sorted({key for _, key in found}))}
     entries = sorted((key[0], variable, slots[key], row) for row, (variable, key) in enumerate(found))
+    firsts = [at for at, entry in enumerate(entries) if not at or entry[:2] != entries[at - 1][:2]]
+    run = [*((entries[at][1], at) for at in firsts), (0, len(entries))]
     groups = np.arange(scheme.topology.parts + len(scheme.topology.links) + len(scheme.graph.order) + 1)
     return {
         "slot": np.array([key[1:] for key in slots], dtype=np.int64).reshape(-1, 5),
-        "entry": np.array([entry[1:] for entry in entries], dtype=np.int64).reshape(-1, 3),
+        "entry": np.array([entry[2:] for entry in entries], dtype=np.int64).reshape(-1, 2),
+        "run": np.array(run, dtype=np.int64),
         "reach": np.searchsorted([key[0] for key in slots], groups).astype(np.int64),
-        "about": np.searchsorted([entry[0] for entry in entries], groups).astype(np.int64),
+        "about": np.searchsorted([entries[at][0] for at in firsts], groups).astype(np.int64),
     }
 
 

@@ -21,17 +21,18 @@ from flexstage.models.batch.blocks import Scheme, blocks, dense, scheme
 from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
+from flexstage.models.batch.features import PORTION, Rows
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
-from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of
+from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of, rows_of
 from flexstage.models.batch.planes import Planes, no_planes, planes
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
 from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
 
-_CHUNK, PORTION = 1024, 128
-"""Designs described at once, and those iterated at once in numpy: as many as the processor's cache holds."""
+_CHUNK = 1024
+"""Designs described at once."""
 
 _MOST = 16
 """Vectors of a block at most."""
@@ -248,7 +249,7 @@ def _piece(plan_: Plan, values: Array, *, slopes: bool, method: Method, wide: bo
                 _write(plan_, result, np.array([design]), locked_solution(plan_.family, safe[design], plan_.choice, slopes=slopes))
             return result
         stage = stage_of(plan_, safe, slopes=slopes, wide=wide)
-        finite = finite & np.isfinite(stage.numbers).all(axis=0)
+        finite = finite & stage.finite
         result.status[~finite] = Status.NOT_FINITE
         left = finite
         if plan_.start is not None:
@@ -327,15 +328,16 @@ def stage_of(plan_: Plan, values: Array, *, slopes: bool, wide: bool = False) ->
     numbers, derivatives = plan_.surface.numbers(values), plan_.surface.slopes(values) if slopes else None
     outside = np.flatnonzero(~plan_.surface.holds(values))
     if len(outside):
-        numbers[:, outside], there = _described(plan_, values[outside], slopes=slopes)
+        described, there = _described(plan_, values[outside], slopes=slopes)
+        numbers[:, outside] = described[:]
         if derivatives is not None and there is not None:
-            derivatives.values[:, outside], derivatives.missed[outside] = there.values, there.missed
+            derivatives.values[:, outside], derivatives.missed[outside] = there.values[:], there.missed
     return Stage(plan_.scheme, numbers, values.shape[1] if slopes else 0, derivatives)
 
 
-def _described(plan_: Plan, values: Array, *, slopes: bool, wide: bool = False) -> tuple[Array, Slopes | None]:
+def _described(plan_: Plan, values: Array, *, slopes: bool, wide: bool = False) -> tuple[Rows, Slopes | None]:
     """The features of designs that are described, and their derivatives where these are asked for."""
-    return numbers_and_slopes(plan_.family, values, wide=wide) if slopes else (numbers_of(plan_.family, values), None)
+    return numbers_and_slopes(plan_.family, values, wide=wide) if slopes else (rows_of(plan_.family, values), None)
 
 
 def _tame(stage: Stage, finite: Array) -> Stage:

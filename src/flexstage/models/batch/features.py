@@ -25,6 +25,12 @@ from flexstage.parts.part import Part
 _BLOCK = 512
 """Designs whose parts are integrated at once."""
 
+PORTION = 128
+"""Designs whose numbers stand beside each other (as in kernel.c), and those iterated at once in numpy: as many as the processor's cache holds."""
+
+Some = slice | Sequence[int] | Array
+"""Which rows, or which designs."""
+
 GROUNDED = -1
 """The ground among the numbers of bodies."""
 
@@ -259,33 +265,72 @@ def _taken(value: Any, designs: slice) -> Any:
     return value
 
 
-def empty_rows(rows: int, count: int) -> Array:
-    """An empty (rows, count) whose rows begin on lines of a cache, and not on the same one of each page, as powers of two would.
+class Rows:
+    """Numbers of many designs by rows, read and written like an array (rows, designs).
 
-    >>> found = empty_rows(3, 512)
-    >>> found.strides[0] % 128, found.ctypes.data % 64
-    (64, 0)
+    Those of `PORTION` designs stand beside each other in `held` (portions, rows, PORTION): what a few designs need lies on few pages of
+    memory, not on one for each row. Beyond the last design it is not told what stands there.
+
+    >>> found = Rows(3, 200)
+    >>> found[:] = np.arange(600.0).reshape(3, 200)
+    >>> found[1:, 150:152].tolist(), found[:, [0]].T.tolist(), found.shape
+    ([[350.0, 351.0], [550.0, 551.0]], [[0.0, 200.0, 400.0]], (3, 200))
     """
-    wide = count + -count % 16 + 8
-    room = np.empty(rows * wide + 7)
-    first = -(room.ctypes.data // 8) % 8
-    return room[first : first + rows * wide].reshape(rows, wide)[:, :count]
+
+    def __init__(self, rows: int, designs: int) -> None:
+        """Empty ones. They begin on lines of the cache, and not on the same one of each page, as powers of two would."""
+        wide, portions = PORTION + 8, -(-designs // PORTION)
+        room = np.empty(portions * rows * wide + 7)
+        first = -(room.ctypes.data // 8) % 8
+        self.held: Array = room[first : first + portions * rows * wide].reshape(portions, rows, wide)[..., :PORTION]
+        self.shape = (rows, designs)
+
+    def __len__(self) -> int:
+        """How many rows there are."""
+        return self.shape[0]
+
+    def __array__(self, dtype: np.dtype | None = None, copy: bool | None = None) -> Array:
+        """All as an array (rows, designs)."""
+        return np.asarray(self[:], dtype)
+
+    def __getitem__(self, key: Some | tuple[Some, Some]) -> Array:
+        """Some rows of all designs, or of some."""
+        rows, designs = key if isinstance(key, tuple) else (key, None)
+        own = self.held[:, rows]
+        if designs is None:
+            return own.swapaxes(0, 1).reshape(own.shape[1], len(own) * PORTION)[:, : self.shape[1]]
+        portion, place = np.divmod(np.arange(self.shape[1])[designs], PORTION)
+        return own[portion, :, place].T
+
+    def __setitem__(self, key: Some | tuple[Some, Some], values: Array) -> None:
+        """Write some rows of all designs, or of some."""
+        rows, designs = key if isinstance(key, tuple) else (key, slice(None))
+        chosen = np.arange(self.shape[1])[designs]
+        values = np.broadcast_to(values, (len(values), len(chosen)))
+        if isinstance(designs, slice) and len(chosen) and not chosen[0] % PORTION:
+            first, last = chosen[0] // PORTION, (chosen[-1] + 1) // PORTION
+            whole = (last - first) * PORTION
+            self.held[first:last, rows] = values[:, :whole].reshape(len(values), last - first, PORTION).swapaxes(0, 1)
+            chosen, values = chosen[whole:], values[:, whole:]
+        if len(chosen):
+            portion, place = np.divmod(chosen, PORTION)
+            self.held[portion[:, None], np.arange(self.shape[0])[rows], place[:, None]] = values.T
 
 
-def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], count: int) -> Array:
-    """All numbers of `count` designs as (numbers, designs).
+def pack(found: Mapping[tuple[str, int], Array], places: tuple[Feature, ...], count: int) -> Rows:
+    """All numbers of `count` designs.
 
     >>> place = Feature("first", 0, 0)
-    >>> pack({("first", 0): np.arange(3.0)}, (place,), 2).tolist()
+    >>> pack({("first", 0): np.arange(3.0)}, (place,), 2)[:].tolist()
     [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
     """
-    result = empty_rows(places[-1].slots.stop, count)
+    result = Rows(places[-1].slots.stop, count)
     for place in places:
         put(result, place, found[place.key])
     return result
 
 
-def put(numbers: Array, place: Feature, array: Array) -> Array:
+def put(numbers: Array | Rows, place: Feature, array: Array) -> Array:
     """Write the real numbers (..., *shape) of a feature among all (numbers, designs), and tell which are the same in all designs.
 
     >>> numbers = np.zeros((3, 2))

@@ -20,6 +20,8 @@
 
 #define MOST 16     /* vectors of a block */
 #define MODES 12    /* modes that may be asked for */
+#define USUAL 6      /* modes, where the platform's are below all others: known to the compiler */
+#define ROUNDING 1e-15
 #define BESIDE 1e-6 /* how far below its value a single mode's shift is: its matrix is never singular */
 #define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
 
@@ -27,7 +29,7 @@ typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, slopes_stride, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, entries, single, parts, ports, gates, rows;
+    int64_t designs, numbers_stride, numbers_portion, slopes_stride, slopes_portion, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, single, parts, ports, gates, rows;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
@@ -40,8 +42,9 @@ typedef struct {
     const int64_t *start;   /* stiffness, mass, turn, first, second */
     const int64_t *slot;    /* slots x (kind, owner or place, row, column, sign of what the other end of a mirrored mass has; 0: it is not) */
     const int64_t *reach;   /* groups + 1: where the slots of each group begin: parts (laws), links (places), bodies by place (inertia) */
-    const int64_t *about;   /* groups + 1: where their entries begin */
-    const int64_t *entry;   /* entries x (variable, slot, row of `changes`), by group, then by variable */
+    const int64_t *about;   /* groups + 1: where their runs begin */
+    const int64_t *run;     /* runs x (variable, where its entries begin), by group, and where the last one's end */
+    const int64_t *entry;   /* entries x (slot, row of `changes`) */
     const int64_t *alike;   /* links, those of one part together */
     const int64_t *gate;    /* gates x (port, link, axis, link to the platform, its side, copy): one for each tree, which has the axes of its link, of which
                              * one is normal to the plane of symmetry */
@@ -54,9 +57,9 @@ typedef struct {
     const int64_t *tree;    /* ports + 1: where the bodies of each tree that stand for themselves begin in the following */
     const int64_t *member;  /* those bodies, in their order */
     const double *force;    /* rows x m: inertial forces of the modes to begin with */
-    const double *numbers_; /* numbers x numbers_stride */
+    const double *numbers_; /* numbers, those of PORTION designs beside each other: numbers_stride from row to row, numbers_portion to those of the next */
     const int64_t *still;   /* numbers: whether it is known that one is the same in all designs */
-    const double *changes;  /* entries x slopes_stride */
+    const double *changes;  /* entries, in the same way */
     /* settings */
     double shift, value, angle, limit, cluster, together, shares, margin, pivot, skew, span;
     /* results */
@@ -89,11 +92,23 @@ static inline lanes load_at(const double *p, int64_t design, int64_t designs)
     return r;
 }
 static inline void store(double *p, lanes a) { *(loose *)p = a; }
-/* The same, and asks for the next ones: rows are far apart. */
-static inline lanes read_row(const double *p, int64_t design, int64_t designs)
+
+#define PORTION 128 /* designs that stand beside each other */
+
+/* Where a vector of designs stands in rows: how far from where they begin, how far the next vector is from it, and how many of its designs there are. */
+typedef struct { int64_t at, next, count; } Spot;
+
+static inline Spot spot_of(int64_t design, int64_t designs, int64_t portion)
 {
-    __builtin_prefetch(p + design + WIDTH, 0, 2);
-    return load_at(p, design, designs);
+    const int64_t left = designs - design, next = design % PORTION + WIDTH < PORTION ? WIDTH : portion + WIDTH - PORTION;
+    return (Spot){design / PORTION * portion + design % PORTION, left > WIDTH ? next : 0, left < WIDTH ? left : WIDTH};
+}
+
+/* What a row has there; asks for what the next vector will want of it. */
+static inline lanes read_row(const double *row, Spot spot)
+{
+    __builtin_prefetch(row + spot.at + spot.next, 0, 2);
+    return spot.count == WIDTH ? load(row + spot.at) : load_at(row + spot.at, 0, spot.count);
 }
 
 /* ---- 6x6 blocks ---- */
@@ -272,6 +287,7 @@ typedef struct {
     int64_t *crossing, crossings;    /* entries of laws that are zero where the plane is one of symmetry, and are not in every design */
     int fills;                       /* whether elimination makes edges */
     int64_t design;                  /* the first of these designs */
+    Spot spot;                       /* where they stand in rows of `changes` */
     lanes *number;                   /* their numbers */
     lanes *stiff, *stiff_edge;       /* K */
     lanes *mass, *mass_edge;         /* M */
@@ -910,7 +926,7 @@ static INLINE void blends(int64_t n, int m, Layout at, int64_t next, lanes *y, c
 }
 
 /* y = x q, the first `count` columns of it, one after the other, each `next` further on. */
-static void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
+static INLINE void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
 {
     int c = 0;
     for (; c + 3 <= count; c += 3) blends(n, m, at, next, y, x, q, c, 3);
@@ -919,7 +935,7 @@ static void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, 
 }
 
 /* Eigenvalues on the diagonal of a and vectors in v (columns), by Jacobi's rotations; those of a lane stop when they are done. */
-static void jacobi(int m, lanes *a, lanes *v, double least)
+static INLINE void jacobi(const int m, lanes *a, lanes *v, double least)
 {
     for (int i = 0; i < m * m; i++) v[i] = all(i % (m + 1) ? 0.0 : 1.0);
     for (int sweep = 0; sweep < 20; sweep++) {
@@ -927,13 +943,11 @@ static void jacobi(int m, lanes *a, lanes *v, double least)
         for (int p = 0; p < m - 1; p++)
             for (int q = p + 1; q < m; q++) {
                 const lanes o = a[p * m + q], d = a[p * m + p], e = a[q * m + q];
-                const marks turn = size_of(o) > least * root(size_of(d * e));
+                const marks turn = o * o > least * least * size_of(d * e);
                 if (!any(turn)) continue;
                 moved = 1;
-                const lanes half = (e - d) / pick(turn, o + o, all(1.0)), square = root(half * half + 1.0);
-                lanes t = 1.0 / (size_of(half) + square);
-                t = pick(half < 0.0, -t, t);
-                t = pick(turn, t, all(0.0));
+                const lanes two = pick(turn, o + o, all(0.0)), apart = e - d, far = root(apart * apart + two * two);
+                const lanes t = pick(turn, two / pick(apart < 0.0, apart - far, apart + far), all(0.0)); /* tangent of the angle that makes o nought */
                 const lanes c = 1.0 / root(t * t + 1.0), s = t * c;
                 a[p * m + p] = d - t * o, a[q * m + q] = e + t * o;
                 a[p * m + q] = a[q * m + p] = pick(turn, all(0.0), o);
@@ -951,7 +965,7 @@ static void jacobi(int m, lanes *a, lanes *v, double least)
 }
 
 /* Ascending lambda (m) of stiff q = lambda mass q, q^T mass q = 1, in the columns of q; to `least`, relative. */
-static void small(int m, lanes *stiff, lanes *mass, lanes *values, lanes *q, double least)
+static INLINE void small(const int m, lanes *stiff, lanes *mass, lanes *values, lanes *q, double least)
 {
     lanes scale[MOST], turned[MOST * MOST];
     for (int i = 0; i < m; i++) scale[i] = 1.0 / root(mass[i * m + i]);
@@ -985,7 +999,14 @@ static void small(int m, lanes *stiff, lanes *mass, lanes *values, lanes *q, dou
             for (int k = i + 1; k < m; k++) s -= mass[k * m + i] * turned[k * m + c];
             turned[i * m + c] = s * mass[i * m + i];
         }
+    marks other = {0}; /* lanes in which they are not in order */
+    for (int c = 0; c < m; c++) {
+        values[c] = stiff[c * (m + 1)];
+        if (c) other |= ~(values[c - 1] <= values[c]);
+        for (int i = 0; i < m; i++) q[i * m + c] = scale[i] * turned[i * m + c];
+    }
     for (int lane = 0; lane < WIDTH; lane++) {
+        if (!other[lane]) continue;
         int order[MOST];
         for (int i = 0; i < m; i++) {
             int place = i;
@@ -1018,18 +1039,36 @@ static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes 
 }
 
 /* Rayleigh-Ritz on (K - shift M)^-1 times the forces to begin with: all values, and M times the modes that are wanted, in w->force. */
-static void begin(const Task *t, Room *w, Ritz *out)
+static INLINE void begin(const Task *t, Room *w, Ritz *out, const int m, const int single)
 {
-    const int m = (int)t->m, single = (int)t->single;
     const int64_t n = 6 * t->bodies;
     lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST];
-    if (m == 6) solve(t, w, w->ahead, w->start, w->now, all(t->shift), 6); /* six platform modes below all others, the usual case */
-    else solve(t, w, w->ahead, w->start, w->now, all(t->shift), m);
+    solve(t, w, w->ahead, w->start, w->now, all(t->shift), m);
     grams(n, m, (Layout){m, 1}, mass, stiff, w->ahead, w->now, 0, t->force);
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
     for (int c = 0; c < m; c++) out->share[c] = share_of(t, w, w->ahead + (n - 6) * m, q, m, c);
     blend(n, m, (Layout){m, 1}, t->rows, w->force, w->now, q, single);
+}
+
+/* Rayleigh-Ritz on single modes in w->ahead: shapes in w->now, `weighed` are M times them, `before` M times what they were made of. */
+static INLINE void combine(const Task *t, Room *w, Ritz *known, const lanes *weighed, const lanes *before, const int m)
+{
+    const int64_t n = 6 * t->bodies;
+    const Layout at = {1, t->rows};
+    lanes stiff[MOST * MOST], mass[MOST * MOST], length[MOST];
+    grams(n, m, at, mass, stiff, w->ahead, weighed, before, 0);
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
+    for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
+    small(m, stiff, mass, known->values, known->mix, ROUNDING);
+    blend(n, m, at, t->rows, w->now, w->ahead, known->mix, m);
+    for (int c = 0; c < m; c++) {
+        for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(known->mix[k * m + c]) * length[k];
+        lanes one = all(1.0), seen[6];
+        for (int i = 0; i < 6; i++) seen[i] = w->now[c * t->rows + n - 6 + i];
+        known->share[c] = share_of(t, w, seen, &one, 1, 0);
+    }
 }
 
 /* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
@@ -1038,8 +1077,7 @@ static void begin(const Task *t, Room *w, Ritz *out)
 static void polish(const Task *t, Room *w, Ritz *known)
 {
     const int m = (int)t->single;
-    const int64_t n = 6 * t->bodies;
-    lanes stiff[MOST * MOST], mass[MOST * MOST], q[MOST * MOST], values[MOST], *const weighed = t->steps % 2 ? w->next : w->force;
+    const lanes *const weighed = t->steps % 2 ? w->next : w->force, *const before = t->steps % 2 ? w->force : w->next;
     for (int c = 0; c < m; c++) {
         const int64_t at = c * t->rows;
         known->shift[c] = (1.0 - BESIDE) * known->values[c];
@@ -1049,22 +1087,8 @@ static void polish(const Task *t, Room *w, Ritz *known)
         known->sine[c] = pick(square == square, known->sine[c], square);
         known->quotient[c] = dots.between / dots.before;
     }
-    const Layout at = {1, t->rows};
-    grams(n, m, at, mass, stiff, w->ahead, weighed, t->steps % 2 ? w->force : w->next, 0);
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
-    lanes length[MOST];
-    for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
-    small(m, stiff, mass, values, q, 1e-17);
-    blend(n, m, at, t->rows, w->now, w->ahead, q, m);
-    memcpy(known->mix, q, sizeof(lanes) * m * m);
-    for (int c = 0; c < m; c++) {
-        known->values[c] = values[c];
-        for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(q[k * m + c]) * length[k];
-        lanes one = all(1.0), seen[6];
-        for (int i = 0; i < 6; i++) seen[i] = w->now[c * t->rows + n - 6 + i];
-        known->share[c] = share_of(t, w, seen, &one, 1, 0);
-    }
+    if (m == USUAL) combine(t, w, known, weighed, before, USUAL);
+    else combine(t, w, known, weighed, before, m);
 }
 
 /* ---- which modes are the platform's, one design at a time ---- */
@@ -1303,29 +1327,24 @@ static INLINE void weigh_slots(const Task *t, int64_t group, lanes *sum, const W
 /* Whether the compiler knows a number. */
 #define KNOWN(n) __builtin_constant_p(n)
 
-static INLINE lanes change_of(const Task *t, const Room *w, int64_t e)
-{
-    return read_row(t->changes + t->entry[3 * e + 2] * t->slopes_stride, w->design, t->designs);
-}
-
 /* From the slots of a group (a part, a link, a body) to variables; n is the number of pairs. */
 static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *sum, const int n)
 {
+    const int64_t *run = t->run + 2 * t->about[group], *const end = t->run + 2 * t->about[group + 1];
+    const Spot spot = w->spot;
     sum -= t->reach[group] * n;
-    for (int64_t e = t->about[group]; e < t->about[group + 1];) {
-        const int64_t variable = t->entry[3 * e];
-        lanes own[6], *to = w->slope + variable * n; /* the usual six modes where their number is known */
-        if (!KNOWN(n)) {
-            for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++)
-                for (int p = 0; p < n; p++) to[p] += change_of(t, w, e) * sum[t->entry[3 * e + 1] * n + p];
-            continue;
+    for (; run < end; run += 2) {
+        const int64_t *entry = t->entry + 2 * run[1], *const last = t->entry + 2 * run[3];
+        lanes own[6], *to = w->slope + run[0] * n; /* the usual six modes where their number is known */
+        EACH_MODE for (int p = 0; p < n && KNOWN(n); p++) own[p] = to[p];
+        for (; entry < last; entry += 2) {
+            const lanes change = read_row(t->changes + entry[1] * t->slopes_stride, spot), *of = sum + entry[0] * n;
+            if (KNOWN(n))
+                EACH_MODE for (int p = 0; p < n; p++) own[p] += change * of[p];
+            else
+                for (int p = 0; p < n; p++) to[p] += change * of[p];
         }
-        EACH_MODE for (int p = 0; p < n; p++) own[p] = to[p];
-        for (; e < t->about[group + 1] && t->entry[3 * e] == variable; e++) {
-            const lanes change = change_of(t, w, e), *of = sum + t->entry[3 * e + 1] * n;
-            EACH_MODE for (int p = 0; p < n; p++) own[p] += change * of[p];
-        }
-        EACH_MODE for (int p = 0; p < n; p++) to[p] = own[p];
+        EACH_MODE for (int p = 0; p < n && KNOWN(n); p++) to[p] = own[p];
     }
 }
 
@@ -1459,7 +1478,8 @@ static void designs(const Task *t, Room *w)
         for (int lane = 0; lane < WIDTH; lane++) t->good[design + lane] = -1;
         return;
     }
-    begin(t, w, &known);
+    if (t->m == USUAL && t->single == USUAL) begin(t, w, &known, USUAL, USUAL);
+    else begin(t, w, &known, (int)t->m, (int)t->single);
     for (int64_t round = 0; round < t->rounds && left; round++) {
         if (round) { /* M times the modes, as `polish` left it */
             blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->ahead, t->steps % 2 ? w->next : w->force, known.mix, (int)t->single);
@@ -1497,7 +1517,8 @@ static int64_t vary(const Task *t, lanes *to, int64_t *varying)
         const lanes first = all(*own);
         marks other = {0};
         for (int64_t design = 0; !t->still[i] && design < t->designs && !any(other); design += 4 * WIDTH)
-            for (int64_t k = 0; k < 4 && design + k * WIDTH < t->designs; k++) other |= load_at(own, design + k * WIDTH, t->designs) != first;
+            for (int64_t k = design; k < design + 4 * WIDTH && k < t->designs; k += WIDTH)
+                other |= read_row(own, spot_of(k, t->designs, t->numbers_portion)) != first;
         if (any(other)) varying[count++] = i;
         else to[i] = to[t->mirror[i]] = first;
     }
@@ -1565,8 +1586,10 @@ int64_t flexstage_modes(const Task *t)
                 if (filled[at] && (row / 3 == column / 3) != ((row % 3 == t->normal[l]) == (column % 3 == t->normal[l]))) w.crossing[w.crossings++] = at;
             }
         for (w.design = 0; w.design < t->designs; w.design += WIDTH) {
+            const Spot spot = spot_of(w.design, t->designs, t->numbers_portion);
+            w.spot = spot_of(w.design, t->designs, t->slopes_portion);
             for (int64_t i = 0; i < some; i++)
-                w.number[varying[i]] = w.number[t->mirror[varying[i]]] = read_row(t->numbers_ + varying[i] * t->numbers_stride, w.design, t->designs);
+                w.number[varying[i]] = w.number[t->mirror[varying[i]]] = read_row(t->numbers_ + varying[i] * t->numbers_stride, spot);
             designs(t, &w);
         }
     }

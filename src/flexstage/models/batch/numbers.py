@@ -21,7 +21,7 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
-from flexstage.models.batch.features import Feature, Topology, distinct_links, empty_rows, features, pack, put, stepped_features, topology
+from flexstage.models.batch.features import Feature, Rows, Topology, distinct_links, features, pack, put, stepped_features, topology
 from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
@@ -193,7 +193,7 @@ def _mirror() -> tuple[Array, Array]:
 MIRROR, MIRROR_SIGN = _mirror()
 
 
-def is_mirrored(numbers: Array, place: Feature) -> Array:
+def is_mirrored(numbers: Array | Rows, place: Feature) -> Array:
     """Of which designs (features, b) a mass is the same seen from either end, to the bit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -211,7 +211,7 @@ def _near_slopes(family_: Family) -> Array:
     """Derivatives (rows, n) of all that may change, at three designs near the nominal one, or at fewer where no more can be described."""
     trials = _trials(family_)
     try:
-        return _slopes(family_, trials[:3], family_.widest, {}, {})[0]
+        return _slopes(family_, trials[:3], family_.widest, {}, {})[0][:]
     except DesignError:
         told = (slopes for trial in trials for slopes in _told_slopes(family_, trial))
         return np.concatenate(list(itertools.islice(told, 3)), axis=1)
@@ -228,7 +228,7 @@ def _trials(family_: Family) -> Array:
 def _told_slopes(family_: Family, design: Array) -> Iterator[Array]:
     """Those of one design, if it can be described."""
     with contextlib.suppress(DesignError):
-        yield _slopes(family_, design[None], family_.widest, {}, {})[0]
+        yield _slopes(family_, design[None], family_.widest, {}, {})[0][:]
 
 
 def _upper(place: Feature) -> Array:
@@ -333,6 +333,17 @@ def numbers_of(family_: Family, values: Array) -> Array:
     >>> numbers_of(found, np.array([[1e-3], [2e-3]])).shape[1]
     2
     """
+    return rows_of(family_, values)[:]
+
+
+def rows_of(family_: Family, values: Array) -> Rows:
+    """The same as the engine keeps them.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = family(double_triangle(), ("parts.neck.thickness",))
+    >>> rows_of(found, np.array([[1e-3], [2e-3]])).shape[1]
+    2
+    """
     return pack(features(describe(family_, values)), family_.topology.features, len(values))
 
 
@@ -344,7 +355,7 @@ class Slopes:
     """
 
     changes: tuple[Change, ...]
-    values: Array
+    values: Array | Rows
     missed: Array
     still: Array | None = None
 
@@ -369,7 +380,7 @@ def slopes_of(family_: Family, values: Array, *, wide: bool = False) -> Slopes:
     return numbers_and_slopes(family_, values, wide=wide)[1]
 
 
-def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) -> tuple[Array, Slopes]:
+def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) -> tuple[Rows, Slopes]:
     """The features' numbers, as `numbers_of` gives them to rounding, and their derivatives, as `slopes_of` does.
 
     What is stepped has its number as its real part and is not computed once more, but where a number of a part is nought.
@@ -391,11 +402,11 @@ def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) ->
     _follow(family_, values, numbers, Slopes(changes, found, missed))
     lost = np.flatnonzero((values[:, [item.variable for told in family_.told.values() for item in told]] == 0.0).any(axis=1))
     if len(lost):
-        found[:, lost] = _slopes(family_, values[lost], changes, {}, {})[0]
+        found[:, lost] = _slopes(family_, values[lost], changes, {}, {})[0][:]
     return numbers, Slopes(changes, found, missed, still)
 
 
-def _follow(family_: Family, values: Array, numbers: Array, slopes: Slopes) -> None:
+def _follow(family_: Family, values: Array, numbers: Rows, slopes: Slopes) -> None:
     """Write the derivatives that follow from others by units."""
     places = {(change.variable, *change.key): (at, change) for at, change in _starts(slopes.changes)}
     for key, told in family_.told.items():
@@ -425,15 +436,15 @@ def _slopes(
     changes: tuple[Change, ...],
     told: Mapping[Key, tuple[Told, ...]],
     dropped: Mapping[int, tuple[Change, ...]],
-) -> tuple[Array, Array, Array, Array | None]:
+) -> tuple[Rows, Array, Rows, Array]:
     """The derivatives (rows of the changes, b), but for those that units tell; in which designs what is `dropped` changes; the numbers.
 
     And which of the numbers are the same in all designs.
     """
     features_ = {place.key: place for place in family_.topology.features}
-    numbers, missed = empty_rows(family_.topology.count, len(values)), np.zeros(len(values), dtype=bool)
+    numbers, missed = Rows(family_.topology.count, len(values)), np.zeros(len(values), dtype=bool)
     still = np.zeros(family_.topology.count, dtype=bool)
-    result = empty_rows(sum(len(change.rows) for change in changes), len(values))
+    result = Rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
     for start, change in _starts(changes):
         if all(change.variable != item.variable for item in told.get(change.key, ())):
@@ -448,7 +459,7 @@ def _slopes(
         for number in group:
             for at, change in (each for each in places.get(number, ()) if each[1].key in arrays):
                 rates = np.imag(_flat(arrays[change.key], change)).T[change.rows]
-                np.divide(rates.reshape(len(change.rows), -1), width(family_, number), out=result[at : at + len(change.rows)])
+                result[at : at + len(change.rows)] = rates.reshape(len(change.rows), -1) / width(family_, number)
             for change in (each for each in dropped.get(number, ()) if np.iscomplexobj(arrays.get(each.key, 0.0))):
                 missed |= _does_change(arrays[change.key], change, width(family_, number) / abs(family_.nominal[number] or 1.0))
     return result, missed, numbers, still

@@ -11,6 +11,7 @@ from flexstage.models.batch.blocks import Blocks, Scheme, blocks, dense, of_kind
 from flexstage.models.batch.choice import Choice, choose, groups, means
 from flexstage.models.batch.dense import Whole, whole
 from flexstage.models.batch.factor import factor
+from flexstage.models.batch.features import Rows
 from flexstage.models.batch.numbers import Slopes
 from flexstage.models.batch.slopes import motion, slope
 from flexstage.models.batch.subspace import Found, Problem, Start, iterate
@@ -27,10 +28,17 @@ class Stage:
     """
 
     scheme: Scheme
-    numbers: Array
+    numbers: Array | Rows
     variables: int = 0
     slopes: Slopes | None = None
     still: Array | None = None
+
+    @property
+    def finite(self) -> Array:
+        """Which designs' numbers are all finite."""
+        if isinstance(self.numbers, Rows):
+            return np.concatenate([np.isfinite(portion).all(axis=0) for portion in self.numbers.held])[: self.numbers.shape[1]]
+        return np.asarray(np.isfinite(self.numbers).all(axis=0))
 
     def take(self, designs: Array | slice) -> Stage:
         """Those of some designs."""
@@ -90,8 +98,9 @@ def by_iteration(stage: Stage, start: Start) -> Solution:
     >>> by_iteration(Stage(stage.scheme, numbers), stage.start).good.tolist()
     [True]
     """
-    matrices = blocks(stage.scheme, stage.numbers)
-    found = found_modes(stage.scheme, matrices, of_kind(stage.scheme, stage.numbers, "inertia")[:, 0], start)
+    numbers = stage.numbers[:]
+    matrices = blocks(stage.scheme, numbers)
+    found = found_modes(stage.scheme, matrices, of_kind(stage.scheme, numbers, "inertia")[:, 0], start)
     good = found.proved
     picked = np.argsort(~found.mask, axis=1, kind="stable")[:, : start.choice.count]
     values, share = (np.take_along_axis(item, picked, axis=1) for item in (found.ritz.values, found.ritz.share))
@@ -128,7 +137,7 @@ def _slopes(stage: Stage, shapes: Array, values: Array, gap: float) -> tuple[Arr
     own, between = _no_slopes(stage, values)
     if stage.slopes is None:
         return own, between
-    seen = motion(stage.scheme, stage.numbers, shapes, means(values, group))
+    seen = motion(stage.scheme, stage.numbers[:], shapes, means(values, group))
     start = 0
     for change in stage.slopes.changes:
         stop = start + len(change.rows)

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.features import empty_rows
+from flexstage.models.batch.features import Rows
 from flexstage.models.batch.numbers import Family, Slopes, numbers_of
 
 TOLERANCE = 1e-10
@@ -56,9 +56,9 @@ class Surface:
         """Which designs (b, P) lie within the ranges."""
         return np.asarray(((values >= self.low) & (values <= self.high)).all(axis=1))
 
-    def numbers(self, values: Array) -> Array:
+    def numbers(self, values: Array) -> Rows:
         """The features' numbers (features, b), as `numbers_of` gives them."""
-        result = empty_rows(len(self.fixed), len(values))
+        result = Rows(len(self.fixed), len(values))
         result[:] = self.fixed[:, None]
         for start, table, _ in self._tables(values):
             stop = min(start + _TOGETHER, len(values))
@@ -71,8 +71,8 @@ class Surface:
     def slopes(self, values: Array) -> Slopes:
         """Their derivatives, as `slopes_of` gives them."""
         changes = self.family.changes
-        result = empty_rows(sum(len(change.rows) for change in changes), len(values))
-        result[:] = 0.0
+        result = Rows(sum(len(change.rows) for change in changes), len(values))
+        result.held[:] = 0.0
         for start, table, steep in self._tables(values):
             stop = min(start + _TOGETHER, len(values))
             for number, piece in enumerate(self.pieces):
