@@ -87,6 +87,22 @@ class Tables:
         own = {name: getattr(self.planes, name) for name in _OWN}
         return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **trees, **own}
 
+    @cached_property
+    def sizes(self) -> Mapping[str, int]:
+        """How large they are."""
+        graph, topology, copies = self.scheme.graph, self.scheme.topology, self.planes.copies
+        return {
+            "bodies": len(graph.order),
+            "links": len(topology.links),
+            "edges": len(graph.edges),
+            "updates": sum(map(len, graph.updates)),
+            "widest": int(np.diff(self.arrays["reach"], prepend=0).max(initial=0)) * 2,
+            "parts": topology.parts,
+            "ports": len(copies) - len(graph.order),
+            "gates": len(self.planes.gate),
+            "rows": 6 * int(copies[len(graph.order) :].sum()) + 6 * len(graph.order),
+        }
+
 
 def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) -> Solution:
     """Many designs by iteration from `start`, in C; the same as `by_iteration`.
@@ -147,7 +163,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _held(stage.numbers)
     change = _held(np.zeros((0, count)) if stage.slopes is None else stage.slopes.values)
-    held = {**tables.arrays, "force": np.ascontiguousarray(tables.planes.inside(start.force)), "numbers_": number, "changes": change}
+    held = {**tables.arrays, "force": tables.planes.inside(start.force), "numbers_": number, "changes": change}
     held["still"] = np.zeros(len(stage.numbers), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
     stride = count + -count % width
     results: dict[str, Array] = {
@@ -165,7 +181,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
 
 
 def _held(rows: Array | Rows) -> Array:
-    """The numbers where they are: by portions or (rows, designs), designs beside each other. Rows may be farther apart than they are long."""
+    """The numbers where they are: by portions or (rows, designs), designs beside each other. Rows may be farther apart than long."""
     if isinstance(rows, Rows):
         return rows.held
     return rows if rows.strides[1] == rows.itemsize else np.ascontiguousarray(rows)
@@ -177,25 +193,16 @@ def _strides(held: Array) -> tuple[int, int]:
 
 
 def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) -> _Task:
-    graph = stage.scheme.graph
     sizes: Mapping[str, int] = {
         **dict(zip(_DESIGNS, designs, strict=True)),
-        "bodies": len(graph.order),
-        "links": len(stage.scheme.topology.links),
-        "edges": len(graph.edges),
-        "updates": sum(map(len, graph.updates)),
+        **tables.sizes,
         "numbers": stage.numbers.shape[0],
         "m": start.force.shape[-1],
         "count": start.choice.count,
         "rounds": _ROUNDS,
         "steps": 1 if np.isinf(start.angle) else 2,
         "variables": stage.variables,
-        "widest": int(np.diff(tables.arrays["reach"], prepend=0).max(initial=0)) * 2,
         "single": start.needed,
-        "parts": stage.scheme.topology.parts,
-        "ports": len(tables.planes.copies) - len(graph.order),
-        "gates": len(tables.planes.gate),
-        "rows": 6 * int(tables.planes.copies[len(graph.order) :].sum()) + 6 * len(graph.order),
     }
     bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
     settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)

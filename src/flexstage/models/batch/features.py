@@ -26,7 +26,7 @@ _BLOCK = 512
 """Designs whose parts are integrated at once."""
 
 PORTION = 128
-"""Designs whose numbers stand beside each other (as in kernel.c), and those iterated at once in numpy: as many as the processor's cache holds."""
+"""Designs whose numbers stand beside each other (as in kernel.c), and those iterated at once in numpy: they fit into the cache."""
 
 Some = slice | Sequence[int] | Array
 """Which rows, or which designs."""
@@ -289,7 +289,7 @@ class Rows:
         """How many rows there are."""
         return self.shape[0]
 
-    def __array__(self, dtype: np.dtype | None = None, copy: bool | None = None) -> Array:
+    def __array__(self, dtype: np.dtype | None = None, *, copy: bool | None = None) -> Array:
         """All as an array (rows, designs)."""
         return np.asarray(self[:], dtype)
 

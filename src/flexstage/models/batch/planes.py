@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -62,12 +63,19 @@ class Planes:
 
     def inside(self, force: Array) -> Array:
         """Forces (bodies, 6, m) in the stage's axes as the kernel takes them, (6 bodies, m): x, y, rz, z, rx, ry in a leg's own."""
-        bodies = len(force)
-        turned = (np.swapaxes(self.axes, -1, -2)[:, None] @ force.reshape(bodies, 2, 3, -1)).reshape(force.shape)
-        own = np.where((self.through[:bodies] >= 0)[:, None, None], turned[:, _ORDER], force)
-        result = np.empty((6 * bodies, force.shape[-1]))
-        result[self.row[:bodies, None] + np.arange(6) * self.copies[:bodies, None]] = own
+        turning, places = self._turning
+        result = np.empty((places.size, force.shape[-1]))
+        result[places] = turning @ force
         return result
+
+    @cached_property
+    def _turning(self) -> tuple[Array, Array]:
+        """From the stage's axes to those of each body (bodies, 6, 6), and where its components stand in vectors (bodies, 6)."""
+        bodies = len(self.axes)
+        turned = np.zeros((bodies, 6, 6))
+        turned[:, :3, :3] = turned[:, 3:, 3:] = np.swapaxes(self.axes, -1, -2)
+        own = np.where((self.through[:bodies] >= 0)[:, None, None], turned[:, _ORDER], np.eye(6))
+        return own, self.row[:bodies, None] + np.arange(6) * self.copies[:bodies, None]
 
 
 def no_planes(scheme: Scheme) -> Planes:
