@@ -33,8 +33,7 @@ from flexstage.mechanism.address import set_value
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism, Unit
 from flexstage.models.batch.blocks import Blocks, blocks, dense, of_kind
-from flexstage.models.batch.engine import Method, Plan, iterate, plan, platform_modes, stage_of
-from flexstage.models.batch.features import PORTION
+from flexstage.models.batch.engine import PORTION, Method, Plan, iterate, plan, platform_modes, stage_of
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import numbers_of
 from flexstage.models.batch.solution import found_modes

@@ -24,7 +24,7 @@ from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.compiled import Tables, by_kernel
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
-from flexstage.models.batch.features import Feature
+from flexstage.models.batch.features import PORTION, Feature, Rows
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import Family, Slopes, drawn_family, numbers_and_slopes, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
@@ -99,6 +99,34 @@ def check_matrices(mechanism: Mechanism) -> None:
     model = lumped(one(family_plan, values[1]))
     for mine, theirs in zip(found, (model.stiffness_matrix, model.inertia_matrix), strict=True):
         assert np.max(np.abs(dense(family_plan.scheme, mine)[1] - theirs)) <= 1e-12 * np.max(np.abs(theirs))
+
+
+@given(st.integers(1, 3 * PORTION + 1), st.integers(0, 2**32))
+@examples(40, 2000)
+def test_rows_are_written_and_read_like_an_array(count: int, seed: int) -> None:
+    """All of them or some, by slices, lists and masks, whole portions of designs or any."""
+    random = np.random.default_rng(seed)
+    expected, found = np.zeros((5, count)), Rows(5, count)
+    found[:] = expected
+    ends = np.sort(random.integers(0, count + 1, 2))
+    whole = np.sort(random.integers(0, count // PORTION + 1, 2)) * PORTION
+    designs = [
+        slice(None),
+        slice(*ends),
+        slice(*whole),
+        slice(whole[0], None),
+        random.permutation(count)[: ends[0]],
+        random.random(count) < 0.3,
+    ]
+    for rows in (slice(1, 4), np.array([3, 0, 1])):
+        for some in designs:
+            values = random.random((3, expected[:, some].shape[1]))
+            found[rows, some] = values
+            expected[np.ix_(np.arange(5)[rows], np.arange(count)[some])] = values
+            np.testing.assert_array_equal(found[:], expected)
+            np.testing.assert_array_equal(found[rows, some], expected[rows][:, some])
+        found[rows], expected[rows] = (column := random.random((3, 1))), column
+        np.testing.assert_array_equal(found[rows], expected[rows])
 
 
 @given(mechanisms.fresh())

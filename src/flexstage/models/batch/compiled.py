@@ -157,22 +157,23 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((3, 0)))
     >>> tables = Tables(stage.scheme, (), stage.planes)
-    >>> kernel_job(8, Stage(stage.scheme, numbers), stage.start, tables).results["values"].shape  # whole vectors
-    (6, 8)
+    >>> kernel_job(8, Stage(stage.scheme, numbers), stage.start, tables).results["values"].shape  # whole vectors, and a line of the cache
+    (6, 16)
     """
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _held(stage.numbers)
     change = _held(np.zeros((0, count)) if stage.slopes is None else stage.slopes.values)
     held = {**tables.arrays, "force": tables.planes.inside(start.force), "numbers_": number, "changes": change}
     held["still"] = np.zeros(len(stage.numbers), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
-    stride = count + -count % width
+    vectors = -(-count // width)
+    stride = vectors * width + 8  # rows a power of two apart would be on the same lines of the cache
     results: dict[str, Array] = {
         "values": np.empty((modes, stride)),
         "share": np.empty((modes, stride)),
         "good": np.zeros(stride, dtype=np.int64),
         "slopes": np.empty((modes, stage.variables, stride)),
-        "between": np.empty((stride // width, modes * (modes - 1) // 2, stage.variables, width)),
-        "crossed": np.zeros(stride // width, dtype=np.int64),
+        "between": np.empty((vectors, modes * (modes - 1) // 2, stage.variables, width)),
+        "crossed": np.zeros(vectors, dtype=np.int64),
     }
     task = _task(stage, start, tables, (count, *_strides(number), *_strides(change), stride))
     for name, item in (held | results).items():

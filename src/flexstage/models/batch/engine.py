@@ -21,7 +21,7 @@ from flexstage.models.batch.blocks import Scheme, blocks, dense, scheme
 from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
-from flexstage.models.batch.features import PORTION, Rows
+from flexstage.models.batch.features import Rows
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
 from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of, rows_of
@@ -31,8 +31,8 @@ from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
 
-_CHUNK = 1024
-"""Designs described at once."""
+_CHUNK, PORTION = 1024, 128
+"""Designs described at once, and those iterated at once in numpy: as many as the processor's cache holds."""
 
 _MOST = 16
 """Vectors of a block at most."""

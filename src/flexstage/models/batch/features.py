@@ -25,8 +25,8 @@ from flexstage.parts.part import Part
 _BLOCK = 512
 """Designs whose parts are integrated at once."""
 
-PORTION = 128
-"""Designs whose numbers stand beside each other (as in kernel.c), and those iterated at once in numpy: they fit into the cache."""
+PORTION = 32
+"""Designs whose numbers stand beside each other, as in kernel.c."""
 
 Some = slice | Sequence[int] | Array
 """Which rows, or which designs."""
@@ -278,11 +278,11 @@ class Rows:
     """
 
     def __init__(self, rows: int, designs: int) -> None:
-        """Empty ones. They begin on lines of the cache, and not on the same one of each page, as powers of two would."""
-        wide, portions = PORTION + 8, -(-designs // PORTION)
-        room = np.empty(portions * rows * wide + 7)
+        """Empty ones. They begin on lines of the cache."""
+        portions = -(-designs // PORTION)
+        room = np.empty(portions * rows * PORTION + 7)
         first = -(room.ctypes.data // 8) % 8
-        self.held: Array = room[first : first + portions * rows * wide].reshape(portions, rows, wide)[..., :PORTION]
+        self.held: Array = room[first:][: portions * rows * PORTION].reshape(portions, rows, PORTION)
         self.shape = (rows, designs)
 
     def __len__(self) -> int:

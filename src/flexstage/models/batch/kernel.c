@@ -83,17 +83,16 @@ typedef struct {
 
 static inline lanes root(lanes a) { for (int i = 0; i < WIDTH; i++) a[i] = sqrt(a[i]); return a; }
 static inline lanes load(const double *p) { return *(const loose *)p; }
-/* A row's designs from one on; the last one stands for those that are not there. */
-static inline lanes load_at(const double *p, int64_t design, int64_t designs)
+/* So many; the last one stands for those that are not there. Apart, lest loops that hardly ever want it make room for it. */
+static __attribute__((noinline, cold)) lanes load_some(const double *p, int64_t count)
 {
-    if (design + WIDTH <= designs) return load(p + design);
     lanes r;
-    for (int i = 0; i < WIDTH; i++) r[i] = p[design + i < designs ? design + i : designs - 1];
+    for (int i = 0; i < WIDTH; i++) r[i] = p[i < count ? i : count - 1];
     return r;
 }
 static inline void store(double *p, lanes a) { *(loose *)p = a; }
 
-#define PORTION 128 /* designs that stand beside each other */
+#define PORTION 32 /* designs that stand beside each other */
 
 /* Where a vector of designs stands in rows: how far from where they begin, how far the next vector is from it, and how many of its designs there are. */
 typedef struct { int64_t at, next, count; } Spot;
@@ -108,7 +107,7 @@ static inline Spot spot_of(int64_t design, int64_t designs, int64_t portion)
 static inline lanes read_row(const double *row, Spot spot)
 {
     __builtin_prefetch(row + spot.at + spot.next, 0, 2);
-    return spot.count == WIDTH ? load(row + spot.at) : load_at(row + spot.at, 0, spot.count);
+    return spot.count == WIDTH ? load(row + spot.at) : load_some(row + spot.at, spot.count);
 }
 
 /* ---- 6x6 blocks ---- */
@@ -876,9 +875,9 @@ static INLINE Dots iterate(const Task *t, Room *w, lanes *x, lanes *f, lanes *y,
 /* Entry (r, i) of m vectors: they stand side by side (row m, column 1) or one after the other (row 1, column n). */
 typedef struct { int64_t row, column; } Layout;
 
-/* Dots of ni vectors x from i0 on with nj of y and of z from j0 on; z is the same in all lanes where it is `plain`. */
+/* Dots of ni vectors x from i0 on with nj of y and of z from j0 on, or (`half`) the lower half of them; z is the same in all lanes where it is `plain`. */
 static INLINE void dots(
-    int64_t n, int m, Layout at, lanes *g, lanes *h, const lanes *x, const lanes *y, const lanes *z, const double *plain, int i0, int j0, const int ni, const int nj)
+    int64_t n, int m, Layout at, lanes *g, lanes *h, const lanes *x, const lanes *y, const lanes *z, const double *plain, int i0, int j0, const int ni, const int nj, const int half)
 {
     lanes s[9], u[9];
     UNROLL for (int k = 0; k < 9; k++) s[k] = u[k] = all(0.0);
@@ -886,6 +885,7 @@ static INLINE void dots(
         UNROLL for (int i = 0; i < ni; i++) {
             const lanes own = x[r * at.row + (i0 + i) * at.column];
             UNROLL for (int j = 0; j < nj; j++) {
+                if (half && j > i) continue;
                 const int64_t place = r * at.row + (j0 + j) * at.column;
                 s[3 * i + j] += own * y[place];
                 if (plain) u[3 * i + j] += own * plain[place];
@@ -894,6 +894,7 @@ static INLINE void dots(
         }
     UNROLL for (int i = 0; i < ni; i++)
         UNROLL for (int j = 0; j < nj; j++) {
+            if (half && j > i) continue;
             g[(i0 + i) * m + j0 + j] = g[(j0 + j) * m + i0 + i] = s[3 * i + j];
             h[(i0 + i) * m + j0 + j] = h[(j0 + j) * m + i0 + i] = u[3 * i + j];
         }
@@ -905,9 +906,9 @@ static INLINE void grams(int64_t n, int m, Layout at, lanes *g, lanes *h, const 
     for (int i = 0; i < m; i += 3)
         for (int j = 0; j <= i; j += 3) {
             const int rows = m - i;
-            if (rows > 2) dots(n, m, at, g, h, x, y, z, plain, i, j, 3, 3);
-            else if (rows == 2) j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 3) : dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 2);
-            else j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 3) : dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 1);
+            if (rows > 2) j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 3, 3, 0) : dots(n, m, at, g, h, x, y, z, plain, i, j, 3, 3, 1);
+            else if (rows == 2) j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 3, 0) : dots(n, m, at, g, h, x, y, z, plain, i, j, 2, 2, 1);
+            else j < i ? dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 3, 0) : dots(n, m, at, g, h, x, y, z, plain, i, j, 1, 1, 1);
         }
 }
 
@@ -1336,7 +1337,7 @@ static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *
     for (; run < end; run += 2) {
         const int64_t *entry = t->entry + 2 * run[1], *const last = t->entry + 2 * run[3];
         lanes own[6], *to = w->slope + run[0] * n; /* the usual six modes where their number is known */
-        EACH_MODE for (int p = 0; p < n && KNOWN(n); p++) own[p] = to[p];
+        if (KNOWN(n)) EACH_MODE for (int p = 0; p < n; p++) own[p] = to[p];
         for (; entry < last; entry += 2) {
             const lanes change = read_row(t->changes + entry[1] * t->slopes_stride, spot), *of = sum + entry[0] * n;
             if (KNOWN(n))
@@ -1344,7 +1345,7 @@ static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *
             else
                 for (int p = 0; p < n; p++) to[p] += change * of[p];
         }
-        EACH_MODE for (int p = 0; p < n && KNOWN(n); p++) to[p] = own[p];
+        if (KNOWN(n)) EACH_MODE for (int p = 0; p < n; p++) to[p] = own[p];
     }
 }
 
