@@ -21,6 +21,8 @@ from flexstage.spatial.frame import Frame
 _PER_METRE = 1.0 / MILLIMETRES
 """Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
 _PER_VOLUME = 1.0 / MILLIMETRES**3
+_FEW = 0.2
+"""Share of degrees of freedom below which those that move alone are multiplied."""
 _BELL = 6
 """By how much the order of integration is raised where a bell is integrated."""
 
@@ -421,7 +423,10 @@ def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
     True
     """
     values, columns, starts = (np.asarray(each) for each in form.mat.CSR())
-    return sparse.csr_matrix((values, columns, starts), shape=(len(vectors), len(vectors))) @ vectors
+    matrix, moving = sparse.csr_matrix((values, columns, starts), shape=(len(vectors), len(vectors))), vectors.any(axis=1)
+    if np.mean(moving) > _FEW:
+        return matrix @ vectors
+    return matrix[moving].T @ vectors[moving]  # it is symmetric
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
@@ -476,6 +481,10 @@ class Columns:
     def kind(self, kind: int) -> Array:
         """Those of one kind."""
         return self.values[:, self.kinds == kind]
+
+    def some(self, columns: slice) -> Columns:
+        """Some of them."""
+        return Columns(self.values[:, columns], self.kinds[columns])
 
 
 def beside(columns: Sequence[Columns]) -> Columns:

@@ -75,12 +75,10 @@ def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, m
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
     plain = factorise_kinds(space, shift_stiffness(space, _SHIFT) if unsupported else elastic)
     if not loose:
-        yielding = [item for item in component.interfaces if item.yields]
-        return Support(
-            _static_motions([_face_motion(item, space) for item in component.interfaces], space, elastic, plain),
-            _static_motions([_face_warping(item, space) for item in yielding], space, elastic, plain),
-            plain,
-        )
+        faces = [_face_motion(item, space) for item in component.interfaces]
+        warps = [_face_warping(item, space) for item in component.interfaces if item.yields]
+        both, count = _static_motions([*faces, *warps], space, elastic, plain), sum(len(each.kinds) for each in faces)
+        return Support(both.some(slice(count)), both.some(slice(count, None)), plain)
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
     held, solve = _held(plain, means)
     free = np.split(held, len(loose), axis=1)

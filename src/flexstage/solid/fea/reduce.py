@@ -62,6 +62,8 @@ class _Problem:
 class _Motions:
     """The `basis` (n, k) that a component moves in: so many columns of `faces`, of their `warps`, then those within; what loads it.
 
+    `weights` (6, 6) are the bodies' inertias about their reference points.
+
     Neither matrix nor factor is kept: they are as large as all else that is still to be made.
     """
 
@@ -71,6 +73,7 @@ class _Motions:
     basis: Columns
     faces: int
     warps: int
+    weights: Mapping[str, Array]
     strokes: Mapping[int, Array]
     seats: Mapping[str, Array]
 
@@ -102,7 +105,9 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
     strokes = _strokes(problem)
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
-    loads = [Columns(_wrenches(problem, body), twist) for body in loaded]
+    momenta = {body: _momenta(problem, body) for body in component.bodies}
+    weights = {body: mesh.mirrors.whole(motion.T @ momentum, twist, twist) for body, (motion, momentum) in momenta.items()}
+    loads = [Columns(momenta[body][1] @ np.linalg.inv(weights[body]), twist) for body in loaded]  # over the mass: M R (R^T M R)^-1
     loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
     loads += [Columns.of(rows.T) for rows in seats.values()]
     if reduction.residual:
@@ -113,7 +118,7 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
         inner.append(replace(forces, values=held.solve(forces)))
     basis = beside([held.faces, held.warps, _independent_columns(problem, beside(inner))])
     faces, warps = len(held.faces.kinds), len(held.warps.kinds)
-    return _Motions(component, problem.field, problem.inertia, basis, faces, warps, strokes, seats)
+    return _Motions(component, problem.field, problem.inertia, basis, faces, warps, weights, strokes, seats)
 
 
 def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report: Report) -> _Problem:
@@ -137,13 +142,10 @@ def _elements(problem: _Problem | _Motions, name: str) -> Array:
     return np.isin(problem.field.meshed.owner, groups(problem.component)[name])
 
 
-def _wrenches(problem: _Problem, body: str) -> Array:
-    """Forces (n, 6) of unit wrenches on a body, spread over its mass: M R (R^T M R)^-1."""
-    frame = Frame(np.eye(3), problem.component.bodies[body])
-    motion, mirrors = rigid(problem.field, frame), problem.field.meshed.mirrors
-    momentum = inertia(problem.field, _elements(problem, body)).times(motion)
-    kinds = mirrors.twist_kinds(np.eye(3))
-    return momentum @ np.linalg.inv(mirrors.whole(motion.T @ momentum, kinds, kinds))
+def _momenta(problem: _Problem, body: str) -> tuple[Array, Array]:
+    """Rigid motions R (n, 6) about a body's reference point, and the momenta M R (n, 6) of its elements alone."""
+    motion = rigid(problem.field, Frame(np.eye(3), problem.component.bodies[body]))
+    return motion, inertia(problem.field, _elements(problem, body)).times(motion)
 
 
 def _seat(problem: _Problem, end: End) -> Array:
@@ -222,10 +224,9 @@ def _project(found: _Motions, report: Report) -> Superelement:
         elastic[name] = _symmetrise(mirrors.whole(part.strained.T @ part.forces, kinds, kinds))
         mass[name] = _symmetrise(mirrors.whole(part.motions.T @ part.momenta, kinds, kinds))
         if name in component.bodies:
-            motion = rigid(space, Frame(np.eye(3), component.bodies[name]))
-            own = mirrors.whole(motion.T @ inertia(space, wholes[name]).times(motion), twist, twist)
-            bodies[name] = np.linalg.solve(own, mirrors.whole(motion[part.rows].T @ part.momenta, twist, kinds))
-            moving[name] = _symmetrise(own)
+            motion = rigid(space, Frame(np.eye(3), component.bodies[name]))[part.rows]
+            bodies[name] = np.linalg.solve(found.weights[name], mirrors.whole(motion.T @ part.momenta, twist, kinds))
+            moving[name] = _symmetrise(found.weights[name])
         else:
             link = names[name][0]
             across = mirrors.twist_kinds(component.pieces[link].frame.rotation)
