@@ -115,6 +115,7 @@ def test_rows_are_written_and_read_like_an_array(count: int, seed: int) -> None:
         slice(*ends),
         slice(*whole),
         slice(whole[0], None),
+        slice(0, None, 2),
         random.permutation(count)[: ends[0]],
         random.random(count) < 0.3,
     ]

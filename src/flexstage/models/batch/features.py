@@ -307,7 +307,7 @@ class Rows:
         rows, designs = key if isinstance(key, tuple) else (key, slice(None))
         chosen = np.arange(self.shape[1])[designs]
         values = np.broadcast_to(values, (len(values), len(chosen)))
-        if isinstance(designs, slice) and len(chosen) and not chosen[0] % PORTION:
+        if isinstance(designs, slice) and designs.step in {None, 1} and len(chosen) and not chosen[0] % PORTION:
             first, last = chosen[0] // PORTION, (chosen[-1] + 1) // PORTION
             whole = (last - first) * PORTION
             self.held[first:last, rows] = values[:, :whole].reshape(len(values), last - first, PORTION).swapaxes(0, 1)
