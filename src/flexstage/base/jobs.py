@@ -30,8 +30,10 @@ from typing import IO, Any, TypeAlias, cast
 from flexstage.base.finding import DesignError
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-_LARGE_PAGES = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1"}
-"""Large matrices in pages of megabytes, where the C library is GNU's: of small ones there are millions to hand out."""
+_KEPT = {"hugetlb": 1, "mmap_threshold": 2**25, "trim_threshold": 2**28}
+_MEMORY = {"GLIBC_TUNABLES": ":".join(f"glibc.malloc.{name}={value}" for name, value in _KEPT.items())}
+"""Where the C library is GNU's, large matrices come in pages of megabytes, of which there are fewer to hand out, and what is freed is kept
+for the next ones, up to a quarter of a gigabyte: fronts come and go by the thousand."""
 _MAIN = "from flexstage.base.jobs import main; main()"
 _LENGTH = struct.Struct("<Q")
 _LIVES = 3
@@ -68,7 +70,7 @@ def environment() -> dict[str, str]:
     """
     root = str(Path(__file__).resolve().parents[2])
     paths = [root, *map(os.path.abspath, filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep)))]
-    return {**_LARGE_PAGES, **os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
+    return {**_MEMORY, **os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": os.pathsep.join(paths)}
 
 
 class Worker:
