@@ -1336,7 +1336,7 @@ static INLINE void contract(const Task *t, Room *w, int64_t group, const lanes *
     sum -= t->reach[group] * n;
     for (; run < end; run += 2) {
         const int64_t *entry = t->entry + 2 * run[1], *const last = t->entry + 2 * run[3];
-        lanes own[6], *to = w->slope + run[0] * n; /* the usual six modes where their number is known */
+        lanes own[USUAL], *to = w->slope + run[0] * n; /* where their number is known */
         if (KNOWN(n)) EACH_MODE for (int p = 0; p < n; p++) own[p] = to[p];
         for (; entry < last; entry += 2) {
             const lanes change = read_row(t->changes + entry[1] * t->slopes_stride, spot), *of = sum + entry[0] * n;
@@ -1423,8 +1423,8 @@ static void derive(const Task *t, Room *w, const lanes *value)
         for (int j = i + 1; j < k; j++)
             if (any(same[i * k + j])) pair[pairs].i = i, pair[pairs++].j = j;
     const Wanted of = {mean, pair, pairs};
-    if (k == 6 && pairs == 6) sum_slots(t, w, &of, 6, 6); /* the usual case, unrolled by the compiler */
-    else if (k == 6) sum_slots(t, w, &of, 6, pairs);
+    if (k == USUAL && pairs == USUAL) sum_slots(t, w, &of, USUAL, USUAL);
+    else if (k == USUAL) sum_slots(t, w, &of, USUAL, pairs);
     else sum_slots(t, w, &of, k, pairs);
     for (int p = 0; p < k; p++)
         for (int64_t variable = 0; variable < t->variables; variable++)
