@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.field import factorise, field, grid, inertia, nodes_on, stiffness
+from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, stiffness
 from flexstage.solid.fea.fineness import Fineness
 from flexstage.solid.fea.frontal import Matrix, dissect, factorise_fronts
 from flexstage.solid.fea.krylov import Pencil, lowest_modes
@@ -42,6 +42,21 @@ def test_motions_are_those_of_the_other_solver() -> None:
     assert not found[~SPACE.free].any()
 
 
+def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a quarter, whose mirrors hold what motions of a kind do not move, and its matrix in two parts."""
+    space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
+    half = np.arange(space.meshed.mesh.ne) % 2 == 0
+    forces = Columns(np.random.default_rng(4).standard_normal((space.size, 4)), np.arange(4))
+    parts = [stiffness(space, half), stiffness(space, ~half)]
+    expected = factorise_kinds(space, parts)(forces)
+
+    def refuse(*_: object) -> None:
+        raise np.linalg.LinAlgError
+
+    monkeypatch.setattr("flexstage.solid.fea.field.factorise_fronts", refuse)
+    np.testing.assert_allclose(factorise_kinds(space, parts)(forces), expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
 def test_traces_are_added_alike_in_blocks_and_scattered(monkeypatch: pytest.MonkeyPatch) -> None:
     forces = np.random.default_rng(2).standard_normal((SPACE.size, 2))
     found = []
@@ -65,9 +80,9 @@ def test_fronts_are_shared_by_those_that_hold_nothing_there_and_only_by_them() -
     held, forces = np.zeros((2, 3, SPACE.size // 3), dtype=bool), np.random.default_rng(3).standard_normal((SPACE.size, 2))
     held[1, 1] = nodes_on(SPACE, "end")
     held = held.reshape(2, -1)
-    together = factorise_fronts(SPACE.fronts, sparse(1.0), held)
+    together = factorise_fronts(SPACE.fronts, [sparse(1.0)], held)
     for found, own in zip(together, held, strict=True):
-        (alone,) = factorise_fronts(SPACE.fronts, sparse(1.0), own[None])
+        (alone,) = factorise_fronts(SPACE.fronts, [sparse(1.0)], own[None])
         np.testing.assert_array_equal(found.solve(forces), alone.solve(forces))
     shared = [one is other for one, other in zip(*(found.factors for found in together), strict=True)]
     assert any(shared)
@@ -81,7 +96,7 @@ def sparse(factor: float) -> Matrix:
 
 def test_what_is_not_definite_is_refused() -> None:
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
-        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), sparse(-1.0), ~SPACE.free[None])
+        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), [sparse(-1.0)], ~SPACE.free[None])
 
 
 def test_lowest_modes_are_the_dense_ones() -> None:

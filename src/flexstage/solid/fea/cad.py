@@ -77,6 +77,7 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
     return replace(drawing, shape=cut_at_mirrors(drawing.shape, mirrors), mirrors=mirrors) if mirrors.axes else drawing
 
 
+@lru_cache(maxsize=1)
 def mirrors_of(component: Component) -> Mirrors:
     """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
 

@@ -1,17 +1,18 @@
 """Contributions: the elastic forces and the momenta that each group of elements adds.
 
-Groups that share no degree of freedom have one colour and are done together, by one matrix: a whole stage takes a few.
+Groups that share no degree of freedom are alike: they are assembled together, and a whole stage takes a few matrices.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.field import Field, degrees_of, inertia, rigid, stiffness, times
+from flexstage.solid.fea.field import Field, Inertia, degrees_of, inertia, rigid, stiffness, times
 from flexstage.spatial.frame import Frame
 
 
@@ -31,14 +32,45 @@ class Contribution:
 
 
 @dataclass(frozen=True, eq=False)
-class _Group:
+class Group:
+    """A group's `elements` (mask), and which degrees of freedom (n,) are theirs."""
+
     name: str
     elements: Array
     degrees: Array
 
 
-def contributions(space: Field, groups: Mapping[str, Array], basis: Array) -> Iterator[Contribution]:
-    """Contributions of groups of elements (masks) to motions (n, k), in no order.
+@dataclass(frozen=True, eq=False)
+class Assembled:
+    """Groups that share no degree of freedom, with the stiffness and the inertia of all their elements."""
+
+    groups: tuple[Group, ...]
+    stiffness: ngsolve.BilinearForm
+    inertia: Inertia
+
+
+def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assembled, ...]:
+    """Assemble groups of elements (masks).
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.field import field
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> half = np.arange(space.meshed.mesh.ne) % 2 == 0
+    >>> len(assemble_groups(space, {"even": half, "odd": ~half}))
+    2
+    """
+    sets = _group_by_law([Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()])
+    together = [np.any([group.elements for group in alike], axis=0) for alike in sets]
+    return tuple(
+        Assembled(tuple(alike), stiffness(space, elements), inertia(space, elements))
+        for alike, elements in zip(sets, together, strict=True)
+    )
+
+
+def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
+    """Contributions of groups of elements to motions (n, k), in no order.
 
     Rigid parts are taken off before elastic forces are formed: their rounding would drown those of a thin leaf.
 
@@ -49,23 +81,21 @@ def contributions(space: Field, groups: Mapping[str, Array], basis: Array) -> It
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> half = np.arange(space.meshed.mesh.ne) % 2 == 0
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
-    >>> parts = list(contributions(space, {"even": half, "odd": ~half}, moved))
+    >>> parts = list(contributions(space, assemble_groups(space, {"even": half, "odd": ~half}), moved))
     >>> round(sum(float((part.motions * part.momenta).sum()) for part in parts), 9)  # the bar's 10 g
     0.01
     """
-    found = [_Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()]
-    for alike in _group_by_law(found):
-        together = np.any([group.elements for group in alike], axis=0)
-        strained = _strain_operator(space, alike, basis)
-        forces, momenta = times(stiffness(space, together), strained), inertia(space, together).times(basis)
-        for group in alike:
+    for alike in sets:
+        strained = _strain_operator(space, alike.groups, basis)
+        forces, momenta = times([alike.stiffness], strained), alike.inertia.times(basis)
+        for group in alike.groups:
             rows = np.flatnonzero(group.degrees)
             yield Contribution(group.name, rows, basis[rows], strained[rows], forces[rows], momenta[rows])
 
 
-def _group_by_law(groups: list[_Group]) -> list[list[_Group]]:
+def _group_by_law(groups: Sequence[Group]) -> list[list[Group]]:
     """The groups in as few sets as come at once, none of which has two that share a degree of freedom."""
-    sets: list[list[_Group]] = []
+    sets: list[list[Group]] = []
     taken: list[Array] = []
     for group in groups:
         place = next((number for number, degrees in enumerate(taken) if not (degrees & group.degrees).any()), None)
@@ -78,7 +108,7 @@ def _group_by_law(groups: list[_Group]) -> list[list[_Group]]:
     return sets
 
 
-def _strain_operator(space: Field, groups: list[_Group], basis: Array) -> Array:
+def _strain_operator(space: Field, groups: Sequence[Group], basis: Array) -> Array:
     """The motions (n, k) on the groups' degrees of freedom, each less its nearest rigid motion; zero elsewhere."""
     result = np.zeros_like(basis)
     for group in groups:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import functools
+import operator
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import ngsolve
 import numpy as np
@@ -152,7 +154,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> forces = times(stiffness(space), rigid(space, Frame(np.eye(3), np.zeros(3))))
+    >>> forces = times([stiffness(space)], rigid(space, Frame(np.eye(3), np.zeros(3))))
     >>> bool(np.abs(forces).max() < 1e-3)  # N per m and rad, of a bar of 1e8 N/m
     True
     """
@@ -175,6 +177,19 @@ class Inertia:
         return moved.reshape(count, 3, columns).transpose(1, 0, 2).reshape(3 * count, columns)
 
 
+def total(parts: Sequence[Inertia]) -> Inertia:
+    """The inertia of what has some inertias.
+
+    >>> total([Inertia(sparse.eye_array(1)), Inertia(sparse.eye_array(1))]).scalar.toarray().item()
+    2.0
+    """
+    return Inertia(_sum(part.scalar for part in parts))
+
+
+def _sum(matrices: Iterable[sparse.csr_matrix]) -> sparse.csr_matrix:
+    return functools.reduce(operator.add, matrices)
+
+
 def inertia(space: Field, elements: Array | None = None) -> Inertia:
     """The inertia of some elements (mask) or all.
 
@@ -191,8 +206,7 @@ def inertia(space: Field, elements: Array | None = None) -> Inertia:
     form = ngsolve.BilinearForm(scalar, symmetric=True)
     form += _PER_VOLUME * space.density * u * v * _volume(elements)
     form.Assemble()
-    values, columns, starts = form.mat.CSR()
-    return Inertia(sparse.csr_matrix((np.array(values), np.array(columns), np.array(starts)), shape=(scalar.ndof, scalar.ndof)))
+    return Inertia(_matrix(form).copy())
 
 
 def _volume(elements: Array | None) -> object:
@@ -412,21 +426,30 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
     return np.linalg.solve(rows @ rigid(space, frame), rows)
 
 
-def times(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    """An assembled form's matrix times columns (n, k).
+Forms = Sequence[ngsolve.BilinearForm]
+"""What is assembled of some elements each, and in all the sum of."""
+
+
+def times(forms: Forms, vectors: Array) -> Array:
+    """The sum of assembled forms' matrices times columns (n, k).
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> times(stiffness(space), np.zeros((space.size, 2))).shape == (space.size, 2)
+    >>> times([stiffness(space)], np.zeros((space.size, 2))).shape == (space.size, 2)
     True
     """
+    moving, result = vectors.any(axis=1), np.zeros_like(vectors)
+    for matrix in map(_matrix, forms):
+        result += matrix @ vectors if np.mean(moving) > _FEW else matrix[moving].T @ vectors[moving]  # it is symmetric
+    return result
+
+
+def _matrix(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
+    """The matrix (n, n) of a form, whose memory it shares."""
     values, columns, starts = (np.asarray(each) for each in form.mat.CSR())
-    matrix, moving = sparse.csr_matrix((values, columns, starts), shape=(len(vectors), len(vectors))), vectors.any(axis=1)
-    if np.mean(moving) > _FEW:
-        return matrix @ vectors
-    return matrix[moving].T @ vectors[moving]  # it is symmetric
+    return sparse.csr_matrix((values, columns, starts), shape=(form.mat.height, form.mat.width))
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
@@ -437,7 +460,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> moved = rigid(space, Frame(np.eye(3), np.zeros(3)))[:, :1]
-    >>> round((moved.T @ times(shift_stiffness(space, 100.0), moved)).item(), 5)  # 100 / s^2 times 10 g
+    >>> round((moved.T @ times([shift_stiffness(space, 100.0)], moved)).item(), 5)  # 100 / s^2 times 10 g
     1.0
     """
     u, v = space.space.TnT()
@@ -500,17 +523,17 @@ KindSolver = Callable[[Columns], Array]
 """Displacements (n, k) that forces make."""
 
 
-def factorise_kinds(space: Field, form: ngsolve.BilinearForm) -> KindSolver:
-    """Solve for forces of all kinds, by a factor each.
+def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
+    """Solve with the sum of forms' matrices for forces of all kinds, by a factor each.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
-    >>> factorise_kinds(space, stiffness(space))(Columns(np.zeros((space.size, 4)), np.arange(4))).shape == (space.size, 4)
+    >>> factorise_kinds(space, [stiffness(space)])(Columns(np.zeros((space.size, 4)), np.arange(4))).shape == (space.size, 4)
     True
     """
-    solvers = _solvers(space, form, range(space.meshed.mirrors.copies))
+    solvers = _solvers(space, forms, range(space.meshed.mirrors.copies))
 
     def solve(forces: Columns) -> Array:
         result = np.empty_like(forces.values)
@@ -535,25 +558,26 @@ def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver
     >>> round(1e-6 / float((mean @ factorise(space, stiffness(space))(mean.T))[0, 0]), 6)  # E A / L, N/um
     100.0
     """
-    (solve,) = _solvers(space, form, [kind])
+    (solve,) = _solvers(space, [form], [kind])
     return lambda forces: solve(forces.reshape(len(forces), -1)).reshape(forces.shape)
 
 
-def _solvers(space: Field, form: ngsolve.BilinearForm, kinds: Iterable[int]) -> list[Solver]:
+def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> list[Solver]:
     """Solvers for forces (n, k) of each of some kinds."""
-    values, columns, starts = form.mat.CSR()
-    whole = Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values))
+    parts = [form.mat.CSR() for form in forms]
+    matrices = [Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values)) for values, columns, starts in parts]
     held = np.array([held_at_mirrors(space, kind) for kind in kinds])
     try:
-        solvers = [found.solve for found in factorise_fronts(space.fronts, whole, held)]
+        return [found.solve for found in factorise_fronts(space.fronts, matrices, held)]
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
-        inverses = [form.mat.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky") for also in held]
-        solvers = [functools.partial(_apply_by_columns, inverse.Mult) for inverse in inverses]
-    return [functools.partial(_solve_held, solve, also) for solve, also in zip(solvers, held, strict=True)]
+        whole, create = _sum(map(_matrix, forms)).tocoo(), cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)
+        law = create(whole.row, whole.col, whole.data, space.size, space.size)
+        inverses = [law.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky") for also in held]
+        return [functools.partial(_apply_held, inverse.Mult, also) for inverse, also in zip(inverses, held, strict=True)]
 
 
-def _solve_held(solve: Solver, held: Array, forces: Array) -> Array:
-    return solve(np.where(held[:, None], 0.0, forces))
+def _apply_held(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], held: Array, forces: Array) -> Array:
+    return _apply_by_columns(operator, np.where(held[:, None], 0.0, forces))
 
 
 def grid(space: Field) -> Grid:

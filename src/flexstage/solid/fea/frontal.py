@@ -7,6 +7,7 @@ Numer. Anal. 10, 345, 1973). A node is what has three degrees of freedom: the th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -69,10 +70,10 @@ class _Front:
 
 @dataclass(frozen=True, eq=False)
 class _Factor:
-    """Lower factor L of the nodes eliminated, and L^-1 times what couples them to those beyond."""
+    """Lower factor L of the nodes eliminated, and what couples those beyond to them times L^-T."""
 
     own: Array
-    across: Array
+    below: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,110 +172,144 @@ def _owners(grid: Grid, leaf: Array, spans: list[tuple[int, int, int, int]]) -> 
 
 @dataclass(frozen=True, eq=False)
 class Factorised:
-    """A matrix factorised front by front; `order` tells what is held."""
+    """A matrix factorised front by front; `order` tells which nodes are held, `held` (m, 3) which degrees of freedom of the others."""
 
     order: Fronts
+    held: Array
     factors: tuple[_Factor, ...]
 
     def solve(self, forces: Array) -> Array:
         """Displacements (n, k) that forces (n, k) make, zero where held."""
         nodes, (size, columns) = self.order.nodes, forces.shape
         work = forces.reshape(3, -1, columns)[:, nodes].transpose(1, 0, 2).copy()  # by node, its three components side by side
+        work[self.held] = 0.0
         pairs = [pair for pair in zip(self.order.fronts, self.factors, strict=True) if pair[0].last > pair[0].first]
         for front, factor in pairs:
             own = _dtrsm(1.0, factor.own, work[front.first : front.last].reshape(-1, columns), lower=1)
             work[front.first : front.last] = own.reshape(-1, 3, columns)
-            work[front.beyond] -= (factor.across.T @ own).reshape(-1, 3, columns)
+            work[front.beyond] -= (factor.below @ own).reshape(-1, 3, columns)
         for front, factor in reversed(pairs):
-            own = work[front.first : front.last].reshape(-1, columns) - factor.across @ work[front.beyond].reshape(-1, columns)
+            own = work[front.first : front.last].reshape(-1, columns) - factor.below.T @ work[front.beyond].reshape(-1, columns)
             work[front.first : front.last] = _dtrsm(1.0, factor.own, own, lower=1, trans_a=1).reshape(-1, 3, columns)
         result = np.zeros((3, size // 3, columns))
         result[:, nodes] = work.transpose(1, 0, 2)
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrix: Matrix, held: Array) -> tuple[Factorised, ...]:
-    """Factorise a matrix that is positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
+def factorise_fronts(order: Fronts, matrices: Sequence[Matrix], held: Array) -> tuple[Factorised, ...]:
+    """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
     Those of a set (masks (k, n)) are coupled to no other. A front that meets none of any set, nor do those before it, is the same for all.
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
-    entries, local = _Entries.of(order, matrix), np.empty(len(order.nodes), dtype=np.int64)
+    parts, local = [_Entries.of(order, matrix) for matrix in matrices], np.empty(len(order.nodes), dtype=np.int64)
     traces: dict[int, list[Array]] = {}
     factors: list[list[_Factor]] = []
     for number, front in enumerate(order.fronts):
         nodes = np.concatenate([np.arange(front.first, front.last), front.beyond])
         local[nodes] = np.arange(len(nodes))
-        panel = np.zeros((3 * len(nodes), 3 * (front.last - front.first)), order="F")
-        entries.add(panel, front, local)
+        panel = _Panel.of(3 * (front.last - front.first), 3 * len(front.beyond))
+        for entries in parts:
+            entries.add(panel, front, local)
         below = [(local[order.fronts[child].beyond], traces.pop(child)) for child in front.children]
         alike = not by_node[:, nodes].any() and all(len(left) == 1 for _, left in below)
         factors.append([])
         traces[number] = []
         for kind in range(1 if alike else len(held)):
-            law = panel if alike else panel.copy(order="F")
-            _uncouple(law, np.flatnonzero(by_node[kind, nodes]))
+            law = panel if alike else panel.copy()
+            law.uncouple(np.flatnonzero(by_node[kind, nodes]))
             factor, trace = _eliminate(law, _gather(law, [(met, left[kind % len(left)]) for met, left in below]))
             factors[-1].append(factor)
             traces[number].append(trace)
-    return tuple(Factorised(order, tuple(own[kind % len(own)] for own in factors)) for kind in range(len(held)))
+    return tuple(Factorised(order, own, tuple(each[kind % len(each)] for each in factors)) for kind, own in enumerate(by_node))
 
 
-def _gather(panel: Array, below: list[tuple[Array, Array]]) -> Array:
+def _gather(panel: _Panel, below: list[tuple[Array, Array]]) -> Array:
     """Add the traces of the fronts before, on the nodes that they met, to a front's own columns, and to what is beyond: a new trace."""
-    own, size = panel.shape[1] // 3, len(panel) // 3
-    trace = np.zeros((3 * (size - own), 3 * (size - own)), order="F")
+    own, size = len(panel.own) // 3, len(panel.below)
+    trace = np.zeros((size, size), order="F")
     for met, left in below:
         cut = int(np.searchsorted(met, own))
-        _add_trace(panel, met, left[:, : 3 * cut], met[:cut])
-        _add_trace(trace, met[cut:] - own, left[3 * cut :, 3 * cut :], met[cut:] - own)
+        near, far = _Place.of(met[:cut]), _Place.of(met[cut:] - own)
+        _add_trace(panel.own, left[: 3 * cut, : 3 * cut], near, near)
+        _add_trace(panel.below, left[3 * cut :, : 3 * cut], far, near)
+        _add_trace(trace, left[3 * cut :, 3 * cut :], far, far)
     return trace
 
 
-def _uncouple(panel: Array, held: Array) -> None:
-    """Leave of some rows of a front, and of the same of its own columns, the diagonal alone."""
-    own = held[held < panel.shape[1]]
-    diagonal = panel[own, own]
-    panel[held], panel[:, own] = 0.0, 0.0
-    panel[own, own] = diagonal
+@dataclass(frozen=True, eq=False)
+class _Panel:
+    """Columns of a front's own nodes: rows of their `own`, of which the lower triangle counts, and those `below`, one after another."""
+
+    own: Array
+    below: Array
+    entries: Array
+
+    @staticmethod
+    def of(own: int, beyond: int) -> _Panel:
+        """All zero."""
+        return _Panel._of(np.zeros(own * (own + beyond)), own, beyond)
+
+    @staticmethod
+    def _of(entries: Array, own: int, beyond: int) -> _Panel:
+        square = own * own
+        return _Panel(entries[:square].reshape(own, own, order="F"), entries[square:].reshape(beyond, own, order="F"), entries)
+
+    def copy(self) -> _Panel:
+        """Another like it."""
+        return _Panel._of(self.entries.copy(), len(self.own), len(self.below))
+
+    def uncouple(self, held: Array) -> None:
+        """Leave of some rows, and of the same of its own columns, the diagonal alone."""
+        own = held[held < len(self.own)]
+        diagonal = self.own[own, own]
+        self.own[own], self.own[:, own], self.below[:, own] = 0.0, 0.0, 0.0
+        self.own[own, own] = diagonal
+        self.below[held[len(own) :] - len(self.own)] = 0.0
 
 
-def _add_trace(law: Array, rows: Array, trace: Array, columns: Array) -> None:
-    """Add what counts of a trace, the lower triangle of it, to nodes `rows` and the first of them, `columns`, of a part of a front."""
-    runs = _runs(rows, len(columns))
-    if len(runs) > _SCATTERED * len(rows):
-        at = (3 * rows[:, None] + np.arange(3)).ravel()
-        for start in range(0, 3 * len(columns), _COLUMNS):
-            some = slice(start, min(start + _COLUMNS, 3 * len(columns)))
-            law.T[at[some, None], at[start:]] += trace.T[some, start:]
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Where `nodes` lie: in `runs` of consecutive ones, from where to where in the list, and the first of them."""
+
+    nodes: Array
+    runs: list[tuple[int, int, int]]
+
+    @staticmethod
+    def of(nodes: Array) -> _Place:
+        """Nodes in rising order."""
+        bounds = [0, *(np.flatnonzero(np.diff(nodes) != 1) + 1).tolist(), len(nodes)] if len(nodes) else []
+        return _Place(nodes, [(first, last, int(nodes[first])) for first, last in pairwise(bounds)])
+
+
+def _add_trace(law: Array, trace: Array, rows: _Place, columns: _Place) -> None:
+    """Add what counts of a part of a trace to rows and columns of nodes: where both are the same, the lower triangle."""
+    triangle = rows is columns
+    if len(rows.runs) > _SCATTERED * len(rows.nodes):
+        at, across = ((3 * place.nodes[:, None] + np.arange(3)).ravel() for place in (rows, columns))
+        for start in range(0, len(across), _COLUMNS):
+            some, low = slice(start, start + _COLUMNS), start if triangle else 0
+            law.T[across[some, None], at[low:]] += trace.T[some, low:]
         return
-    for number, (first, last, place) in enumerate(runs):
-        if first >= len(columns):
-            return
-        for low, high, there in runs[number:]:
+    for number, (first, last, place) in enumerate(columns.runs):
+        for low, high, there in rows.runs[number:] if triangle else rows.runs:
             law[3 * there : 3 * (there + high - low), 3 * place : 3 * (place + last - first)] += trace[
                 3 * low : 3 * high, 3 * first : 3 * last
             ]
 
 
-def _runs(nodes: Array, cut: int) -> list[tuple[int, int, int]]:
-    """Stretches of consecutive nodes, ended at a `cut` too: from where to where in the list, and the first node."""
-    ends = np.flatnonzero(np.diff(nodes) != 1) + 1
-    bounds = sorted({0, cut, *ends.tolist(), len(nodes)})
-    return [(first, last, int(nodes[first])) for first, last in pairwise(bounds)]
-
-
-def _eliminate(panel: Array, trace: Array) -> tuple[_Factor, Array]:
+def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
     """The factor of a front's own columns, its `panel`, and the trace left on the nodes beyond, whose front is added to."""
-    own = panel.shape[1]
-    factor, fault = _dpotrf(np.asfortranarray(panel[:own]), lower=1, overwrite_a=1) if own else (np.zeros((0, 0)), 0)
+    if not len(panel.own):
+        return _Factor(panel.own, panel.below), trace
+    factor, fault = _dpotrf(panel.own, lower=1, overwrite_a=1, clean=0)
     if fault:
         raise np.linalg.LinAlgError("a front is not positive definite")
-    if not own or not len(trace):
-        return _Factor(factor, np.zeros((own, len(trace)))), trace
-    across = _dtrsm(1.0, factor, np.asfortranarray(panel[own:].T), lower=1, overwrite_b=1)
-    return _Factor(factor, across), _dsyrk(-1.0, across, beta=1.0, c=trace, trans=1, lower=1, overwrite_c=1)
+    if not len(trace):
+        return _Factor(factor, panel.below), trace
+    below = _dtrsm(1.0, factor, panel.below, side=1, lower=1, trans_a=1, overwrite_b=1)
+    return _Factor(factor, below), _dsyrk(-1.0, below, beta=1.0, c=trace, lower=1, overwrite_c=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,17 +327,22 @@ class _Entries:
         rank[order.nodes] = np.arange(len(order.nodes))
         return _Entries(matrix, order.nodes, rank)
 
-    def add(self, law: Array, front: _Front, local: Array) -> None:
-        """Put the entries of a front's own nodes, with those eliminated later, into its lower triangle."""
+    def add(self, panel: _Panel, front: _Front, local: Array) -> None:
+        """Add the entries of a front's own nodes, with those eliminated later, to its lower triangle."""
         own, starts = self.nodes[front.first : front.last], self.matrix.starts
         degree = (starts[own + 1] - starts[own]) // 3
+        if not degree.any():
+            return
         column = np.repeat(own, degree)
         place = np.arange(len(column)) - np.repeat(np.cumsum(degree) - degree, degree)
         row = self.matrix.columns[starts[column] + place]
         later = self.rank[row] >= self.rank[column]
         row, column, place, degree = row[later], column[later], place[later], np.repeat(degree, degree)[later]
         here, there = (3 * local[self.rank[each]] for each in (row, column))
+        size, within = len(panel.own), here < len(panel.own)
+        height = np.where(within, size, len(panel.below))  # of the part a row is in
+        first = np.where(within, here, size * size + here - size) + there * height
         for b in range(3):
             start = starts[b * len(self.rank) + column] + place
             for a in range(3):
-                law[here + a, there + b] = self.matrix.values[start + a * degree]
+                panel.entries[first + a + b * height] += self.matrix.values[start + a * degree]

@@ -245,7 +245,7 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
     Motions that are not alike about a plane of symmetry have no energy in common.
     """
     form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
-    strained, forces = stiffness(space, assemble=False), times(form, motion)  # by strains: the rounding of K u drowns a thin leaf
+    strained, forces = stiffness(space, assemble=False), times([form], motion)  # by strains: the rounding of K u drowns a thin leaf
     kinds = cut.mirrors.twist_kinds(np.eye(3))
     for kind in range(cut.mirrors.copies):
         alike = np.flatnonzero(kinds == kind)

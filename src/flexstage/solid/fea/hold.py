@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
@@ -18,6 +17,7 @@ from flexstage.solid.fea.component import Component, Interface
 from flexstage.solid.fea.field import (
     Columns,
     Field,
+    Forms,
     Inertia,
     KindSolver,
     beside,
@@ -38,10 +38,11 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and the solver for loads within with all of them zero."""
+    """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and with all of them zero of loads `within`; the solver."""
 
     faces: Columns
     warps: Columns
+    within: Columns
     solve: KindSolver
 
 
@@ -56,37 +57,40 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
-def support(component: Component, space: Field, elastic: ngsolve.BilinearForm, mass: Inertia, hold: Hold) -> Support:
+def support(component: Component, space: Field, hold: Hold, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
     """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
+
+    What `loads` within make is solved for at once with the rest.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field, inertia, stiffness
     >>> from flexstage.solid.fea.fineness import Fineness
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> elastic = stiffness(space)
-    >>> faces = support(bar(), space, elastic, inertia(space), Hold.AVERAGED).faces.values
+    >>> elastic, none = [stiffness(space)], Columns.of(np.zeros((space.size, 0)))
+    >>> faces = support(bar(), space, Hold.AVERAGED, elastic=elastic, mass=inertia(space), loads=none).faces.values
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
     if component.floats:
-        return _afloat(component, space, mass)
+        return _afloat(component, space, mass, loads)
     loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    plain = factorise_kinds(space, shift_stiffness(space, _SHIFT) if unsupported else elastic)
+    plain = factorise_kinds(space, [shift_stiffness(space, _SHIFT)] if unsupported else elastic)
     if not loose:
         faces = [_face_motion(item, space) for item in component.interfaces]
         warps = [_face_warping(item, space) for item in component.interfaces if item.yields]
-        both, count = _static_motions([*faces, *warps], space, elastic, plain), sum(len(each.kinds) for each in faces)
-        return Support(both.some(slice(count)), both.some(slice(count, None)), plain)
+        both, within = _static_motions([*faces, *warps], space, elastic, plain, loads)
+        count = sum(len(each.kinds) for each in faces)
+        return Support(both.some(slice(count)), both.some(slice(count, None)), within, plain)
     means = np.vstack([mean_motion(space, _frame(item), item.joint.name) for item in loose])
     held, solve = _held(plain, means)
-    free = np.split(held, len(loose), axis=1)
+    free, none = np.split(held, len(loose), axis=1), Columns.of(np.zeros((space.size, 0)))
     columns = [
-        free[loose.index(item)] if item in loose else _static_motions([_face_motion(item, space)], space, elastic, solve).values
+        free[loose.index(item)] if item in loose else _static_motions([_face_motion(item, space)], space, elastic, solve, none)[0].values
         for item in component.interfaces
     ]
-    return Support(Columns.of(np.hstack(columns)), Columns.of(np.zeros((space.size, 0))), solve)
+    return Support(Columns.of(np.hstack(columns)), none, _moved(loads, solve), solve)
 
 
 def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
@@ -115,11 +119,12 @@ def middle(component: Component) -> Array:
     return next(iter(component.bodies.values()))
 
 
-def _afloat(component: Component, space: Field, mass: Inertia) -> Support:
+def _afloat(component: Component, space: Field, mass: Inertia, loads: Columns) -> Support:
     """What nothing holds: it moves rigidly, and all else has neither momentum nor angular momentum."""
     motion = rigid(space, Frame(np.eye(3), middle(component)))
-    plain = factorise_kinds(space, shift_stiffness(space, _SHIFT))
-    return Support(Columns.of(motion), Columns.of(np.zeros((space.size, 0))), _held(plain, mass.times(motion).T)[1])
+    plain = factorise_kinds(space, [shift_stiffness(space, _SHIFT)])
+    solve = _held(plain, mass.times(motion).T)[1]
+    return Support(Columns.of(motion), Columns.of(np.zeros((space.size, 0))), _moved(loads, solve), solve)
 
 
 def _face_motion(item: Interface, space: Field) -> Columns:
@@ -131,10 +136,16 @@ def _face_warping(item: Interface, space: Field) -> Columns:
     return Columns(motions, warp_kinds(space.meshed.mirrors, item.joint.frame))
 
 
-def _static_motions(moved: Sequence[Columns], space: Field, elastic: ngsolve.BilinearForm, solve: KindSolver) -> Columns:
-    """One face moved and all others held: u = R - K_ff^-1 K R."""
+def _static_motions(moved: Sequence[Columns], space: Field, elastic: Forms, solve: KindSolver, loads: Columns) -> tuple[Columns, Columns]:
+    """One face moved and all others held, u = R - K_ff^-1 K R; and what loads within make."""
     motions = beside([Columns.of(np.zeros((space.size, 0))), *moved])
-    return replace(motions, values=motions.values - solve(replace(motions, values=times(elastic, motions.values))))
+    found = _moved(beside([replace(motions, values=times(elastic, motions.values)), loads]), solve)
+    count = len(motions.kinds)
+    return replace(motions, values=motions.values - found.values[:, :count]), found.some(slice(count, None))
+
+
+def _moved(loads: Columns, solve: KindSolver) -> Columns:
+    return replace(loads, values=solve(loads))
 
 
 def _frame(interface: Interface) -> Frame:

@@ -90,7 +90,8 @@ def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
     >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
     (True, False)
     """
-    faces = np.array([(face.center.x, face.center.y, face.center.z, face.mass) for solid in solids for face in solid.faces])
+    centres = [(face.center, face.mass) for solid in solids for face in solid.faces]
+    faces = np.array([(centre.x, centre.y, centre.z, area) for centre, area in centres])
     mirrored = faces * np.where(np.arange(4) == axis, -1.0, 1.0)
     apart = np.abs(faces[:, None] - mirrored) / np.repeat([np.max(np.abs(faces[:, :3])), np.max(faces[:, 3])], (3, 1))
     return bool(np.all(np.min(np.max(apart, axis=2), axis=1) < _NEAR))

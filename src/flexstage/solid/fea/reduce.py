@@ -17,7 +17,7 @@ from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.piezo import Piezo
 from flexstage.solid.fea.cad import region
 from flexstage.solid.fea.component import Component, groups
-from flexstage.solid.fea.contribution import contributions
+from flexstage.solid.fea.contribution import Assembled, assemble_groups, contributions
 from flexstage.solid.fea.field import (
     Columns,
     Field,
@@ -26,12 +26,11 @@ from flexstage.solid.fea.field import (
     degrees_of,
     field,
     held_at_mirrors,
-    inertia,
     rigid,
     seat_motion,
-    stiffness,
     stroke_force,
     times,
+    total,
 )
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hold import Support, is_rigid, middle, support
@@ -53,23 +52,23 @@ _REACH = 0.5
 class _Problem:
     component: Component
     field: Field
-    stiffness: ngsolve.BilinearForm
+    assembled: tuple[Assembled, ...]
     inertia: Inertia
-    held: Support
+
+    @property
+    def stiffness(self) -> list[ngsolve.BilinearForm]:
+        """What is the stiffness in all."""
+        return [alike.stiffness for alike in self.assembled]
 
 
 @dataclass(frozen=True, eq=False)
 class _Motions:
     """The `basis` (n, k) that a component moves in: so many columns of `faces`, of their `warps`, then those within; what loads it.
 
-    `weights` (6, 6) are the bodies' inertias about their reference points.
-
-    Neither matrix nor factor is kept: they are as large as all else that is still to be made.
+    `weights` (6, 6) are the bodies' inertias about their reference points. The factor is not kept: it is as large as all that is to come.
     """
 
-    component: Component
-    field: Field
-    inertia: Inertia
+    problem: _Problem
     basis: Columns
     faces: int
     warps: int
@@ -100,9 +99,8 @@ def reduce_mesh(
 
 def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None, report: Report) -> _Motions:
     problem = _problem(component, mesh, reduction, report)
-    report(Stage.REDUCING, 0.0)
-    held, twist = problem.held, mesh.mirrors.twist_kinds(np.eye(3))
-    strokes = _strokes(problem)
+    report(Stage.FACTORISING, 0.0)
+    strokes, twist = _strokes(problem), mesh.mirrors.twist_kinds(np.eye(3))
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
     momenta = {body: _momenta(problem, body) for body in component.bodies}
@@ -110,24 +108,25 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
     loads = [Columns(momenta[body][1] @ np.linalg.inv(weights[body]), twist) for body in loaded]  # over the mass: M R (R^T M R)^-1
     loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
     loads += [Columns.of(rows.T) for rows in seats.values()]
+    none = Columns.of(np.zeros((problem.field.size, 0)))
+    elastic, mass = problem.stiffness, problem.inertia
+    held = support(component, problem.field, reduction.hold, elastic=elastic, mass=mass, loads=beside([none, *loads]))
+    report(Stage.REDUCING, 0.0)
+    inner = [_modes(problem, held, reduction.modes, springs), held.within]
     if reduction.residual:
-        loads.append(replace(held.faces, values=problem.inertia.times(held.faces.values)))
-    inner = [_modes(problem, reduction.modes, springs)]
-    if loads:
-        forces = beside(loads)
+        forces = replace(held.faces, values=problem.inertia.times(held.faces.values))
         inner.append(replace(forces, values=held.solve(forces)))
     basis = beside([held.faces, held.warps, _independent_columns(problem, beside(inner))])
-    faces, warps = len(held.faces.kinds), len(held.warps.kinds)
-    return _Motions(component, problem.field, problem.inertia, basis, faces, warps, weights, strokes, seats)
+    return _Motions(problem, basis, len(held.faces.kinds), len(held.warps.kinds), weights, strokes, seats)
 
 
 def _problem(component: Component, mesh: PieceMesh, reduction: Reduction, report: Report) -> _Problem:
     report(Stage.ASSEMBLING, 0.0)
     plane = [item.joint.name for item in component.interfaces if is_rigid(component, item, reduction.hold)]
     space = field(mesh, plane + [joint.name for joint in component.fixed], reduction.fineness.order)
-    elastic, mass = stiffness(space), inertia(space)
-    report(Stage.FACTORISING, 0.0)
-    return _Problem(component, space, elastic, mass, support(component, space, elastic, mass, reduction.hold))
+    names = groups(component)
+    assembled = assemble_groups(space, {name: np.isin(mesh.owner, pieces) for name, pieces in names.items()})
+    return _Problem(component, space, assembled, total([alike.inertia for alike in assembled]))
 
 
 def _strokes(problem: _Problem) -> dict[int, Array]:
@@ -138,14 +137,11 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
     }
 
 
-def _elements(problem: _Problem | _Motions, name: str) -> Array:
-    return np.isin(problem.field.meshed.owner, groups(problem.component)[name])
-
-
 def _momenta(problem: _Problem, body: str) -> tuple[Array, Array]:
     """Rigid motions R (n, 6) about a body's reference point, and the momenta M R (n, 6) of its elements alone."""
     motion = rigid(problem.field, Frame(np.eye(3), problem.component.bodies[body]))
-    return motion, inertia(problem.field, _elements(problem, body)).times(motion)
+    law, own = next((alike.inertia, group.degrees) for alike in problem.assembled for group in alike.groups if group.name == body)
+    return motion, np.where(own[:, None], law.times(motion), 0.0)
 
 
 def _seat(problem: _Problem, end: End) -> Array:
@@ -157,25 +153,25 @@ def _seat(problem: _Problem, end: End) -> Array:
     return seat_motion(problem.field, end.point, _REACH * thinnest(nearest.form), faces)
 
 
-def _modes(problem: _Problem, count: int, springs: Array | None) -> Columns:
+def _modes(problem: _Problem, supported: Support, count: int, springs: Array | None) -> Columns:
     """The lowest modes (n, count) by shift and invert at zero: with interfaces fixed, or free and joined by springs."""
     if count <= 0:
         return Columns.of(np.zeros((problem.field.size, 0)))
     kinds = range(problem.field.meshed.mirrors.copies)
     held = [np.flatnonzero(problem.field.free & ~held_at_mirrors(problem.field, kind)) for kind in kinds]
-    found = lowest_modes([_pencil(problem, springs, kind, free) for kind, free in zip(kinds, held, strict=True)], count)
+    found = lowest_modes([_pencil(problem, supported, springs, kind, free) for kind, free in zip(kinds, held, strict=True)], count)
     result = beside([Columns(np.zeros((problem.field.size, own.shape[1])), np.full(own.shape[1], kind)) for kind, own in enumerate(found)])
     for kind, (free, own) in enumerate(zip(held, found, strict=True)):
         result.values[np.ix_(free, result.kinds == kind)] = own[: len(free)]
     return result
 
 
-def _pencil(problem: _Problem, springs: Array | None, kind: int, free: Array) -> Pencil:
+def _pencil(problem: _Problem, supported: Support, springs: Array | None, kind: int, free: Array) -> Pencil:
     """Inertia and stiffness of a kind on its `free` degrees of freedom and, joined by springs, the interfaces.
 
     Motions are u = v + faces q with v zero on the interfaces: the stiffness is then diag(K, S), S = faces^T K faces + springs.
     """
-    faces = problem.held.faces.values
+    faces = supported.faces.values
     joined = faces if springs is not None else faces[:, :0]
     boundary = joined.T @ times(problem.stiffness, joined) + (springs if springs is not None else 0.0)
 
@@ -188,7 +184,7 @@ def _pencil(problem: _Problem, springs: Array | None, kind: int, free: Array) ->
     def inverse(force: Array) -> Array:
         full = np.zeros((problem.field.size, force.shape[1]))
         full[free] = force[: len(free)]
-        moved = problem.held.solve(Columns(full, np.full(force.shape[1], kind)))
+        moved = supported.solve(Columns(full, np.full(force.shape[1], kind)))
         return np.vstack([moved[free], np.linalg.solve(boundary, force[len(free) :])])
 
     return Pencil(weighed, inverse, len(free) + joined.shape[1])
@@ -209,7 +205,7 @@ def _independent_columns(problem: _Problem, motions: Columns) -> Columns:
 
 
 def _project(found: _Motions, report: Report) -> Superelement:
-    component, space, basis, kinds = found.component, found.field, found.basis.values, found.basis.kinds
+    component, space, basis, kinds = found.problem.component, found.problem.field, found.basis.values, found.basis.kinds
     elastic: dict[str, Array] = {}
     mass: dict[str, Array] = {}
     bodies: dict[str, Array] = {}
@@ -217,8 +213,7 @@ def _project(found: _Motions, report: Report) -> Superelement:
     resultants: dict[str, Array] = {}
     names, mirrors = groups(component), space.meshed.mirrors
     twist = mirrors.twist_kinds(np.eye(3))
-    wholes = {name: _elements(found, name) for name in names}
-    for number, part in enumerate(contributions(space, wholes, basis)):
+    for number, part in enumerate(contributions(space, found.problem.assembled, basis)):
         report(Stage.PROJECTING, number / len(names))
         name = part.name
         elastic[name] = _symmetrise(mirrors.whole(part.strained.T @ part.forces, kinds, kinds))
@@ -230,9 +225,9 @@ def _project(found: _Motions, report: Report) -> Superelement:
         else:
             link = names[name][0]
             across = mirrors.twist_kinds(component.pieces[link].frame.rotation)
-            resultants[name] = mirrors.whole(_sections(found, link)[part.rows].T @ part.forces, across, kinds)
+            resultants[name] = mirrors.whole(_sections(found.problem, link)[part.rows].T @ part.forces, across, kinds)
     everything = rigid(space, identity())
-    carried = mirrors.whole(basis.T @ found.inertia.times(everything), kinds, twist)
+    carried = mirrors.whole(basis.T @ found.problem.inertia.times(everything), kinds, twist)
     projected = {number: basis.T @ force for number, force in found.strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces) + component.floats,
@@ -253,12 +248,12 @@ def _project(found: _Motions, report: Report) -> Superelement:
     )
 
 
-def _sections(found: _Motions, number: int) -> Array:
+def _sections(problem: _Problem, number: int) -> Array:
     """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others rest.
 
     The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
     """
-    piece, space = found.component.pieces[number], found.field
+    piece, space = problem.component.pieces[number], problem.field
     along = (centroids(space.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
     beyond = degrees_of(space, (space.meshed.owner == number) & (along > 0.0))
     return rigid(space, piece.frame) * beyond[:, None]
@@ -269,7 +264,7 @@ def _free_stroke(found: _Motions, number: int, force: Array) -> Array:
 
     Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
     """
-    component = found.component
+    component = found.problem.component
     piece, result = component.pieces[number], np.array(force)
     result[: found.faces + found.warps] = 0.0
     ends = [(place, item.joint.frame) for place, item in enumerate(component.interfaces) if item.joint.link == piece.name]
