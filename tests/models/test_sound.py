@@ -14,6 +14,7 @@ from flexstage.base.finding import DesignError, Finding
 from flexstage.base.scale import mm
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
 from flexstage.solid.fea import sound
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.model import model_with_parts
@@ -53,6 +54,14 @@ def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pyt
         reads(gaping())
     assert [finding.where for finding in caught.value.findings] == ["left", "platform"]
     assert "20 um away from platform" in caught.value.findings[0].what
+
+
+def test_a_unit_alone_is_the_same_whatever_the_others_are() -> None:
+    stage = case("double-triangle")
+    changed = replace(stage, changes={"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm, "B1/front.thickness": 1.6 * mm})
+    assert isolate(changed, "B2") == isolate(stage, "B2")
+    assert isolate(changed, "B1").changes == {"B1/front.thickness": 1.6 * mm}
+    assert isolate(changed, "B5").changes == {"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm}
 
 
 def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

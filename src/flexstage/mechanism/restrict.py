@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from flexstage.base.finding import refuse
-from flexstage.base.number import Vector
+from flexstage.base.number import Table, Vector
 from flexstage.mechanism.expand import apply_changes, copies
-from flexstage.mechanism.likeness import drawn_units, link_lineage
+from flexstage.mechanism.likeness import ancestry, drawn_units, link_lineage
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
 from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Body, owner_of
@@ -60,12 +60,12 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
 
-    The output's reference point is the joint with the platform. Departures of this copy are kept; outlines that belong to other bodies of
-    the stage (lugs of the platform) are left out.
+    The output's reference point is the joint with the platform. Departures of this copy are kept; other units, and outlines that belong to
+    other bodies of the stage (lugs of the platform), are left out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> list(isolate(double_triangle(), "B4").place)
-    ['B4']
+    >>> list(isolate(double_triangle(), "B4").units)
+    ['vertical']
     """
     units = {name: unit for name, unit, _ in copies(mechanism)}
     if copy not in units:
@@ -75,6 +75,8 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     if joint is None:
         raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
     own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}
+    used = {name: mechanism.units[name] for name in ancestry(mechanism, units[copy])}
+    others = {*mechanism.units, *units} - {copy, *used}
     links = {} if guide is None else {"guide": Link((GROUND, PLATFORM), "guide", joint.centre, guide)}
     parts = dict(mechanism.parts) if guide is None else {**mechanism.parts, "guide": Joint((Freedom.X,))}
     return replace(
@@ -82,8 +84,9 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         parts=parts,
         bodies={PLATFORM: Body(reference=joint.centre)},
         links=links,
-        units={**mechanism.units, units[copy]: replace(mechanism.units[units[copy]], bodies=own)},
+        units={**used, units[copy]: replace(used[units[copy]], bodies=own)},
         place={copy: Placement(units[copy], Pose())},
+        changes=Table({address: value for address, value in mechanism.changes.items() if address.partition("/")[0] not in others}),
         gauges={},
         stops={},
         payloads={},

@@ -22,9 +22,9 @@ _FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 50.0, 4e5, 1.0 / 6.0
 _COPIES = 4.0
 """Copies of the basis that are alive at once."""
 _LANCZOS = 40
-_START, _PER_MESHED = 2.7, 3e-4
-"""Seconds to start a process and draw; seconds an element to mesh."""
-_PER_FREEDOM, _PER_PROJECTED = 2e-4, 1e-6
+_DRAWN, _PER_MESHED = 0.5, 1.4e-4
+"""Seconds to draw; seconds an element to mesh."""
+_PER_FREEDOM, _PER_PROJECTED = 3.3e-5, 1.7e-7
 """Seconds an unknown, and an unknown and coordinate."""
 _COARSER, _COARSEST = 1.25, 12.0
 
@@ -108,14 +108,14 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 
 def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
-    """What a reduction usually takes on one core [s]: process, mesh, and each unknown solved for and projected once a coordinate.
+    """What a reduction usually takes on one core [s]: drawing, mesh, and each unknown solved for and projected once a coordinate.
 
     Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
 
-    >>> round(reduction_seconds(Counts.of(1000.0), 2, 24)), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
-    (4, 95)
+    >>> round(reduction_seconds(Counts.of(1000.0), 2, 24), 1), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
+    (0.8, 18)
     """
-    return _START + _PER_MESHED * counts.elements + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
+    return _DRAWN + _PER_MESHED * counts.elements + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
