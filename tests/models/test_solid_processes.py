@@ -159,6 +159,7 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     started: list[remote.Worker] = []
     plain = remote.Worker
     monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
+    monkeypatch.setattr(remote, "_WAITED", 0.0)
     jobs = [job(rod()), job(replace(rod(), name="again"))]
     with Pool() as pool:
         for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run
@@ -169,13 +170,15 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     assert all(each.process.poll() is not None for each in started)
 
 
-def test_the_like_of_what_a_process_does_waits_for_it_beside_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_like_of_what_a_process_does_waits_for_it_where_it_is_spared_much(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(remote, "Worker", lambda *_: SimpleNamespace(process=SimpleNamespace(poll=lambda: None), end=lambda: None))
     lever, again, foot = (job(rod(size * mm)) for size in (6.0, 6.0, 7.0))
     pool: Any = Pool()
     busy = pool.worker(lever)
     assert pool.choose([again, foot]) == 1
-    assert pool.choose([again]) == 0  # rather than that nobody works
+    assert pool.choose([again]) is None  # it is little but a mesh
+    finer = replace(again, reduction=replace(again.reduction, fineness=replace(again.reduction.fineness, order=5)))
+    assert pool.choose([again, finer]) == 1  # rather than that nobody works
     other = pool.worker(foot)
     pool.idle = [other, busy]
     assert pool.choose([again, foot]) == 0

@@ -30,7 +30,7 @@ from typing import IO, Any, TypeAlias, cast
 from flexstage.base.finding import DesignError
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-_KEPT = {"hugetlb": 1, "mmap_max": 0, "trim_threshold": 2**28}
+_KEPT = {"hugetlb": 1, "mmap_threshold": 2**25, "trim_threshold": 2**28}
 _MEMORY = {"GLIBC_TUNABLES": ":".join(f"glibc.malloc.{name}={value}" for name, value in _KEPT.items())}
 """Where the C library is GNU's, large matrices come in pages of megabytes, of which there are fewer to hand out, and what is freed is kept
 for the next ones, up to a quarter of a gigabyte: fronts come and go by the thousand."""

@@ -60,9 +60,12 @@ class Field:
     @cached_property
     def linear(self) -> tuple[Array, Array]:
         """Coefficients (n / 3,) of the function 1 and (n / 3, 3) of the coordinates [m], in one component of the space."""
-        place = _interpolated(self, [ngsolve.CoefficientFunction(_coordinates())], None)
+        function, place = ngsolve.GridFunction(self.space.components[0]), np.empty((self.size // 3, 3))
+        for axis, coordinate in enumerate(_coordinates()):
+            function.Set(coordinate, dual=False)
+            place[:, axis] = function.vec.FV().NumPy()
         at_vertices = np.arange(self.size // 3) < self.meshed.mesh.nv  # functions of higher order vanish there
-        return at_vertices.astype(float), place.reshape(3, -1).T / MILLIMETRES
+        return at_vertices.astype(float), place / MILLIMETRES
 
     @cached_property
     def fronts(self) -> Fronts:
@@ -274,7 +277,7 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
     True
     """
     if faces is not None:
-        return _interpolated(space, [_rigid_motion(frame, axis) for axis in range(6)], faces)
+        return _interpolated_on(space, [_rigid_motion(frame, axis) for axis in range(6)], faces)
     one, place = space.linear
     arm = place - one[:, None] * frame.position
     axes = frame.rotation.T
@@ -302,7 +305,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
     square = (y * y, y * z, z * z)
     local = [(0, y, 0), (0, 0, z), (0, z, y), *(tuple(f if k == axis else 0 for k in range(3)) for axis in range(3) for f in square)]
     turn = ngsolve.CoefficientFunction(tuple(frame.rotation.ravel().tolist()), dims=(3, 3))
-    return _interpolated(space, [turn * ngsolve.CoefficientFunction(each) for each in local], faces)
+    return _interpolated_on(space, [turn * ngsolve.CoefficientFunction(each) for each in local], faces)
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
@@ -330,15 +333,11 @@ def _coordinates() -> tuple[ngsolve.CoefficientFunction, ...]:
     return ngsolve.x, ngsolve.y, ngsolve.z
 
 
-def _interpolated(space: Field, columns: list[ngsolve.CoefficientFunction], faces: str | None) -> Array:
+def _interpolated_on(space: Field, columns: list[ngsolve.CoefficientFunction], faces: str) -> Array:
     result = np.empty((space.size, len(columns)))
     function = ngsolve.GridFunction(space.space)
-    mesh = space.meshed.mesh
     for number, column in enumerate(columns):
-        if faces is None:
-            function.Set(column, dual=False)
-        else:
-            function.Set(column, definedon=mesh.Boundaries(_escape(faces)))
+        function.Set(column, definedon=space.meshed.mesh.Boundaries(_escape(faces)))
         result[:, number] = function.vec.FV().NumPy()
     return result
 

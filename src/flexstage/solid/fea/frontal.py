@@ -181,7 +181,9 @@ class Factorised:
     def solve(self, forces: Array) -> Array:
         """Displacements (n, k) that forces (n, k) make, zero where held."""
         nodes, (size, columns) = self.order.nodes, forces.shape
-        work = forces.reshape(3, -1, columns)[:, nodes].transpose(1, 0, 2).copy()  # by node, its three components side by side
+        work = np.empty((len(nodes), 3, columns))  # by node, its three components side by side
+        for axis, along in enumerate(forces.reshape(3, -1, columns)):
+            work[:, axis] = along[nodes]
         work[self.held] = 0.0
         pairs = [pair for pair in zip(self.order.fronts, self.factors, strict=True) if pair[0].last > pair[0].first]
         for front, factor in pairs:

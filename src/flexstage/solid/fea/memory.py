@@ -107,6 +107,15 @@ def needed(counts: Counts, order: int, columns: int) -> float:
     return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + counts.sides * _FACTOR * growth) + vectors
 
 
+def mesh_seconds(counts: Counts) -> float:
+    """What drawing and meshing usually take on one core [s].
+
+    >>> round(mesh_seconds(Counts.of(1000.0)), 1)
+    0.6
+    """
+    return _DRAWN + _PER_MESHED * counts.elements
+
+
 def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     """What a reduction usually takes on one core [s]: drawing, mesh, and each unknown solved for and projected once a coordinate.
 
@@ -115,7 +124,7 @@ def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     >>> round(reduction_seconds(Counts.of(1000.0), 2, 24), 1), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
     (0.8, 18)
     """
-    return _DRAWN + _PER_MESHED * counts.elements + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
+    return mesh_seconds(counts) + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:

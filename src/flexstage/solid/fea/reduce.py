@@ -103,14 +103,18 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
     strokes, twist = _strokes(problem), mesh.mirrors.twist_kinds(np.eye(3))
     loaded = [PLATFORM] if springs is not None and PLATFORM in component.bodies else list(component.bodies)
     seats = {str(number): _seat(problem, end) for number, end in enumerate(component.seats)}
-    momenta = {body: _momenta(problem, body) for body in component.bodies}
-    weights = {body: mesh.mirrors.whole(motion.T @ momentum, twist, twist) for body, (motion, momentum) in momenta.items()}
-    loads = [Columns(momenta[body][1] @ np.linalg.inv(weights[body]), twist) for body in loaded]  # over the mass: M R (R^T M R)^-1
+    weights: dict[str, Array] = {}
+    loads = [Columns.of(np.zeros((problem.field.size, 0)))]
+    for body in component.bodies:
+        motion, momentum = _momenta(problem, body)
+        weights[body] = mesh.mirrors.whole(motion.T @ momentum, twist, twist)
+        if body in loaded:
+            loads.append(Columns(momentum @ np.linalg.inv(weights[body]), twist))  # over the mass: M R (R^T M R)^-1
     loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
     loads += [Columns.of(rows.T) for rows in seats.values()]
-    none = Columns.of(np.zeros((problem.field.size, 0)))
     elastic, mass = problem.stiffness, problem.inertia
-    held = support(component, problem.field, reduction.hold, elastic=elastic, mass=mass, loads=beside([none, *loads]))
+    held = support(component, problem.field, reduction.hold, elastic=elastic, mass=mass, loads=beside(loads))
+    loads.clear()
     report(Stage.REDUCING, 0.0)
     inner = [_modes(problem, held, reduction.modes, springs), held.within]
     if reduction.residual:

@@ -14,7 +14,7 @@ from flexstage.solid.fea.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Hold, Reduction
-from flexstage.solid.fea.memory import Counts, needed, reduction_seconds, refusal
+from flexstage.solid.fea.memory import Counts, mesh_seconds, needed, reduction_seconds, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.store import to_bytes
 from flexstage.solid.fea.worker import Call, Job
@@ -114,6 +114,10 @@ class Reduce(ComponentJob):
         """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
         found = counts or self.expected(self.reduction.fineness)
         return reduction_seconds(found, self.reduction.fineness.order, self.columns)
+
+    def spared(self) -> float:
+        """Its drawing and mesh [s]."""
+        return mesh_seconds(self.expected(self.reduction.fineness))
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""
