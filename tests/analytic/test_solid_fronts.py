@@ -48,7 +48,7 @@ def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver
     half = np.arange(space.meshed.mesh.ne) % 2 == 0
     forces = Columns(np.random.default_rng(4).standard_normal((space.size, 4)), np.arange(4))
     parts = [stiffness(space, half), stiffness(space, ~half)]
-    expected = factorise_kinds(space, parts)(forces)
+    expected = factorise_kinds(space, [stiffness(space)])(forces)
 
     def refuse(*_: object) -> None:
         raise np.linalg.LinAlgError
@@ -92,6 +92,13 @@ def test_fronts_are_shared_by_those_that_hold_nothing_there_and_only_by_them() -
 def sparse(factor: float) -> Matrix:
     values, columns, starts = ELASTIC.mat.CSR()
     return Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), factor * np.asarray(values))
+
+
+def test_matrices_are_added() -> None:
+    forces, held = np.random.default_rng(5).standard_normal((SPACE.size, 2)), ~SPACE.free[None]
+    (whole,), (added,) = (factorise_fronts(SPACE.fronts, parts, held) for parts in ([sparse(1.0)], [sparse(0.25), sparse(0.75)]))
+    expected = whole.solve(forces)
+    np.testing.assert_allclose(added.solve(forces), expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
 def test_what_is_not_definite_is_refused() -> None:

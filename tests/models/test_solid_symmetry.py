@@ -11,13 +11,14 @@ import pytest
 from scipy.linalg import eigh
 
 from flexstage.base.number import Array
+from flexstage.cases.xy_stage import xy_stage
 from flexstage.parts.body import Block, Cylinder
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Straight
 from flexstage.solid.fea.cad import cad
-from flexstage.solid.fea.component import Component, Interface, Joint
+from flexstage.solid.fea.component import Component, Interface, Joint, components, groups
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.field import apply_form, factorise, field, rigid, stiffness
 from flexstage.solid.fea.fineness import Fineness, Reduction
@@ -120,6 +121,18 @@ def _eigenvalues(element: Superelement) -> Array:
     """With faces held."""
     size = element.boundary_coordinates
     return eigh(_total(element.stiffness)[size:, size:], _total(element.inertia)[size:, size:], eigvals_only=True)
+
+
+def test_every_body_has_its_own_mass_though_others_are_assembled_with_it() -> None:
+    part = next(each for each in components(xy_stage()) if len(each.bodies) > 1)
+    plan = Reduction(Fineness(neck=6.0, block=3.0, order=2), modes=0)
+    meshed = mesh_component(part, plan.fineness)
+    volumes = 1e-9 * np.array(ngsolve.Integrate(ngsolve.CoefficientFunction(1.0), meshed.mesh, element_wise=True, order=8))
+    found = reduce_mesh(part, meshed, plan).body_inertia
+    for name, pieces in groups(part).items():
+        if name in part.bodies:
+            mass = part.pieces[pieces[0]].medium.density * float(np.sum(volumes[np.isin(meshed.owner, pieces)]))
+            np.testing.assert_allclose(np.diag(found[name])[:3], mass, rtol=1e-9)
 
 
 def _total(laws: Mapping[str, Array]) -> Array:

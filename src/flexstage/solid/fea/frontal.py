@@ -219,7 +219,7 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Matrix], held: Array) -> 
         factors.append([])
         traces[number] = []
         for kind in range(1 if alike else len(held)):
-            law = panel if alike else panel.copy()
+            law = panel if alike or kind == len(held) - 1 else panel.copy()
             law.uncouple(np.flatnonzero(by_node[kind, nodes]))
             factor, trace = _eliminate(law, _gather(law, [(met, left[kind % len(left)]) for met, left in below]))
             factors[-1].append(factor)
