@@ -50,17 +50,7 @@ class Assembled:
 
 
 def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assembled, ...]:
-    """Assemble groups of elements (masks).
-
-    >>> from flexstage.solid.fea.bar import bar
-    >>> from flexstage.solid.fea.field import field
-    >>> from flexstage.solid.fea.fineness import Fineness
-    >>> from flexstage.solid.fea.mesh import mesh_component
-    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
-    >>> half = np.arange(space.meshed.mesh.ne) % 2 == 0
-    >>> len(assemble_groups(space, {"even": half, "odd": ~half}))
-    2
-    """
+    """Assemble groups of elements (masks), those that share no degree of freedom together."""
     sets = _group_by_law([Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()])
     together = [np.any([group.elements for group in alike], axis=0) for alike in sets]
     return tuple(

@@ -211,7 +211,8 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Matrix], held: Array) -> 
     for number, front in enumerate(order.fronts):
         nodes = np.concatenate([np.arange(front.first, front.last), front.beyond])
         local[nodes] = np.arange(len(nodes))
-        panel = _Panel.of(3 * (front.last - front.first), 3 * len(front.beyond))
+        own, beyond = 3 * (front.last - front.first), 3 * len(front.beyond)
+        panel = _Panel.of(np.zeros(own * (own + beyond)), own, beyond)
         for entries in parts:
             entries.add(panel, front, local)
         below = [(local[order.fronts[child].beyond], traces.pop(child)) for child in front.children]
@@ -249,18 +250,14 @@ class _Panel:
     entries: Array
 
     @staticmethod
-    def of(own: int, beyond: int) -> _Panel:
-        """All zero."""
-        return _Panel._of(np.zeros(own * (own + beyond)), own, beyond)
-
-    @staticmethod
-    def _of(entries: Array, own: int, beyond: int) -> _Panel:
+    def of(entries: Array, own: int, beyond: int) -> _Panel:
+        """Of so many columns, with so many rows below."""
         square = own * own
         return _Panel(entries[:square].reshape(own, own, order="F"), entries[square:].reshape(beyond, own, order="F"), entries)
 
     def copy(self) -> _Panel:
         """Another like it."""
-        return _Panel._of(self.entries.copy(), len(self.own), len(self.below))
+        return _Panel.of(self.entries.copy(), len(self.own), len(self.below))
 
     def uncouple(self, held: Array) -> None:
         """Leave of some rows, and of the same of its own columns, the diagonal alone."""
