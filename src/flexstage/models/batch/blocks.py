@@ -126,7 +126,7 @@ def blocks(plan: Scheme, numbers: Array) -> tuple[Blocks, Blocks]:
 
 
 def of_kind(plan: Scheme, numbers: Array, kind: str) -> Array:
-    """Every feature of a kind (b, owners, *shape).
+    """Every feature of a kind (b, owners, *shape); inertias as 6x6 matrices.
 
     >>> from flexstage.models.batch.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
@@ -135,7 +135,23 @@ def of_kind(plan: Scheme, numbers: Array, kind: str) -> Array:
     """
     members = [item for item in plan.topology.features if item.kind == kind]
     rows = numbers[members[0].start : members[-1].slots.stop]
-    return np.ascontiguousarray(rows.T).reshape(-1, len(members), *members[0].shape)
+    found = np.ascontiguousarray(rows.T).reshape(-1, len(members), *members[0].shape)
+    return inertia_matrix(found) if kind == "inertia" else found
+
+
+def inertia_matrix(numbers: Array) -> Array:
+    """The 6x6 inertia (..., 6, 6) of a body for its twist at a point, of its numbers (..., 10): [m, -[s]x; [s]x, J].
+
+    >>> inertia_matrix(np.array([2.0, 0.1, 0.2, 0.3, 3.0, 0.0, 4.0, 0.0, 0.0, 5.0]))[0].tolist()
+    [2.0, 0.0, 0.0, -0.0, 0.3, -0.2]
+    """
+    result = np.zeros((*numbers.shape[:-1], 6, 6))
+    moments = cross_matrix(numbers[..., 1:4])
+    result[..., range(3), range(3)] = numbers[..., :1]
+    result[..., 3:, :3], result[..., :3, 3:] = moments, -moments
+    row, column = np.tril_indices(3)
+    result[..., 3 + row, 3 + column] = result[..., 3 + column, 3 + row] = numbers[..., 4:]
+    return result
 
 
 def _sum(plan: Scheme, values: Array) -> Array:

@@ -7,7 +7,6 @@ import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -88,6 +87,11 @@ class Tables:
         return {**_tables(self.scheme), **_slots(self.scheme, self.changes), **trees, **own}
 
     @cached_property
+    def places(self) -> Mapping[str, int]:
+        """Where they stand in memory."""
+        return _places(self.arrays)
+
+    @cached_property
     def sizes(self) -> Mapping[str, int]:
         """How large they are."""
         graph, topology, copies = self.scheme.graph, self.scheme.topology, self.planes.copies
@@ -163,8 +167,8 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
     count, modes = stage.numbers.shape[1], start.choice.count
     number = _held(stage.numbers)
     change = _held(np.zeros((0, count)) if stage.slopes is None else stage.slopes.values)
-    held = {**tables.arrays, "force": tables.planes.inside(start.force), "numbers_": number, "changes": change}
-    held["still"] = np.zeros(len(stage.numbers), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
+    still = np.zeros(len(stage.numbers), dtype=np.int64) if stage.still is None else stage.still.astype(np.int64)
+    held = {"force": tables.planes.inside(start.force), "numbers_": number, "changes": change, "still": still}
     vectors = -(-count // width)
     stride = vectors * width + 8  # rows a power of two apart would be on the same lines of the cache
     results: dict[str, Array] = {
@@ -175,10 +179,15 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
         "between": np.empty((vectors, modes * (modes - 1) // 2, stage.variables, width)),
         "crossed": np.zeros(vectors, dtype=np.int64),
     }
-    task = _task(stage, start, tables, (count, *_strides(number), *_strides(change), stride))
-    for name, item in (held | results).items():
-        setattr(task, name, item.ctypes.data)
-    return Job(task, held, results)
+    sizes = _sizes(stage, start, tables, (count, *_strides(number), *_strides(change), stride))
+    bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
+    settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
+    task = _Task(**sizes, **tables.places, **_places(held | results), **dict(zip(_SETTINGS, settings, strict=True)))
+    return Job(task, {**tables.arrays, **held}, results)
+
+
+def _places(arrays: Mapping[str, Array]) -> dict[str, int]:
+    return {name: item.ctypes.data for name, item in arrays.items()}
 
 
 def _held(rows: Array | Rows) -> Array:
@@ -193,8 +202,8 @@ def _strides(held: Array) -> tuple[int, int]:
     return held.strides[-2] // 8, held.strides[0] // 8 if held.ndim == 3 else PORTION
 
 
-def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) -> _Task:
-    sizes: Mapping[str, int] = {
+def _sizes(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) -> dict[str, int]:
+    return {
         **dict(zip(_DESIGNS, designs, strict=True)),
         **tables.sizes,
         "numbers": stage.numbers.shape[0],
@@ -205,12 +214,6 @@ def _task(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...]) 
         "variables": stage.variables,
         "single": start.needed,
     }
-    bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
-    settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
-    task: Any = _Task()
-    for name, value in (*sizes.items(), *zip(_SETTINGS, settings, strict=True)):
-        setattr(task, name, value)
-    return task
 
 
 def _tables(scheme: Scheme) -> dict[str, Array]:
@@ -233,7 +236,7 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
         "product": np.searchsorted([firsts[item[0]] for item in update], np.arange(bodies + 1)).astype(np.int64),
         "update": np.array(update, dtype=np.int64).reshape(-1, 3),
         "mirror": topology.mirror,
-        "inertia": np.array([inertia + 36 * body for body in graph.order], dtype=np.int64),
+        "inertia": np.array([inertia + 10 * body for body in graph.order], dtype=np.int64),
         "alike": np.argsort([part for part, *_ in link], kind="stable").astype(np.int64),
         "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),
     }

@@ -15,7 +15,7 @@ import numpy as np
 from flexstage.base.digest import Description
 from flexstage.base.number import Array
 from flexstage.beams.mass import law_and_mass
-from flexstage.mechanism.expand import Assembly, PlacedLink, lay_out
+from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, lay_out
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
@@ -40,10 +40,14 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
     "turn": (3, 3),
     "first": (3,),
     "second": (3,),
-    "inertia": (6, 6),
+    "inertia": (10,),
 }
-"""Kinds of features: law and mass of a part in its link's frame; a link's axes in the stage and the arms from it to the reference points of
-its two bodies; inertia of a body with its payloads at its reference point."""
+"""Kinds of features: law and mass of a part in its link's frame; a link's axes in the stage and the arms from it to points of its two
+bodies; mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of a body with its payloads about that point. No point moves
+in its body: it is where the reference point of a nominal design is."""
+
+INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
+"""Where the numbers of an inertia stand in its 6x6 matrix."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,7 @@ class Feature:
     @property
     def symmetric(self) -> bool:
         """Whether it is a symmetric matrix."""
-        return self.kind in {"stiffness", "mass", "inertia"}
+        return self.kind in {"stiffness", "mass"}
 
     @property
     def slots(self) -> slice:
@@ -177,23 +181,43 @@ def everything(kind: str, owner: int) -> bool:
     return bool(kind) and owner >= 0
 
 
-def features(mechanism: Mechanism, wanted: Wanted = everything) -> dict[tuple[str, int], Array]:
-    """The features (..., *shape) of a description by (kind, owner); numbers may have batch axes and be complex.
+Points = Mapping[str, Array]
+"""A point (3,) of each body, by name, in the frame the body is drawn in."""
+
+
+def reference_points(assembly: Assembly) -> Points:
+    """The reference points of all bodies that do not state one.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> features(double_triangle())["inertia", 0].diagonal()[:3].round(3).tolist()  # the platform's mass
-    [13.997, 13.997, 13.997]
+    >>> float(reference_points(lay_out(double_triangle()))["platform"][2].round(4))  # the height of its centre of mass
+    0.105
     """
-    return {key: array for _, found in stepped_features([mechanism], [wanted]) for key, array in found.items()}
+    free = {name: body for name, body in assembly.bodies.items() if body.body.reference is None}
+    return {name: body.frame.rotation.T @ (body.reference - body.frame.position) for name, body in free.items()}
 
 
-def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) -> Iterator[tuple[int, dict[tuple[str, int], Array]]]:
+def features(mechanism: Mechanism, points: Points, wanted: Wanted = everything) -> dict[tuple[str, int], Array]:
+    """The features (..., *shape) of a description by (kind, owner), about `points` of its bodies; numbers may have batch axes, be complex.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> float(features(stage, reference_points(lay_out(stage)))["inertia", 0][0].round(3))  # the platform's mass
+    13.997
+    """
+    return {key: array for _, found in stepped_features([mechanism], points, [wanted]) for key, array in found.items()}
+
+
+def stepped_features(
+    mechanisms: Sequence[Mechanism], points: Points, wanted: Sequence[Wanted]
+) -> Iterator[tuple[int, dict[tuple[str, int], Array]]]:
     """Features of one description with several steps in its numbers, some at a time, with the place of the description they are of.
 
     Each part is integrated once for all of them. What is used at once is still in the processor's cache.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> [len(found) for _, found in stepped_features([double_triangle()], [lambda kind, owner: kind == "mass" and owner == 0])]
+    >>> stage = double_triangle()
+    >>> points = reference_points(lay_out(stage))
+    >>> [len(found) for _, found in stepped_features([stage], points, [lambda kind, owner: kind == "mass" and owner == 0])]
     [1, 1, 27]
     """
     assemblies = [lay_out(mechanism) for mechanism in mechanisms]
@@ -203,16 +227,22 @@ def stepped_features(mechanisms: Sequence[Mechanism], wanted: Sequence[Wanted]) 
             yield from ((place, {(kind, number): array}) for place, array in zip(own, arrays, strict=True))
     for place, (mechanism, assembly, asked) in enumerate(zip(mechanisms, assemblies, wanted, strict=True)):
         result: dict[tuple[str, int], Array] = {}
+        bodies = {name: _at_point(body, points.get(name)) for name, body in assembly.bodies.items()}
         for number, link in enumerate(assembly.links.values()):
             result["turn", number] = link.frame.rotation
             for kind, body in zip(("first", "second"), link.joins, strict=True):
                 if asked(kind, number):
-                    result[kind, number] = np.zeros(3) if body == GROUND else assembly.bodies[body].reference - link.frame.position
+                    result[kind, number] = np.zeros(3) if body == GROUND else bodies[body].reference - link.frame.position
         for number, body in enumerate(layout(assembly).bodies):
             if asked("inertia", number):
-                inertia = moving_inertia(mechanism, assembly.bodies[body])
-                result["inertia", number] = np.zeros((6, 6)) if inertia is None else inertia
+                inertia = moving_inertia(mechanism, bodies[body])
+                result["inertia", number] = np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES]
         yield place, result
+
+
+def _at_point(body: PlacedBody, point: Array | None) -> PlacedBody:
+    """A body whose reference is that point of it."""
+    return body if point is None else replace(body, body=replace(body.body, reference=tuple(point)))
 
 
 def _in_blocks(parts: list[tuple[Part, Material | None]]) -> dict[str, list[Array]]:

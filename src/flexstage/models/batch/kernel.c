@@ -487,19 +487,36 @@ static marks assemble_plane(const Task *t, Room *w, int64_t l)
     return bad;
 }
 
+/* The 6x6 inertia (its lower triangle) of a body: of its mass, moments of mass (3) and moments of inertia (a lower triangle, 6). */
+static INLINE void weigh(lanes *own, const lanes *n)
+{
+    UNROLL for (int i = 0; i < OWN; i++) own[i] = all(0.0);
+    UNROLL for (int i = 0; i < 3; i++) {
+        own[LOWER(i, i)] = n[0];
+        own[LOWER(3 + (i + 2) % 3, (i + 1) % 3)] = n[1 + i], own[LOWER(3 + (i + 1) % 3, (i + 2) % 3)] = -n[1 + i];
+        UNROLL for (int k = 0; k <= i; k++) own[LOWER(3 + i, 3 + k)] = n[4 + LOWER(i, k)];
+    }
+}
+
 /* The inertia of a tree's body; tells in which lanes it is not symmetric about the plane, or not that of the equal body that stands for it. */
 static marks weigh_plane(const Task *t, Room *w, int64_t b)
 {
-    static const int none[4];
     const int64_t model = t->model[b];
-    const lanes *q = w->view[t->through[b]].q;
-    lanes r[9], own[36], *mass = w->mass + OWN * model;
+    const lanes *q = w->view[t->through[b]].q, *n = w->number + t->inertia[b];
+    lanes turned[10], half[9], own[OWN], *mass = w->mass + OWN * model;
     marks bad = {0};
-    UNROLL for (int i = 0; i < 9; i++) r[i] = q[3 * (i % 3) + i / 3];
-    turn(own, w->number + t->inertia[b], 6, r, none, 1);
+    turned[0] = n[0];
+    UNROLL for (int i = 0; i < 3; i++) turned[1 + i] = along(q, i, n + 1, 1);
+    UNROLL for (int i = 0; i < 9; i++) {
+        const int a = i / 3, c = i % 3;
+        half[i] = n[4 + LOWER(a, 0)] * q[c] + n[4 + (a ? LOWER(a, 1) : LOWER(1, 0))] * q[3 + c] + n[4 + LOWER(2, a)] * q[6 + c];
+    }
+    UNROLL for (int i = 0; i < 3; i++)
+        UNROLL for (int k = 0; k <= i; k++) turned[4 + LOWER(i, k)] = along(q, i, half + k, 3);
+    weigh(own, turned);
     UNROLL for (int i = 0; i < 6; i++)
         UNROLL for (int k = 0; k <= i; k++) {
-            const lanes x = own[6 * SPOT[i] + SPOT[k]], most = t->skew * t->skew * (own[7 * SPOT[i]] * own[7 * SPOT[k]]);
+            const lanes x = entry(own, SPOT[i], SPOT[k], SYMMETRIC), most = t->skew * t->skew * (entry(own, SPOT[i], SPOT[i], SYMMETRIC) * entry(own, SPOT[k], SPOT[k], SYMMETRIC));
             lanes *to = mass + HALF(i / 3, i % 3, k % 3);
             if (!WITHIN(i, k)) bad |= ~(x * x <= most);
             else if (model == b) *to = x;
@@ -529,7 +546,7 @@ static marks assemble(const Task *t, Room *w)
         for (int64_t b = 0; b < t->bodies; b++)
             if ((t->model[b] != b) != copies) continue;
             else if (t->through[b] >= 0) bad |= weigh_plane(t, w, b);
-            else for (int i = 0; i < 6; i++) memcpy(w->mass + OWN * b + LOWER(i, 0), w->number + t->inertia[b] + 6 * i, sizeof(lanes) * (i + 1));
+            else weigh(w->mass + OWN * b, w->number + t->inertia[b]);
     }
     for (int copies = 0; copies < 2; copies++)
         for (int64_t l = 0; l < t->links; l++)
@@ -1028,14 +1045,14 @@ typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], s
 /* The share of the platform in mode c of x q, x the platform's rows. */
 static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes *q, int m, int c)
 {
-    const lanes *platform = w->number + t->inertia[t->bodies - 1];
-    lanes seen[6], sum = all(0.0);
+    lanes seen[6], platform[OWN], sum = all(0.0);
+    weigh(platform, w->number + t->inertia[t->bodies - 1]);
     for (int i = 0; i < 6; i++) {
         seen[i] = x[i * m] * q[c];
         for (int k = 1; k < m; k++) seen[i] += x[i * m + k] * q[k * m + c];
     }
     for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++) sum += seen[i] * platform[6 * i + k] * seen[k];
+        for (int k = 0; k < 6; k++) sum += seen[i] * entry(platform, i, k, SYMMETRIC) * seen[k];
     return sum;
 }
 
@@ -1241,16 +1258,18 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
         EACH_MODE for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
 }
 
-/* `turned`: moments too, which only axes feel. */
+/* Of the ends that slots about a link's place are of. `turned`: moments too, which only axes feel. */
 static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const lanes *mean, const int turned, const int k)
 {
+    const int64_t *slots = t->slot + 5 * t->reach[t->parts + l], *end = t->slot + 5 * t->reach[t->parts + l + 1];
+    const int first = slots[0] == SECOND, last = slots[0] == FIRST && end[-5] == FIRST ? 1 : 2; /* they are in the order of their kinds */
     const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
     const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
     const Law *law = w->law + t->link[4 * l];
     for (int i = 0; i < (turned ? 6 : 3); i++) {
         lanes *const pull = to->pull;
         weigh_row(pull, stiff + 6 * i, law->column + law->start[i], law->start[i + 1] - law->start[i], to->strain, k);
-        for (int side = 0; side < 2; side++) {
+        for (int side = first; side < last; side++) {
             const int row = 6 * side + i;
             lanes *const f = to->force + row * k;
             const double sign = side ? 1.0 : -1.0;
@@ -1259,7 +1278,7 @@ static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to,
             EACH_MODE for (int c = 0; c < k; c++) f[c] = sign * pull[c] - mean[c] * f[c];
         }
     }
-    for (int side = 0; side < 2; side++)
+    for (int side = first; side < last; side++)
         for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
             const lanes *f = to->force + 6 * side * k;
             EACH_MODE for (int c = 0; c < k; c++)
@@ -1311,6 +1330,25 @@ static INLINE void place_slots(
                 gain(sum, o + two * k, g + one * k, -2.0, 1, of, crossed, k);
             }
             more = 1;
+        }
+    }
+}
+
+/* Every slot about a body's inertia, into `sum`. */
+static INLINE void body_slots(const Task *t, const Room *w, int64_t b, lanes *sum, const Wanted *of, const int crossed, const int k, const int n)
+{
+    const int64_t group = t->parts + t->links + b;
+    const lanes *x = w->placed + 6 * k * b, *o = x + 3 * k;
+    for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
+        const int at = (int)t->slot[5 * s + 2], one = at % 3, two = (at + 1) % 3; /* a moment of mass: about the third axis */
+        if (!at)
+            for (int i = 0; i < 3; i++) gain(sum, x + i * k, x + i * k, 1.0, i > 0, of, crossed, k);
+        else if (at < 4) {
+            gain(sum, x + one * k, o + two * k, 2.0, 0, of, crossed, k);
+            gain(sum, x + two * k, o + one * k, -2.0, 1, of, crossed, k);
+        } else {
+            const int row = at < 5 ? 0 : at < 7 ? 1 : 2, column = at - 4 - LOWER(row, 0);
+            gain(sum, o + row * k, o + column * k, row == column ? 1.0 : 2.0, 0, of, crossed, k);
         }
     }
 }
@@ -1372,13 +1410,8 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
     }
     for (int64_t b = 0; b < t->bodies; b++) {
         const int64_t group = t->parts + t->links + b;
-        const lanes *x = w->placed + 6 * k * b;
-        lanes *sum = w->sum;
-        for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
-            const int64_t row = t->slot[5 * s + 2], column = t->slot[5 * s + 3];
-            gain(sum, x + row * k, x + column * k, row == column ? 1.0 : 2.0, 0, of, 0, k);
-            if (more) gain(sum, x + row * k, x + column * k, row == column ? 1.0 : 2.0, 0, of, 1, k);
-        }
+        body_slots(t, w, b, w->sum, of, 0, k, n);
+        if (more) body_slots(t, w, b, w->sum, of, 1, k, n);
         weigh_slots(t, group, w->sum, of, k, n), contract(t, w, group, w->sum, n);
     }
 }

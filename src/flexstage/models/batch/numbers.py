@@ -21,7 +21,19 @@ from flexstage.mechanism.expand import expand
 from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
-from flexstage.models.batch.features import Feature, Rows, Topology, distinct_links, features, pack, put, stepped_features, topology
+from flexstage.models.batch.features import (
+    Feature,
+    Points,
+    Rows,
+    Topology,
+    distinct_links,
+    features,
+    pack,
+    put,
+    reference_points,
+    stepped_features,
+    topology,
+)
 from flexstage.models.batch.units import Path, Told, stepped_paths, told_by_units
 
 _STEP = 1e-20
@@ -60,14 +72,16 @@ class Change:
 class Family:
     """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
 
-    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. `touched` says which
-    features each number is in, `changes` which of their numbers; `together` which are stepped in one pass.
+    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. Features are about `points`
+    of the bodies, which do not move in them: no arm changes where a centre of mass does. `touched` says which features each number is in,
+    `changes` which of their numbers; `together` which are stepped in one pass.
     """
 
     mechanism: Mechanism
     addresses: tuple[str, ...]
     nominal: Array
     topology: Topology
+    points: Points
     touched: tuple[frozenset[Key], ...]
     together: tuple[tuple[int, ...], ...]
     draw: Draw | None = None
@@ -233,7 +247,7 @@ def _told_slopes(family_: Family, design: Array) -> Iterator[Array]:
 
 def _upper(place: Feature) -> Array:
     rows = np.arange(int(np.prod(place.shape)))
-    if place.kind in {"turn", "first", "second"}:
+    if not place.symmetric:
         return rows
     return rows[rows // place.shape[-1] <= rows % place.shape[-1]]
 
@@ -250,8 +264,8 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
     plain = _without_requirements(mechanism)
     for address, value in zip(addresses, nominal, strict=True):
         plain = set_value(plain, address, float(value))
-    touched = tuple(_touched(plain, address, value) for address, value in zip(addresses, nominal, strict=True))
-    return Family(plain, addresses, nominal, topology(expand(plain)), touched, tuple(_together(touched)))
+    stepped = [set_value(plain, address, _stepped(value)) for address, value in zip(addresses, nominal, strict=True)]
+    return _family(plain, addresses, nominal, stepped)
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
@@ -266,26 +280,29 @@ def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
     2
     """
     own = tuple(np.asarray(float(value)) for value in nominal)
-    touched = tuple(_complex(draw((*own[:number], _step(own[number]), *own[number + 1 :]))) for number in range(len(own)))
-    plain = _without_requirements(draw(own))
-    return Family(plain, names, np.asarray(nominal, float), topology(expand(plain)), touched, tuple(_together(touched)), draw)
+    stepped = [draw((*own[:number], _step(own[number]), *own[number + 1 :])) for number in range(len(own))]
+    return replace(_family(_without_requirements(draw(own)), names, np.asarray(nominal, float), stepped), draw=draw)
+
+
+def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array, stepped: list[Mechanism]) -> Family:
+    """The family around a description, with those that have a complex step in each number."""
+    assembly = expand(plain)
+    points = reference_points(assembly)
+    touched = tuple(_complex(each, points) for each in stepped)
+    return Family(plain, names, nominal, topology(assembly), points, touched, tuple(_together(touched)))
 
 
 def _step(value: Array) -> Array:
     return value + 1j * (abs(value) * _STEP or _STEP)
 
 
-def _complex(mechanism: Mechanism) -> frozenset[Key]:
+def _complex(mechanism: Mechanism, points: Points) -> frozenset[Key]:
     """Features that come out complex."""
-    return frozenset(key for key, array in features(mechanism).items() if np.iscomplexobj(array))
+    return frozenset(key for key, array in features(mechanism, points).items() if np.iscomplexobj(array))
 
 
 def _without_requirements(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, requirements={})
-
-
-def _touched(mechanism: Mechanism, address: str, value: float) -> frozenset[Key]:
-    return _complex(set_value(mechanism, address, _stepped(value)))
 
 
 def _stepped(value: float) -> complex:
@@ -344,7 +361,7 @@ def rows_of(family_: Family, values: Array) -> Rows:
     >>> rows_of(found, np.array([[1e-3], [2e-3]])).shape[1]
     2
     """
-    return pack(features(describe(family_, values)), family_.topology.features, len(values))
+    return pack(features(describe(family_, values), family_.points), family_.topology.features, len(values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -452,7 +469,7 @@ def _slopes(
     wanted = {number: {change.key for _, change in own} for number, own in places.items()}
     for number, others in dropped.items():
         if any(number in group and any(other in wanted for other in group) for group in family_.together):
-            wanted.setdefault(number, set()).update(change.key for change in others if change.key[0] != "inertia")
+            wanted.setdefault(number, set()).update(change.key for change in others)
     for group, arrays in _stepped_features(family_, values, wanted):
         for key, array in arrays.items():
             still[features_[key].slots] = put(numbers, features_[key], array)
@@ -478,12 +495,12 @@ def _stepped_features(family_: Family, values: Array, wanted: Mapping[int, set[K
     groups = [group for group in family_.together if not wanted.keys().isdisjoint(group)]
     asked = [set().union(*(wanted.get(number, ()) for number in group)) for group in groups]
     if not groups:
-        yield (), features(mechanism)
+        yield (), features(mechanism, family_.points)
         return
     asked[0] |= {place.key for place in family_.topology.features}.difference(*asked)
     stepped = [step_numbers(family_, mechanism, values, group) for group in groups]
     keys = [lambda kind, owner, own=own: (kind, owner) in own for own in asked]
-    yield from ((groups[place], arrays) for place, arrays in stepped_features(stepped, keys))
+    yield from ((groups[place], arrays) for place, arrays in stepped_features(stepped, family_.points, keys))
 
 
 def _flat(array: Array, change: Change) -> Array:

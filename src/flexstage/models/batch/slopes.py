@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.blocks import Scheme, carries, of_kind
+from flexstage.models.batch.blocks import Scheme, carries, inertia_matrix, of_kind
 from flexstage.models.batch.features import GROUNDED, Feature
 from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.spatial.frame import cross_matrix
@@ -77,7 +77,7 @@ def slope(plan: Scheme, seen: Motion, change: Change, values: Array) -> Array:
         return -_weigh(seen, np.sum(np.swapaxes(twists, -1, -2) @ (by[:, None] @ twists), axis=1))
     if place.kind == "inertia":
         moved = seen.bodies[:, place.owner]
-        return -_weigh(seen, np.swapaxes(moved, -1, -2) @ (by @ moved))
+        return -_weigh(seen, np.swapaxes(moved, -1, -2) @ (inertia_matrix(by) @ moved))
     half = np.swapaxes(seen.forces[:, place.owner], -1, -2) @ _move(plan, seen, place, by)
     return half + np.swapaxes(half, -1, -2)
 

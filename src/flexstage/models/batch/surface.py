@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.features import Rows
+from flexstage.models.batch.blocks import inertia_matrix
+from flexstage.models.batch.features import INERTIA_ENTRIES, Rows
 from flexstage.models.batch.numbers import Family, Slopes, numbers_of
 
 TOLERANCE = 1e-10
@@ -196,8 +197,10 @@ def _scale(family: Family, numbers: Array) -> Array:
         if place.kind in {"first", "second"}:
             result[place.slots] = longest
         elif place.kind != "turn":
-            root = np.sqrt(np.diag(largest[place.slots].reshape(place.shape)))
-            both = (root[:, None] * root).ravel()
+            own = largest[place.slots]
+            root = np.sqrt(np.diag(inertia_matrix(own) if place.kind == "inertia" else own.reshape(place.shape)))
+            both = root[:, None] * root
+            both = both[INERTIA_ENTRIES] if place.kind == "inertia" else both.ravel()
             result[place.slots] = np.where(both > 0.0, both, 1.0)
     return result
 
