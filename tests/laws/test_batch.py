@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
@@ -533,6 +534,16 @@ def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> Non
         np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-12)
         scale = np.max(np.abs(found.slopes), axis=(0, 2))[:, None]
         assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
+
+
+def test_a_plan_that_was_used_serves_in_another_process() -> None:
+    """Places in memory are not handed on."""
+    family_plan = plan(double_triangle(), SHARED)
+    values = designs(family_plan, 3, 0.05)
+    known = platform_modes(family_plan, values, slopes=True)
+    handed = pickle.loads(pickle.dumps(family_plan))  # noqa: S301 - our own
+    assert all("places" not in vars(tables) for tables in (handed.tables, handed.slope_tables))
+    np.testing.assert_array_equal(platform_modes(handed, values, slopes=True).gradient, known.gradient)
 
 
 @pytest.mark.skipif(kernel() is None, reason="no compiler")

@@ -73,6 +73,10 @@ class Tables:
     changes: tuple[Change, ...]
     planes: Planes
 
+    def __reduce__(self) -> tuple[type[Tables], tuple[Scheme, tuple[Change, ...], Planes]]:
+        """Without what is kept: another process has other places in memory."""
+        return Tables, (self.scheme, self.changes, self.planes)
+
     @cached_property
     def whole(self) -> Tables:
         """The same in the stage's axes, for designs whose legs have not these planes."""
