@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -110,14 +111,18 @@ class Reduce(ComponentJob):
         part = self.component
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
+    @cached_property
+    def _usual(self) -> Counts:
+        return self.expected(self.reduction.fineness)
+
     def seconds(self, counts: Counts | None = None) -> float:
         """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
-        found = counts or self.expected(self.reduction.fineness)
+        found = counts or self._usual
         return reduction_seconds(found, self.reduction.fineness.order, self.columns)
 
     def spared(self) -> float:
         """Its drawing and mesh [s]."""
-        return mesh_seconds(self.expected(self.reduction.fineness))
+        return mesh_seconds(self._usual)
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""
