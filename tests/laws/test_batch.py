@@ -24,7 +24,7 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.compiled import Tables, by_kernel
-from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, platform_modes
+from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, plan_family, platform_modes
 from flexstage.models.batch.features import PORTION, Feature, Rows
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import Family, Slopes, drawn_family, numbers_and_slopes, numbers_of, slopes_of
@@ -534,6 +534,52 @@ def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> Non
         np.testing.assert_allclose(found.values, np.concatenate([each.values for each in known]), rtol=1e-12)
         scale = np.max(np.abs(found.slopes), axis=(0, 2))[:, None]
         assert np.max(np.abs(found.slopes - np.concatenate([each.slopes for each in known])) / scale) < 1e-9
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_derivatives_do_not_depend_on_how_bodies_are_seen(method: Method) -> None:
+    """A unit that turns changes nothing in axes that turn with it but where it joins the platform."""
+    steps = {"B2.shift.x": 1e-4, "B2.rotation.z": 2e-3, "B5.rotation.x": -3e-3, "B5.rotation.y": 1e-3}
+    stage = double_triangle()
+    for name, step in steps.items():
+        stage = set_value(stage, name, step)
+    names = (*steps, "place.B4-B6.pattern.turn", "materials.steel.density")
+    turning = plan(stage, names)
+    still = replace(turning, family=replace(turning.family, standpoint=replace(turning.family.standpoint, turning=False)))
+    rows = [len(slopes_of(each.family, each.family.nominal[None]).values) for each in (turning, still)]
+    assert rows[0] < 0.6 * rows[1]
+    values = designs(turning, 4, 0.2)
+    found, known = (platform_modes(each, values, slopes=True, method=method).gradient for each in (turning, still))
+    exact = fs.sensitivities(one(turning, values[2]), names, modes=6)
+    scale = np.max(np.abs(exact.frequency), axis=1)[:, None]
+    assert np.max(np.abs(found - known) / scale) < 1e-6
+    assert np.max(np.abs(found[2] - exact.frequency) / scale) < 1e-6
+
+
+def test_what_turns_may_change_too() -> None:
+    """One number that turns a copy, makes a body of it longer and moves a hinge does what three do; fitted over a range, too."""
+    stage = double_triangle()
+    lever = "units.vertical.bodies.lever.solids.head.size.x"
+    names = ("B4.rotation.z", lever, "units.vertical.links.pivot.at.z")
+    sizes = np.array([1.0, get(stage, lever), 0.01])
+    start = np.array([0.0, get(stage, lever), get(stage, names[2])])
+
+    def draw(values: tuple[np.ndarray, ...]) -> Mechanism:
+        drawn = stage
+        for name, size, own in zip(names, sizes, start, strict=True):
+            drawn = set_value(drawn, name, own + size * values[0])
+        return drawn
+
+    one_number = drawn_family(draw, ("turn",), np.array([0.02]))
+    values = np.array([[0.02], [0.021]])
+    apart = platform_modes(plan(draw((np.array(0.02),)), names), start + sizes * values, slopes=True)
+    known = np.einsum("bpk,p->bk", apart.gradient, sizes)
+    ranges = (np.array([0.015]), np.array([0.025]))
+    plans = [plan_family(one_number), plan_family(one_number, ranges=ranges)]
+    assert plans[1].surface is not None
+    for family_plan in plans:
+        found = platform_modes(family_plan, values, slopes=True).gradient[:, 0]
+        assert np.max(np.abs(found - known)) < 1e-6 * np.max(np.abs(known))
 
 
 def test_a_plan_that_was_used_serves_in_another_process() -> None:

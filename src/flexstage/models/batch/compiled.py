@@ -24,7 +24,8 @@ MODES = 12
 _ROUNDS = 2
 """How often modes are found one by one at most."""
 
-_KINDS = ("stiffness", "mass", "turn", "first", "second", "inertia")
+_KINDS = ("stiffness", "mass", "turn", "first", "second")
+_SLOTS = ("stiffness", "mass", "first turn", "first", "second turn", "second", "inertia")
 _DESIGNS = ("designs", "numbers_stride", "numbers_portion", "slopes_stride", "slopes_portion", "stride")
 _SIZES = (
     *_DESIGNS,
@@ -242,7 +243,7 @@ def _tables(scheme: Scheme) -> dict[str, Array]:
         "mirror": topology.mirror,
         "inertia": np.array([inertia + 10 * body for body in graph.order], dtype=np.int64),
         "alike": np.argsort([part for part, *_ in link], kind="stable").astype(np.int64),
-        "start": np.array([starts[kind] for kind in _KINDS[:5]], dtype=np.int64),
+        "start": np.array([starts[kind] for kind in _KINDS], dtype=np.int64),
     }
 
 
@@ -274,6 +275,6 @@ def _slots(scheme: Scheme, changes: tuple[Change, ...]) -> dict[str, Array]:
 def _owner(scheme: Scheme, place: Feature) -> tuple[int, int, int]:
     """The group, the kind and the owner of a feature, bodies by place: groups are parts, then links, then bodies."""
     owner = scheme.position[place.owner] if place.kind == "inertia" else place.owner
-    kind = _KINDS.index(place.kind)
+    kind = _SLOTS.index(place.kind)
     parts, links = scheme.topology.parts, len(scheme.topology.links)
-    return owner + (0 if kind < 2 else parts if kind < 5 else parts + links), kind, owner
+    return owner + (0 if kind < 2 else parts if kind < 6 else parts + links), kind, owner

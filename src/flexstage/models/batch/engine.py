@@ -159,7 +159,8 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Arr
         return Plan(family_, scheme_, choice, no_planes(scheme_), None)
     fitted = None if ranges is None else surface(family_, *(np.asarray(side, dtype=float) for side in ranges))
     starts = _starts(scheme_, dense(scheme_, blocks(scheme_, numbers)[1])[0], modes, choice)
-    return Plan(family_, scheme_, choice, planes(scheme_, numbers, family_.near), *starts, fitted)
+    planes_ = planes(scheme_, numbers, family_.near)
+    return Plan(family_ if fitted is None else fitted.family, scheme_, choice, planes_, *starts, fitted)
 
 
 def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:

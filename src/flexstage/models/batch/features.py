@@ -6,6 +6,7 @@ share six parts. Numbers without batch axes hold for every design.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -21,9 +22,14 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part
+from flexstage.spatial.frame import cross_matrix, spatial_rotation
+from flexstage.spatial.rotation import cross
 
 _BLOCK = 512
 """Designs whose parts are integrated at once."""
+
+NOUGHT = 1e-12
+"""What a feature changes by, over its largest number, that counts as rounding."""
 
 PORTION = 32
 """Designs whose numbers stand beside each other, as in kernel.c."""
@@ -46,6 +52,9 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
 bodies; mass, moments of mass and moments of inertia (xx, yx, yy, zx, zy, zz) of a body with its payloads about that point. No point moves
 in its body: it is where the reference point of a nominal design is."""
 
+TURNS = ("first turn", "second turn")
+"""How a link's axes turn [rad, in the stage's axes] as its first body and its second see it: derivatives alone, as they have no numbers."""
+
 INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
 """Where the numbers of an inertia stand in its 6x6 matrix."""
 
@@ -66,7 +75,7 @@ class Feature:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the array."""
-        return SHAPES[self.kind]
+        return (3,) if self.kind in TURNS else SHAPES[self.kind]
 
     @property
     def symmetric(self) -> bool:
@@ -109,6 +118,12 @@ class Topology:
                 result.append(Feature(kind, owner, start))
                 start += int(np.prod(SHAPES[kind]))
         return tuple(result)
+
+    @property
+    def changing(self) -> tuple[Feature, ...]:
+        """What derivatives are of: every feature but axes, and how axes turn. These stand behind all numbers."""
+        places = ((kind, link, self.count + 6 * link + 3 * side) for link in range(len(self.links)) for side, kind in enumerate(TURNS))
+        return (*(place for place in self.features if place.kind != "turn"), *itertools.starmap(Feature, places))
 
     @property
     def count(self) -> int:
@@ -181,34 +196,42 @@ def everything(kind: str, owner: int) -> bool:
     return bool(kind) and owner >= 0
 
 
-Points = Mapping[str, Array]
-"""A point (3,) of each body, by name, in the frame the body is drawn in."""
+@dataclass(frozen=True, eq=False)
+class Standpoint:
+    """How bodies are seen: eigenvalues and their derivatives do not depend on it, but what changes with a number does.
+
+    Each body at one of `points` (3,), by name, in the frame it is drawn in; where it has none, at its reference point. With `turning`
+    derivatives are about axes that turn as these frames do, else about those of the stage: what turns as a whole does not change.
+    """
+
+    points: Mapping[str, Array]
+    turning: bool = True
 
 
-def reference_points(assembly: Assembly) -> Points:
-    """The reference points of all bodies that do not state one.
+def standpoint(assembly: Assembly) -> Standpoint:
+    """That of all bodies that do not state a reference point, where it is.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> float(reference_points(lay_out(double_triangle()))["platform"][2].round(4))  # the height of its centre of mass
+    >>> float(standpoint(lay_out(double_triangle())).points["platform"][2].round(4))  # the height of its centre of mass
     0.105
     """
     free = {name: body for name, body in assembly.bodies.items() if body.body.reference is None}
-    return {name: body.frame.rotation.T @ (body.reference - body.frame.position) for name, body in free.items()}
+    return Standpoint({name: body.frame.rotation.T @ (body.reference - body.frame.position) for name, body in free.items()})
 
 
-def features(mechanism: Mechanism, points: Points, wanted: Wanted = everything) -> dict[tuple[str, int], Array]:
-    """The features (..., *shape) of a description by (kind, owner), about `points` of its bodies; numbers may have batch axes, be complex.
+def features(mechanism: Mechanism, seen: Standpoint, wanted: Wanted = everything) -> dict[tuple[str, int], Array]:
+    """The features (..., *shape) of a description by (kind, owner); numbers may have batch axes and be complex.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
-    >>> float(features(stage, reference_points(lay_out(stage)))["inertia", 0][0].round(3))  # the platform's mass
+    >>> float(features(stage, standpoint(lay_out(stage)))["inertia", 0][0].round(3))  # the platform's mass
     13.997
     """
-    return {key: array for _, found in stepped_features([mechanism], points, [wanted]) for key, array in found.items()}
+    return {key: array for _, found in stepped_features([mechanism], seen, [wanted]) for key, array in found.items()}
 
 
 def stepped_features(
-    mechanisms: Sequence[Mechanism], points: Points, wanted: Sequence[Wanted]
+    mechanisms: Sequence[Mechanism], seen: Standpoint, wanted: Sequence[Wanted]
 ) -> Iterator[tuple[int, dict[tuple[str, int], Array]]]:
     """Features of one description with several steps in its numbers, some at a time, with the place of the description they are of.
 
@@ -216,8 +239,8 @@ def stepped_features(
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
-    >>> points = reference_points(lay_out(stage))
-    >>> [len(found) for _, found in stepped_features([stage], points, [lambda kind, owner: kind == "mass" and owner == 0])]
+    >>> seen = standpoint(lay_out(stage))
+    >>> [len(found) for _, found in stepped_features([stage], seen, [lambda kind, owner: kind == "mass" and owner == 0])]
     [1, 1, 27]
     """
     assemblies = [lay_out(mechanism) for mechanism in mechanisms]
@@ -226,23 +249,70 @@ def stepped_features(
         for kind, arrays in _in_blocks([(links[place].part, links[place].material) for place in own]).items():
             yield from ((place, {(kind, number): array}) for place, array in zip(own, arrays, strict=True))
     for place, (mechanism, assembly, asked) in enumerate(zip(mechanisms, assemblies, wanted, strict=True)):
-        result: dict[tuple[str, int], Array] = {}
-        bodies = {name: _at_point(body, points.get(name)) for name, body in assembly.bodies.items()}
-        for number, link in enumerate(assembly.links.values()):
-            result["turn", number] = link.frame.rotation
-            for kind, body in zip(("first", "second"), link.joins, strict=True):
-                if asked(kind, number):
-                    result[kind, number] = np.zeros(3) if body == GROUND else bodies[body].reference - link.frame.position
-        for number, body in enumerate(layout(assembly).bodies):
-            if asked("inertia", number):
-                inertia = moving_inertia(mechanism, bodies[body])
-                result["inertia", number] = np.zeros(10) if inertia is None else inertia[..., *INERTIA_ENTRIES]
-        yield place, result
+        yield place, _of_places(mechanism, assembly, seen, asked)
+
+
+def _of_places(mechanism: Mechanism, assembly: Assembly, seen: Standpoint, asked: Wanted) -> dict[tuple[str, int], Array]:
+    """Axes of all links; arms, turns and inertias that are asked for."""
+    result: dict[tuple[str, int], Array] = {}
+    bodies = {name: _at_point(body, seen.points.get(name)) for name, body in assembly.bodies.items()}
+    spins = {name: _spin(body.frame.rotation) for name, body in bodies.items()} if seen.turning else {}
+    for number, link in enumerate(assembly.links.values()):
+        axes = result["turn", number] = link.frame.rotation
+        own = _spin(axes)
+        for kind, turn, body in zip(("first", "second"), TURNS, link.joins, strict=True):
+            turning = spins.get(body)
+            if asked(kind, number):
+                arm = np.zeros(3) if body == GROUND else bodies[body].reference - link.frame.position
+                result[kind, number] = (
+                    arm if turning is None else _without(arm, cross(turning, np.real(arm)), _length(turning) * _length(arm))
+                )
+            if asked(turn, number) and own is not None and body != GROUND:
+                result[turn, number] = 1j * own if turning is None else _without(1j * own, turning, _length(own))
+    for number, body in enumerate(layout(assembly).bodies):
+        if asked("inertia", number):
+            inertia = moving_inertia(mechanism, bodies[body])
+            result["inertia", number] = np.zeros(10) if inertia is None else _upright(inertia, spins.get(body))[..., *INERTIA_ENTRIES]
+    return result
 
 
 def _at_point(body: PlacedBody, point: Array | None) -> PlacedBody:
     """A body whose reference is that point of it."""
     return body if point is None else replace(body, body=replace(body.body, reference=tuple(point)))
+
+
+def spin(rates: Array, axes: Array) -> Array:
+    """The vector w (..., 3) by which axes R (..., 3, 3) turn as they change by dR, `rates`: [w]x = dR R^T.
+
+    >>> spin(cross_matrix(np.array([1.0, 2.0, 3.0])), np.eye(3)).tolist()
+    [1.0, 2.0, 3.0]
+    """
+    turned = rates @ np.swapaxes(axes, -1, -2)
+    return np.stack([turned[..., 2, 1], turned[..., 0, 2], turned[..., 1, 0]], axis=-1)
+
+
+def _spin(axes: Array) -> Array | None:
+    """By which stepped axes turn; none where they have no step."""
+    return spin(np.imag(axes), np.real(axes)) if np.iscomplexobj(axes) else None
+
+
+def _upright(inertia: Array, turning: Array | None) -> Array:
+    """A stepped inertia (..., 6, 6) in axes that turn."""
+    if turning is None:
+        return inertia
+    turned = spatial_rotation(cross_matrix(turning)) @ np.real(inertia)
+    root = np.sqrt(np.real(np.diagonal(inertia, axis1=-2, axis2=-1)))
+    return _without(inertia, turned + np.swapaxes(turned, -1, -2), _length(turning)[..., None] * root[..., :, None] * root[..., None, :])
+
+
+def _length(vector: Array) -> Array:
+    return np.linalg.norm(np.real(vector), axis=-1, keepdims=True)
+
+
+def _without(stepped: Array, turned: Array, scale: Array) -> Array:
+    """A stepped feature without what turning as a whole makes of it; what is left of its step is nought where it is rounding."""
+    left = np.imag(stepped) - turned
+    return np.real(stepped) + 1j * np.where(np.abs(left) <= NOUGHT * scale, 0.0, left)
 
 
 def _in_blocks(parts: list[tuple[Part, Material | None]]) -> dict[str, list[Array]]:

@@ -1195,7 +1195,7 @@ static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 
 /* ---- derivatives ---- */
 
-enum { STIFFNESS, MASS, TURN, FIRST, SECOND, INERTIA };
+enum { STIFFNESS, MASS, FIRST_TURN, FIRST, SECOND_TURN, SECOND, INERTIA }; /* turns of a link's axes as its bodies see them, and its arms */
 
 /* Two modes i <= j of a cluster; those of a mode with itself come first. */
 typedef struct { int i, j; } Pair;
@@ -1229,8 +1229,8 @@ static INLINE void weigh_row(lanes *out, const lanes *row, const int *column, in
 }
 
 /* A link in the modes: twists of its ends in its axes (12, k), strains (6, k), motions of its place as either body moves it (3, k each) in the stage's
- * axes, forces less lambda times momenta on its ends (12, k) and their first halves in the stage's axes. */
-typedef struct { lanes twist[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[6 * MODES], pull[MODES]; } Moved;
+ * axes, forces less lambda times momenta on its ends (12, k), the same in the stage's axes. */
+typedef struct { lanes twist[12 * MODES], strain[6 * MODES], seen[6 * MODES], force[12 * MODES], world[12 * MODES], pull[MODES]; } Moved;
 
 static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to, const int k)
 {
@@ -1258,11 +1258,11 @@ static INLINE void move_link(const Task *t, const Room *w, int64_t l, Moved *to,
         EACH_MODE for (int c = 0; c < k; c++) to->strain[i * k + c] = to->twist[(6 + i) * k + c] - to->twist[i * k + c];
 }
 
-/* Of the ends that slots about a link's place are of. `turned`: moments too, which only axes feel. */
+/* At the ends that slots about a link's place are of. `turned`: moments too, which only axes feel. */
 static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to, const lanes *mean, const int turned, const int k)
 {
     const int64_t *slots = t->slot + 5 * t->reach[t->parts + l], *end = t->slot + 5 * t->reach[t->parts + l + 1];
-    const int first = slots[0] == SECOND, last = slots[0] == FIRST && end[-5] == FIRST ? 1 : 2; /* they are in the order of their kinds */
+    const int first = slots[0] > FIRST, last = end[-5] > FIRST ? 2 : 1; /* they are in the order of their kinds */
     const lanes *r = w->number + t->start[2] + 9 * l, *stiff = w->number + t->start[0] + 36 * t->link[4 * l];
     const lanes *mass = w->number + t->start[1] + 144 * t->link[4 * l];
     const Law *law = w->law + t->link[4 * l];
@@ -1273,16 +1273,14 @@ static INLINE void load_link(const Task *t, const Room *w, int64_t l, Moved *to,
             const int row = 6 * side + i;
             lanes *const f = to->force + row * k;
             const double sign = side ? 1.0 : -1.0;
-            if (t->link[4 * l + 1 + side] < 0) continue;
             weigh_row(f, mass + 12 * row, law->column + law->start[6 + row], law->start[7 + row] - law->start[6 + row], to->twist, k);
             EACH_MODE for (int c = 0; c < k; c++) f[c] = sign * pull[c] - mean[c] * f[c];
         }
     }
     for (int side = first; side < last; side++)
-        for (int i = 0; i < 3 && t->link[4 * l + 1 + side] >= 0; i++) {
-            const lanes *f = to->force + 6 * side * k;
-            EACH_MODE for (int c = 0; c < k; c++)
-                to->world[(3 * side + i) * k + c] = r[3 * i] * f[c] + r[3 * i + 1] * f[k + c] + r[3 * i + 2] * f[2 * k + c];
+        for (int i = 0; i < (turned ? 6 : 3); i++) {
+            const lanes *f = to->force + (6 * side + i - i % 3) * k, *q = r + 3 * (i % 3);
+            EACH_MODE for (int c = 0; c < k; c++) to->world[(6 * side + i) * k + c] = q[0] * f[c] + q[1] * f[k + c] + q[2] * f[2 * k + c];
         }
 }
 
@@ -1310,26 +1308,26 @@ static INLINE void law_slots(const Task *t, int64_t l, const Moved *at, lanes *s
     }
 }
 
+/* sum += or = factor times entry `at` of the product a x b of two vectors (3, k). */
+static INLINE void gain_product(lanes *sum, const lanes *a, const lanes *b, int at, double factor, const int more, const Wanted *of, const int crossed, const int k)
+{
+    const int one = (at + 1) % 3, two = (at + 2) % 3;
+    gain(sum, a + one * k, b + two * k, factor, more, of, crossed, k);
+    gain(sum, a + two * k, b + one * k, -factor, 1, of, crossed, k);
+}
+
 /* Every slot about a link's place, into `sum`. */
 static INLINE void place_slots(
     const Task *t, const Room *w, int64_t l, const Moved *at, lanes *sum, const Wanted *of, const int crossed, const int k, const int n)
 {
     for (int64_t s = t->reach[t->parts + l]; s < t->reach[t->parts + l + 1]; s++, sum += n) {
-        const int kind = (int)t->slot[5 * s], row = (int)t->slot[5 * s + 2], column = (int)t->slot[5 * s + 3];
-        const int one = (row + 1) % 3, two = (row + 2) % 3;
-        int more = 0;
-        for (int side = kind == SECOND; side < (kind == FIRST ? 1 : 2); side++) {
-            const int64_t body = t->link[4 * l + 1 + side];
-            if (body < 0) continue;
-            const lanes *o = w->placed + 6 * k * body + 3 * k, *g = at->world + 3 * side * k, *f = at->force + (6 * side + column) * k;
-            if (kind == TURN) {
-                gain(sum, f, at->seen + (3 * side + row) * k, 2.0, more, of, crossed, k);
-                gain(sum, f + 3 * k, o + row * k, 2.0, 1, of, crossed, k);
-            } else {
-                gain(sum, o + one * k, g + two * k, 2.0, 0, of, crossed, k);
-                gain(sum, o + two * k, g + one * k, -2.0, 1, of, crossed, k);
-            }
-            more = 1;
+        const int64_t kind = t->slot[5 * s], side = kind > FIRST;
+        const int row = (int)t->slot[5 * s + 2];
+        const lanes *o = w->placed + 6 * k * t->link[4 * l + 1 + side] + 3 * k, *g = at->world + 6 * side * k;
+        if (kind == FIRST || kind == SECOND) gain_product(sum, o, g, row, 2.0, 0, of, crossed, k);
+        else {
+            gain_product(sum, at->seen + 3 * side * k, g, row, -2.0, 0, of, crossed, k);
+            gain_product(sum, o, g + 3 * k, row, -2.0, 1, of, crossed, k);
         }
     }
 }
@@ -1340,13 +1338,11 @@ static INLINE void body_slots(const Task *t, const Room *w, int64_t b, lanes *su
     const int64_t group = t->parts + t->links + b;
     const lanes *x = w->placed + 6 * k * b, *o = x + 3 * k;
     for (int64_t s = t->reach[group]; s < t->reach[group + 1]; s++, sum += n) {
-        const int at = (int)t->slot[5 * s + 2], one = at % 3, two = (at + 1) % 3; /* a moment of mass: about the third axis */
+        const int at = (int)t->slot[5 * s + 2];
         if (!at)
             for (int i = 0; i < 3; i++) gain(sum, x + i * k, x + i * k, 1.0, i > 0, of, crossed, k);
-        else if (at < 4) {
-            gain(sum, x + one * k, o + two * k, 2.0, 0, of, crossed, k);
-            gain(sum, x + two * k, o + one * k, -2.0, 1, of, crossed, k);
-        } else {
+        else if (at < 4) gain_product(sum, x, o, at - 1, 2.0, 0, of, crossed, k);
+        else {
             const int row = at < 5 ? 0 : at < 7 ? 1 : 2, column = at - 4 - LOWER(row, 0);
             gain(sum, o + row * k, o + column * k, row == column ? 1.0 : 2.0, 0, of, crossed, k);
         }
@@ -1404,7 +1400,9 @@ static INLINE void sum_slots(const Task *t, Room *w, const Wanted *of, const int
         if (law && more) law_slots(t, l, &at, own, of, 1, k, n);
         if (law && last) weigh_slots(t, part, own, of, k, n), contract(t, w, part, own, n);
         if (!moves) continue;
-        load_link(t, w, l, &at, of->mean, t->slot[5 * t->reach[place]] == TURN, k), place_slots(t, w, l, &at, other, of, 0, k, n);
+        int turned = 0;
+        for (int64_t s = t->reach[place]; s < t->reach[place + 1]; s++) turned |= t->slot[5 * s] == FIRST_TURN || t->slot[5 * s] == SECOND_TURN;
+        load_link(t, w, l, &at, of->mean, turned, k), place_slots(t, w, l, &at, other, of, 0, k, n);
         if (more) place_slots(t, w, l, &at, other, of, 1, k, n);
         contract(t, w, place, other, n);
     }

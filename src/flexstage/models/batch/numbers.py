@@ -22,15 +22,16 @@ from flexstage.mechanism.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.path import MATRICES, replace_member
 from flexstage.models.batch.features import (
+    NOUGHT,
     Feature,
-    Points,
     Rows,
+    Standpoint,
     Topology,
     distinct_links,
     features,
     pack,
     put,
-    reference_points,
+    standpoint,
     stepped_features,
     topology,
 )
@@ -40,8 +41,6 @@ _STEP = 1e-20
 _OF_BODIES = frozenset({"first", "second", "inertia"})
 _TRIALS = 12
 """Designs near the nominal one that are tried at most."""
-_NOUGHT = 1e-12
-"""What a feature changes by, over its largest number, that counts as rounding."""
 
 Key = tuple[str, int]
 """A feature by kind and owner."""
@@ -72,16 +71,16 @@ class Change:
 class Family:
     """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
 
-    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. Features are about `points`
-    of the bodies, which do not move in them: no arm changes where a centre of mass does. `touched` says which features each number is in,
-    `changes` which of their numbers; `together` which are stepped in one pass.
+    The numbers are those at `addresses`, or what `draw` makes descriptions of; then addresses are their names. Features are told from a
+    `standpoint`: no arm changes where a centre of mass does. `touched` says which features each number is in, `changes` which of their
+    numbers; `together` which are stepped in one pass.
     """
 
     mechanism: Mechanism
     addresses: tuple[str, ...]
     nominal: Array
     topology: Topology
-    points: Points
+    standpoint: Standpoint
     touched: tuple[frozenset[Key], ...]
     together: tuple[tuple[int, ...], ...]
     draw: Draw | None = None
@@ -89,7 +88,7 @@ class Family:
     @cached_property
     def widest(self) -> tuple[Change, ...]:
         """Every change there can be, by variable."""
-        places = self.topology.features
+        places = self.topology.changing
         return tuple(
             Change(number, place, _upper(place)) for number, keys in enumerate(self.touched) for place in places if place.key in keys
         )
@@ -287,18 +286,18 @@ def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
 def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array, stepped: list[Mechanism]) -> Family:
     """The family around a description, with those that have a complex step in each number."""
     assembly = expand(plain)
-    points = reference_points(assembly)
-    touched = tuple(_complex(each, points) for each in stepped)
-    return Family(plain, names, nominal, topology(assembly), points, touched, tuple(_together(touched)))
+    seen = standpoint(assembly)
+    touched = tuple(_complex(each, seen) for each in stepped)
+    return Family(plain, names, nominal, topology(assembly), seen, touched, tuple(_together(touched)))
 
 
 def _step(value: Array) -> Array:
     return value + 1j * (abs(value) * _STEP or _STEP)
 
 
-def _complex(mechanism: Mechanism, points: Points) -> frozenset[Key]:
+def _complex(mechanism: Mechanism, seen: Standpoint) -> frozenset[Key]:
     """Features that come out complex."""
-    return frozenset(key for key, array in features(mechanism, points).items() if np.iscomplexobj(array))
+    return frozenset(key for key, array in features(mechanism, seen).items() if np.iscomplexobj(array))
 
 
 def _without_requirements(mechanism: Mechanism) -> Mechanism:
@@ -361,7 +360,7 @@ def rows_of(family_: Family, values: Array) -> Rows:
     >>> rows_of(found, np.array([[1e-3], [2e-3]])).shape[1]
     2
     """
-    return pack(features(describe(family_, values), family_.points), family_.topology.features, len(values))
+    return pack(features(describe(family_, values), family_.standpoint), family_.topology.features, len(values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -425,7 +424,7 @@ def numbers_and_slopes(family_: Family, values: Array, *, wide: bool = False) ->
 
 def _follow(family_: Family, values: Array, numbers: Rows, slopes: Slopes) -> None:
     """Write the derivatives that follow from others by units."""
-    places = {(change.variable, *change.key): (at, change) for at, change in _starts(slopes.changes)}
+    places = {(change.variable, *change.key): (at, change) for at, change in starts(slopes.changes)}
     for key, told in family_.told.items():
         for item in told:
             at, change = places.get((item.variable, *key), (0, None))
@@ -440,7 +439,12 @@ def _follow(family_: Family, values: Array, numbers: Rows, slopes: Slopes) -> No
             slopes.values[at : at + len(change.rows)] = found / np.where(values[:, item.variable] != 0.0, values[:, item.variable], np.nan)
 
 
-def _starts(changes: tuple[Change, ...]) -> Iterator[tuple[int, Change]]:
+def starts(changes: tuple[Change, ...]) -> Iterator[tuple[int, Change]]:
+    """The row that each change begins at among those of all, with the change.
+
+    >>> list(starts(()))
+    []
+    """
     start = 0
     for change in changes:
         yield start, change
@@ -463,7 +467,7 @@ def _slopes(
     still = np.zeros(family_.topology.count, dtype=bool)
     result = Rows(sum(len(change.rows) for change in changes), len(values))
     places: dict[int, list[tuple[int, Change]]] = {}
-    for start, change in _starts(changes):
+    for start, change in starts(changes):
         if all(change.variable != item.variable for item in told.get(change.key, ())):
             places.setdefault(change.variable, []).append((start, change))
     wanted = {number: {change.key for _, change in own} for number, own in places.items()}
@@ -471,8 +475,8 @@ def _slopes(
         if any(number in group and any(other in wanted for other in group) for group in family_.together):
             wanted.setdefault(number, set()).update(change.key for change in others)
     for group, arrays in _stepped_features(family_, values, wanted):
-        for key, array in arrays.items():
-            still[features_[key].slots] = put(numbers, features_[key], array)
+        for key in arrays.keys() & features_.keys():
+            still[features_[key].slots] = put(numbers, features_[key], arrays[key])
         for number in group:
             for at, change in (each for each in places.get(number, ()) if each[1].key in arrays):
                 rates = np.imag(_flat(arrays[change.key], change)).T[change.rows]
@@ -486,7 +490,7 @@ def _does_change(array: Array, change: Change, step: float) -> Array:
     """In which designs a feature changes by a `step` of a number, over its nominal value, by more than rounding."""
     flat = _flat(array, change)
     rate = np.abs(np.imag(flat[..., change.rows])) / step
-    return np.asarray(np.any(rate > _NOUGHT * np.max(np.abs(np.real(flat)), axis=-1, keepdims=True), axis=-1))
+    return np.asarray(np.any(rate > NOUGHT * np.max(np.abs(np.real(flat)), axis=-1, keepdims=True), axis=-1))
 
 
 def _stepped_features(family_: Family, values: Array, wanted: Mapping[int, set[Key]]) -> Iterator[tuple[tuple[int, ...], dict[Key, Array]]]:
@@ -495,12 +499,12 @@ def _stepped_features(family_: Family, values: Array, wanted: Mapping[int, set[K
     groups = [group for group in family_.together if not wanted.keys().isdisjoint(group)]
     asked = [set().union(*(wanted.get(number, ()) for number in group)) for group in groups]
     if not groups:
-        yield (), features(mechanism, family_.points)
+        yield (), features(mechanism, family_.standpoint)
         return
     asked[0] |= {place.key for place in family_.topology.features}.difference(*asked)
     stepped = [step_numbers(family_, mechanism, values, group) for group in groups]
     keys = [lambda kind, owner, own=own: (kind, owner) in own for own in asked]
-    yield from ((groups[place], arrays) for place, arrays in stepped_features(stepped, family_.points, keys))
+    yield from ((groups[place], arrays) for place, arrays in stepped_features(stepped, family_.standpoint, keys))
 
 
 def _flat(array: Array, change: Change) -> Array:

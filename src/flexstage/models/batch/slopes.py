@@ -12,7 +12,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme, carries, inertia_matrix, of_kind
-from flexstage.models.batch.features import GROUNDED, Feature
+from flexstage.models.batch.features import TURNS, Feature
 from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.spatial.frame import cross_matrix
 
@@ -100,17 +100,15 @@ def _weigh(seen: Motion, products: Array) -> Array:
 
 
 def _move(plan: Scheme, seen: Motion, place: Feature, by: Array) -> Array:
-    """Change (b, 12, k) of the twists of a link's ends as its axes turn, or as the arm of one end changes."""
+    """Change (b, 12, k) of the twists of a link's end as its axes turn, or as its arm changes."""
     turn = seen.turns[:, place.owner]
+    back = np.swapaxes(turn, -1, -2)
     result = np.zeros((*seen.twists.shape[:1], 12, seen.twists.shape[-1]))
-    for side, body in enumerate(plan.topology.links[place.owner][1:]):
-        if body == GROUNDED or place.kind not in {"turn", ("first", "second")[side]}:
-            continue
-        start = 6 * side
-        if place.kind == "turn":
-            turned = np.swapaxes(by, -1, -2) @ turn
-            result[:, start : start + 3] = turned @ seen.twists[:, place.owner, start : start + 3]
-            result[:, start + 3 : start + 6] = turned @ seen.twists[:, place.owner, start + 3 : start + 6]
-        else:
-            result[:, start : start + 3] = np.swapaxes(turn, -1, -2) @ (cross_matrix(by) @ seen.bodies[:, body, 3:])
+    side = (*TURNS, "first", "second").index(place.kind) % 2
+    moved, turned = slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
+    if place.kind in TURNS:
+        for each in (moved, turned):
+            result[:, each] = -back @ cross_matrix(by) @ turn @ seen.twists[:, place.owner, each]
+    else:
+        result[:, moved] = back @ (cross_matrix(by) @ seen.bodies[:, plan.topology.links[place.owner][1 + side], 3:])
     return result

@@ -7,16 +7,16 @@ takes to meet other designs within `TOLERANCE`; where that takes too many, there
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import inertia_matrix
-from flexstage.models.batch.features import INERTIA_ENTRIES, Rows
-from flexstage.models.batch.numbers import Family, Slopes, numbers_of
+from flexstage.models.batch.features import INERTIA_ENTRIES, TURNS, Rows, spin
+from flexstage.models.batch.numbers import Change, Family, Slopes, numbers_of, starts
 
 TOLERANCE = 1e-10
 """Largest error of a number of a feature over the largest value it takes."""
@@ -32,6 +32,10 @@ _TOGETHER = 256
 """Designs evaluated at once, always as many: so that no bit of one depends on how many there are."""
 
 
+Places = dict[tuple[int, int], tuple[Array, Array]]
+"""By piece and variable: rows of a result, and which of the piece's rows they are."""
+
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """Numbers (`rows` of all) of the same `variables` (d,): Chebyshev `degrees` (terms, d) and `coefficients` (terms, rows)."""
@@ -44,7 +48,10 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Every number of the features of a family, for values from `low` to `high` (P,); `fixed` (features,) are those that do not vary."""
+    """Every number of the features of a family, for values from `low` to `high` (P,); `fixed` (features,) are those that do not vary.
+
+    The family's derivatives are about the stage's axes: polynomials of features do not tell how bodies turn.
+    """
 
     family: Family
     low: Array
@@ -72,16 +79,28 @@ class Surface:
     def slopes(self, values: Array) -> Slopes:
         """Their derivatives, as `slopes_of` gives them."""
         changes = self.family.changes
-        result = Rows(sum(len(change.rows) for change in changes), len(values))
-        result.held[:] = 0.0
+        result, turned = Rows(sum(len(change.rows) for change in changes), len(values)), Rows(9 * len(self._turns), len(values))
+        result.held[:], turned.held[:] = 0.0, 0.0
         for start, table, steep in self._tables(values):
             stop = min(start + _TOGETHER, len(values))
             for number, piece in enumerate(self.pieces):
                 for place, variable in enumerate(piece.variables):
-                    to, of = self._places[number, int(variable)]
                     basis = _basis(piece, table, (place, steep))
-                    result[to, start:stop] = (piece.coefficients[:, of].T @ basis)[:, : stop - start]
+                    for rows, places in ((result, self._places), (turned, self._turned_places)):
+                        to, of = places[number, int(variable)]
+                        rows[to, start:stop] = (piece.coefficients[:, of].T @ basis)[:, : stop - start]
+        numbers = self.numbers(values) if self._turns else None
+        for place, (start, change, axes) in enumerate(self._turns):
+            rates, own = (rows.T.reshape(-1, 3, 3) for rows in (turned[9 * place : 9 * place + 9], numbers[axes]))  # type: ignore[index]
+            rows = slice(start, start + len(change.rows))
+            result[rows] = spin(rates, own).T[change.rows]
         return Slopes(changes, result, np.zeros(len(values), dtype=bool))
+
+    @cached_property
+    def _turns(self) -> list[tuple[int, Change, slice]]:
+        """Changes of links' axes as bodies see them, with the rows they begin at and where the axes' numbers stand."""
+        axes = {place.owner: place.slots for place in self.family.topology.features if place.kind == "turn"}
+        return [(start, change, axes[change.place.owner]) for start, change in starts(self.family.changes) if change.place.kind in TURNS]
 
     def _tables(self, values: Array) -> Iterator[tuple[int, Array, Array]]:
         """Chebyshev polynomials (degree, P, designs) and their derivatives by the values, portion by portion."""
@@ -102,19 +121,29 @@ class Surface:
         return mirror[upper], upper
 
     @cached_property
-    def _places(self) -> dict[tuple[int, int], tuple[Array, Array]]:
+    def _places(self) -> Places:
         """By piece and variable: rows of all changes, and which of the piece's rows they are."""
+        plain = [(start, change) for start, change in starts(self.family.changes) if change.place.kind not in TURNS]
+        return self._found((start, change.variable, change.place.start + change.rows) for start, change in plain)
+
+    @cached_property
+    def _turned_places(self) -> Places:
+        """The same of axes: nine numbers for each of the changes of how they turn."""
+        return self._found(
+            (9 * place, change.variable, np.arange(axes.start, axes.stop)) for place, (_, change, axes) in enumerate(self._turns)
+        )
+
+    def _found(self, wanted: Iterable[tuple[int, int, Array]]) -> Places:
+        """Where numbers stand among the pieces, of (row to begin at, variable, numbers)."""
         where = {int(row): (number, at) for number, piece in enumerate(self.pieces) for at, row in enumerate(piece.rows)}
         found: dict[tuple[int, int], list[tuple[int, int]]] = {
             (number, int(variable)): [] for number, piece in enumerate(self.pieces) for variable in piece.variables
         }
-        start = 0
-        for change in self.family.changes:
-            for offset, row in enumerate(change.rows):
-                number, at = where.get(change.place.start + int(row), (-1, -1))
-                if (number, change.variable) in found:
-                    found[number, change.variable].append((start + offset, at))
-            start += len(change.rows)
+        for start, variable, rows in wanted:
+            for offset, row in enumerate(rows):
+                number, at = where.get(int(row), (-1, -1))
+                if (number, variable) in found:
+                    found[number, variable].append((start + offset, at))
         return {
             key: (np.array([one for one, _ in pairs], dtype=int), np.array([at for _, at in pairs], dtype=int))
             for key, pairs in found.items()
@@ -153,6 +182,7 @@ def surface(family: Family, low: Array, high: Array) -> Surface | None:
     >>> bool(np.allclose(found.slopes(value).values, slopes_of(stage, value).values, rtol=1e-7, atol=1e-12))
     True
     """
+    family = replace(family, standpoint=replace(family.standpoint, turning=False))
     fixed = numbers_of(family, family.nominal[None])[:, 0]
     random = np.random.default_rng(0)
     inner, outer = np.cos(np.pi * random.random((3 * _TERMS, len(low)))), random.uniform(-1.0, 1.0, (200, len(low)))
