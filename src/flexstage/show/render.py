@@ -13,7 +13,7 @@ from rich.cells import cell_len
 from flexstage.base.lazy import Late
 from flexstage.base.text import printable
 from flexstage.show.display import to_typography
-from flexstage.show.table import PAGE_ROWS, Column, Mark, Table, first_rows
+from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, first_rows
 
 if TYPE_CHECKING:
     import jinja2
@@ -81,8 +81,17 @@ def _kind(block: object) -> str:
     return type(block).__name__.lower()
 
 
+def _attributes(cell: Cell, column: Column) -> str:
+    """What says how a cell looks."""
+    marked = {"number": column.numeric, cell.mark.value: cell.mark is not Mark.PLAIN, "bar": cell.bar is not None}
+    classes = " ".join(name for name, told in marked.items() if told)
+    share = "" if cell.bar is None else f' style="--share:{cell.length:.3f}"'
+    return (f' class="{classes}"' if classes else "") + share
+
+
 _FILTERS: dict[str, Callable[..., Any]] = {
     "anchor": _anchor,
+    "attributes": _attributes,
     "kind": _kind,
     "wordy": _is_wordy,
     "named": _has_long_names,
