@@ -37,7 +37,7 @@ _SIZES = (
     "m",
     "count",
     "rounds",
-    "steps",
+    "once",
     "variables",
     "widest",
     "single",
@@ -215,7 +215,7 @@ def _sizes(stage: Stage, start: Start, tables: Tables, designs: tuple[int, ...])
         "m": start.force.shape[-1],
         "count": start.choice.count,
         "rounds": _ROUNDS,
-        "steps": 1 if np.isinf(start.angle) else 2,
+        "once": (1 << start.needed) - 1 if np.isinf(start.angle) else sum(1 << int(mode) for mode in np.flatnonzero(start.once)),
         "variables": stage.variables,
         "single": start.needed,
     }

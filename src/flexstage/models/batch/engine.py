@@ -44,6 +44,9 @@ _VALUE, _ANGLE = 1e-6, 1e-6
 """Relative bound of eigenvalues; bound of the angles of vectors, where derivatives are asked for."""
 
 
+_NEAR = 0.3
+"""How far an eigenvalue is from the shift to begin with, over how far it is below the highest wanted, whose vector takes one step."""
+
 _WIDE = 0.02
 """Relative gap of eigenvalues in which a shift may lie."""
 
@@ -180,7 +183,7 @@ def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tu
     first, wider = (_start(values, both[..., : int(count)], choice, needed) for count in (few[np.argmin(cost)], most))
     first = replace(first, force=first.force[..., :needed])
     inner = np.arange(needed, most - 1)
-    wider = replace(wider, needed=int(inner[np.argmax(values[inner] / values[inner - 1])]))
+    wider = replace(wider, needed=int(inner[np.argmax(values[inner] / values[inner - 1])]), once=first.once[:0])
     return first, wider if most > first.block.shape[-1] else None
 
 
@@ -191,7 +194,9 @@ def _start(values: Array, both: Array, choice: Choice, needed: int) -> Start:
     edge = float(values[count] / values[count - 1])
     spread = 4.0 * values[count] / values[0] - 2.0  # twice the argument of the polynomial at the lowest mode: its powers are the growth
     degree = max(1, min(_DEGREE, int(np.log(_GROWTH) / np.log(spread))))
-    return Start(block, choice, edge, degree, value=_VALUE, needed=needed, force=force, shift=_shift(values[:needed]))
+    shift = _shift(values[:needed])
+    once = np.abs(values[:needed] - shift) < _NEAR * (values[needed - 1] - values[:needed])
+    return Start(block, choice, edge, degree, value=_VALUE, needed=needed, once=once, force=force, shift=shift)
 
 
 def _shift(values: Array) -> float:

@@ -3,8 +3,8 @@
  * blocks.py, factor.py, subspace.py and slopes.py, where they are explained; the wanted modes are found singly:
  *
  * 1. Z = (K - sigma M)^-1 F for the inertial forces F of the family's own modes, sigma amid their values; Rayleigh-Ritz on Z.
- * 2. For each wanted mode x of these, sigma just below its value and T = (K - sigma M)^-1 M: y = T x, twice. Rayleigh-Ritz on the y alone, with
- *    K y = sigma M y + M x.
+ * 2. For each wanted mode x of these, sigma just below its value and T = (K - sigma M)^-1 M: y = T x, and once more where its vector asks for it.
+ *    Rayleigh-Ritz on the y alone, with K y = sigma M y + M x.
  * 3. T's Rayleigh quotient theta at x and the residual |y - theta x| in M bound what y has of modes whose lambda is `outer` or more, for which T is
  *    1 / (outer - sigma) at most: its sine is (sine of the angle between x and y) / ((outer - sigma) theta - 1) at most.
  * 4. As many pivots of K - shift M are negative as values lie below the shift: none is missed.
@@ -22,14 +22,14 @@
 #define MODES 12    /* modes that may be asked for */
 #define USUAL 6      /* modes, where the platform's are below all others: known to the compiler */
 #define ROUNDING 1e-15
-#define BESIDE 1e-6 /* how far below its value a single mode's shift is: its matrix is never singular */
+#define BESIDE 1e-7 /* how far below its value a single mode's shift is: its matrix is never singular */
 #define ABOVE 5e-3  /* how far above the last of all values that are sought it is counted that there are no more */
 
 typedef double loose __attribute__((vector_size(WIDTH * 8), aligned(8)));
 
 typedef struct {
     /* sizes */
-    int64_t designs, numbers_stride, numbers_portion, slopes_stride, slopes_portion, stride, bodies, links, edges, updates, numbers, m, count, rounds, steps, variables, widest, single, parts, ports, gates, rows;
+    int64_t designs, numbers_stride, numbers_portion, slopes_stride, slopes_portion, stride, bodies, links, edges, updates, numbers, m, count, rounds, once, variables, widest, single, parts, ports, gates, rows;
     /* tables */
     const int64_t *link;    /* links x (part, place of first body, place of second body, edge); -1: the ground, no edge */
     const int64_t *range;   /* bodies + 1: where the edges of each body begin */
@@ -862,12 +862,12 @@ static INLINE void add_dots(Dots *to, const lanes *x, const lanes *f, const lane
 
 /* Steps of inverse iteration of one vector x: y = M x and f = M times it before, in turn. A tree that came back goes on at once, as its
  * matrices are at hand. */
-static INLINE Dots iterate(const Task *t, Room *w, lanes *x, lanes *f, lanes *y, lanes shift)
+static INLINE Dots iterate(const Task *t, Room *w, lanes *x, lanes *f, lanes *y, lanes shift, int steps)
 {
     Dots dots = {all(0.0), all(0.0), all(1.0)};
     for (int64_t port = 0; port < t->ports; port++) descend(t, w, x, f, port, &shift, 1);
     eliminate_rest(t, w, shift, 0);
-    for (int64_t step = 1; step <= t->steps; step++) {
+    for (int step = 1; step <= steps; step++) {
         dots = (Dots){dots.after, all(0.0), all(0.0)};
         turn_back(t, w, x, f, y, 1);
         for (int64_t port = 0; port < t->ports; port++) {
@@ -876,7 +876,7 @@ static INLINE Dots iterate(const Task *t, Room *w, lanes *x, lanes *f, lanes *y,
                 const int64_t row = t->row[t->member[i]];
                 add_dots(&dots, x + row, f + row, y + row, 6 * t->copies[t->member[i]]);
             }
-            if (step < t->steps) descend(t, w, x, y, port, 0, 1);
+            if (step < steps) descend(t, w, x, y, port, 0, 1);
         }
         leave_ports(t, w, y, 1);
         for (int64_t v = 0; v < t->bodies; v++)
@@ -943,10 +943,9 @@ static INLINE void blends(int64_t n, int m, Layout at, int64_t next, lanes *y, c
     }
 }
 
-/* y = x q, the first `count` columns of it, one after the other, each `next` further on. */
-static INLINE void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int count)
+/* y = x q, the columns of it from c to before `count`, one after the other, each `next` further on. */
+static INLINE void blend(int64_t n, int m, Layout at, int64_t next, lanes *restrict y, const lanes *restrict x, const lanes *restrict q, int c, int count)
 {
-    int c = 0;
     for (; c + 3 <= count; c += 3) blends(n, m, at, next, y, x, q, c, 3);
     if (count - c == 2) blends(n, m, at, next, y, x, q, c, 2);
     else if (count - c == 1) blends(n, m, at, next, y, x, q, c, 1);
@@ -1042,6 +1041,9 @@ static INLINE void small(const int m, lanes *stiff, lanes *mass, lanes *values, 
  * and how much of each is in each of the modes. */
 typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST], mix[MOST * MOST]; } Ritz;
 
+/* Whether mode c takes one step, of modes told by bits. */
+#define ONCE(once, c) ((once) >> (c) & 1)
+
 /* The share of the platform in mode c of x q, x the platform's rows. */
 static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes *q, int m, int c)
 {
@@ -1056,7 +1058,7 @@ static lanes share_of(const Task *t, const Room *w, const lanes *x, const lanes 
     return sum;
 }
 
-/* Rayleigh-Ritz on (K - shift M)^-1 times the forces to begin with: all values, and M times the modes that are wanted, in w->force. */
+/* Rayleigh-Ritz on (K - shift M)^-1 times the forces to begin with: all values, and M times the modes that are wanted, where `polish` takes them. */
 static INLINE void begin(const Task *t, Room *w, Ritz *out, const int m, const int single)
 {
     const int64_t n = 6 * t->bodies;
@@ -1066,21 +1068,24 @@ static INLINE void begin(const Task *t, Room *w, Ritz *out, const int m, const i
     for (int i = 0; i < m * m; i++) stiff[i] += t->shift * mass[i];
     small(m, stiff, mass, out->values, q, 1e-6);
     for (int c = 0; c < m; c++) out->share[c] = share_of(t, w, w->ahead + (n - 6) * m, q, m, c);
-    blend(n, m, (Layout){m, 1}, t->rows, w->force, w->now, q, single);
+    for (int c = 0, end; c < single; c = end) {
+        for (end = c + 1; end < single && ONCE(t->once, end) == ONCE(t->once, c); end++) {}
+        blend(n, m, (Layout){m, 1}, t->rows, ONCE(t->once, c) ? w->next : w->force, w->now, q, c, end);
+    }
 }
 
-/* Rayleigh-Ritz on single modes in w->ahead: shapes in w->now, `weighed` are M times them, `before` M times what they were made of. */
-static INLINE void combine(const Task *t, Room *w, Ritz *known, const lanes *weighed, const lanes *before, const int m)
+/* Rayleigh-Ritz on single modes in w->ahead: shapes in w->now; M times them are in w->force, M times what they were made of in w->next. */
+static INLINE void combine(const Task *t, Room *w, Ritz *known, const int m)
 {
     const int64_t n = 6 * t->bodies;
     const Layout at = {1, t->rows};
     lanes stiff[MOST * MOST], mass[MOST * MOST], length[MOST];
-    grams(n, m, at, mass, stiff, w->ahead, weighed, before, 0);
+    grams(n, m, at, mass, stiff, w->ahead, w->force, w->next, 0);
     for (int i = 0; i < m; i++)
         for (int j = 0; j <= i; j++) stiff[i * m + j] = stiff[j * m + i] = known->shift[j] * mass[i * m + j] + stiff[i * m + j];
     for (int i = 0; i < m; i++) length[i] = root(mass[i * m + i]);
     small(m, stiff, mass, known->values, known->mix, ROUNDING);
-    blend(n, m, at, t->rows, w->now, w->ahead, known->mix, m);
+    blend(n, m, at, t->rows, w->now, w->ahead, known->mix, 0, m);
     for (int c = 0; c < m; c++) {
         for (int k = 0; k < m; k++) known->part[c * m + k] = size_of(known->mix[k * m + c]) * length[k];
         lanes one = all(1.0), seen[6];
@@ -1089,24 +1094,24 @@ static INLINE void combine(const Task *t, Room *w, Ritz *known, const lanes *wei
     }
 }
 
-/* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: from M times them in
- * w->force to shapes (single, rows) in w->now. What is of other modes falls in each step like the value's distance from
- * the shift over theirs. */
-static void polish(const Task *t, Room *w, Ritz *known)
+/* The wanted modes one by one, by steps of inverse iteration with a shift just below each value, and Rayleigh-Ritz on them: to shapes (single, rows)
+ * in w->now. What is of other modes falls in each step like the value's distance from the shift over theirs: those that do with one begin with M times
+ * them in w->next, others in w->force. */
+static void polish(const Task *t, Room *w, Ritz *known, int64_t once)
 {
     const int m = (int)t->single;
-    const lanes *const weighed = t->steps % 2 ? w->next : w->force, *const before = t->steps % 2 ? w->force : w->next;
     for (int c = 0; c < m; c++) {
-        const int64_t at = c * t->rows;
+        lanes *const x = w->ahead + c * t->rows, *const one = w->force + c * t->rows, *const two = w->next + c * t->rows;
+        const int single = (int)ONCE(once, c);
         known->shift[c] = (1.0 - BESIDE) * known->values[c];
-        const Dots dots = iterate(t, w, w->ahead + at, w->force + at, w->next + at, known->shift[c]);
+        const Dots dots = iterate(t, w, x, single ? two : one, single ? one : two, known->shift[c], single ? 1 : 2);
         const lanes square = 1.0 - dots.between * dots.between / (dots.before * dots.after);
         known->sine[c] = root(pick(square > 0.0, square, all(0.0)));
         known->sine[c] = pick(square == square, known->sine[c], square);
         known->quotient[c] = dots.between / dots.before;
     }
-    if (m == USUAL) combine(t, w, known, weighed, before, USUAL);
-    else combine(t, w, known, weighed, before, m);
+    if (m == USUAL) combine(t, w, known, USUAL);
+    else combine(t, w, known, m);
 }
 
 /* ---- which modes are the platform's, one design at a time ---- */
@@ -1513,11 +1518,12 @@ static void designs(const Task *t, Room *w)
     if (t->m == USUAL && t->single == USUAL) begin(t, w, &known, USUAL, USUAL);
     else begin(t, w, &known, (int)t->m, (int)t->single);
     for (int64_t round = 0; round < t->rounds && left; round++) {
-        if (round) { /* M times the modes, as `polish` left it */
-            blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->ahead, t->steps % 2 ? w->next : w->force, known.mix, (int)t->single);
-            memcpy(w->force, w->ahead, sizeof(lanes) * t->rows * t->single);
+        const int64_t once = !round || !ONCE(~t->once, t->single - 1) ? t->once : 0;
+        if (round) { /* M times the modes */
+            blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->ahead, w->force, known.mix, 0, (int)t->single);
+            memcpy(once ? w->next : w->force, w->ahead, sizeof(lanes) * t->rows * t->single);
         }
-        polish(t, w, &known);
+        polish(t, w, &known, once);
         marks fresh = {0};
         left = 0;
         for (int lane = 0; lane < WIDTH; lane++) {

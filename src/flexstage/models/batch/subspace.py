@@ -45,7 +45,8 @@ class Start:
 
     `value` bounds the relative error of eigenvalues, `angle` that of vectors. The modes outside the block are expected to begin at `edge`
     times its highest eigenvalue. Of the first `needed` modes are the platform's. The kernel begins with the inertial forces `force` of
-    these and more, and with K - `shift` M; it finds the first `needed` one by one.
+    these and more, and with K - `shift` M; it finds the first `needed` one by one:
+    vectors of those that are to be found `once` (needed,) in one step, though derivatives are asked for, of others in two.
     """
 
     block: Array
@@ -56,6 +57,7 @@ class Start:
     value: float = 1e-7
     angle: float = np.inf
     needed: int = 0
+    once: Array = field(default_factory=lambda: np.zeros(0, dtype=bool))
     force: Array = field(default_factory=lambda: np.zeros((0, 6, 0)))
     shift: float = 0.0
 
