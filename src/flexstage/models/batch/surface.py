@@ -89,12 +89,15 @@ class Surface:
                     for rows, places in ((result, self._places), (turned, self._turned_places)):
                         to, of = places[number, int(variable)]
                         rows[to, start:stop] = (piece.coefficients[:, of].T @ basis)[:, : stop - start]
-        numbers = self.numbers(values) if self._turns else None
-        for place, (start, change, axes) in enumerate(self._turns):
-            rates, own = (rows.T.reshape(-1, 3, 3) for rows in (turned[9 * place : 9 * place + 9], numbers[axes]))  # type: ignore[index]
-            rows = slice(start, start + len(change.rows))
-            result[rows] = spin(rates, own).T[change.rows]
+        if self._turns:
+            self._add_turns(result, turned, self.numbers(values))
         return Slopes(changes, result, np.zeros(len(values), dtype=bool))
+
+    def _add_turns(self, result: Rows, turned: Rows, numbers: Rows) -> None:
+        """Write how links' axes turn, of the derivatives of their nine numbers each."""
+        for place, (start, change, axes) in enumerate(self._turns):
+            rates, own = (rows.T.reshape(-1, 3, 3) for rows in (turned[9 * place : 9 * place + 9], numbers[axes]))
+            result[start : start + len(change.rows)] = spin(rates, own).T[change.rows]
 
     @cached_property
     def _turns(self) -> list[tuple[int, Change, slice]]:
