@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +21,8 @@ _DOUBLE = np.zeros((1, 1))
 _dtrsm, _dsyrk = get_blas_funcs(("trsm", "syrk"), (_DOUBLE,))
 (_dpotrf,) = get_lapack_funcs(("potrf",), (_DOUBLE,))
 
+_AT_HAND = 8
+"""Meshes whose cuts are kept for the next order."""
 _LEAF = 16
 """Elements that are not cut further."""
 _LEAST, _UNEVEN = 0.2, 0.5
@@ -91,9 +94,7 @@ class Fronts:
 
 def dissect(grid: Grid, free: Array) -> Fronts:
     """The order in which free nodes (mask) are eliminated: elements are cut in two where few faces lie on the cut, again and again."""
-    leaves: list[Array] = []
-    spans: list[tuple[int, int, int, int]] = []
-    _cut(grid, np.arange(len(grid.faces)), leaves, spans)
+    leaves, spans = _cuts(grid.faces.tobytes(), grid.places.tobytes())
     leaf = np.repeat(np.arange(len(leaves)), [len(each) for each in leaves])[np.argsort(np.concatenate(leaves))]
     owner, low = _owners(grid, leaf, spans)
     order = np.full(grid.count, len(spans), dtype=np.int64)
@@ -115,39 +116,52 @@ def dissect(grid: Grid, free: Array) -> Fronts:
     return Fronts(nodes, tuple(fronts))
 
 
-def _cut(grid: Grid, elements: Array, leaves: list[Array], spans: list[tuple[int, int, int, int]]) -> int:
+_Span = tuple[int, int, int, int]
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _cuts(faces: bytes, places: bytes) -> tuple[list[Array], list[_Span]]:
+    """Leaves and spans of elements with these faces and places: at every order of a mesh the same."""
+    leaves: list[Array] = []
+    spans: list[_Span] = []
+    both = np.frombuffer(faces, dtype=np.int64).reshape(-1, 4), np.frombuffer(places).reshape(-1, 3)
+    _cut(both, np.arange(len(both[0])), leaves, spans)
+    return leaves, spans
+
+
+def _cut(both: tuple[Array, Array], elements: Array, leaves: list[Array], spans: list[_Span]) -> int:
     """Cut elements; a span is the first leaf, the one after the last, and the numbers of both halves. The number of the own span."""
     if len(elements) <= _LEAF:
         leaves.append(elements)
         spans.append((len(leaves) - 1, len(leaves), -1, -1))
         return len(spans) - 1
     first = len(leaves)
-    one, other = _halves(grid, elements)
-    left = _cut(grid, one, leaves, spans)
-    right = _cut(grid, other, leaves, spans)
+    one, other = _halves(*(each[elements] for each in both))
+    left = _cut(both, elements[one], leaves, spans)
+    right = _cut(both, elements[other], leaves, spans)
     spans.append((first, len(leaves), left, right))
     return len(spans) - 1
 
 
-def _halves(grid: Grid, elements: Array) -> tuple[Array, Array]:
-    """Elements on both sides of the best of the cuts that are tried."""
-    count = len(elements)
+def _halves(faces: Array, places: Array) -> tuple[Array, Array]:
+    """The elements on both sides of the best of the cuts that are tried."""
+    count = len(faces)
     sizes = np.arange(max(1, int(_LEAST * count)), count - max(1, int(_LEAST * count)) + 1)
-    _, local = np.unique(grid.faces[elements], return_inverse=True)
+    _, local = np.unique(faces, return_inverse=True)
     local = local.reshape(count, -1)
     place = np.repeat(np.arange(count), local.shape[1])
     last = np.zeros(int(local.max()) + 1, dtype=np.int64)
     first = np.zeros_like(last)
-    least, found = np.inf, (elements, elements)
+    least, found = np.inf, (place, place)
     for direction in _ACROSS:
-        order = np.argsort(grid.places[elements] @ direction, kind="stable")
+        order = np.argsort(places @ direction, kind="stable")
         met = local[order].ravel()
         last[met], first[met[::-1]] = place, place[::-1]
         across = np.cumsum(np.bincount(first + 1, minlength=count + 2) - np.bincount(last + 1, minlength=count + 2))
         cost = across[sizes] * (1.0 + _UNEVEN * np.abs(2.0 * sizes / count - 1.0))
         best = int(np.argmin(cost))
         if cost[best] < least:
-            least, found = cost[best], (elements[order[: sizes[best]]], elements[order[sizes[best] :]])
+            least, found = cost[best], (order[: sizes[best]], order[sizes[best] :])
     return found
 
 
