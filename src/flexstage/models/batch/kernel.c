@@ -1518,7 +1518,7 @@ static void designs(const Task *t, Room *w)
     if (t->m == USUAL && t->single == USUAL) begin(t, w, &known, USUAL, USUAL);
     else begin(t, w, &known, (int)t->m, (int)t->single);
     for (int64_t round = 0; round < t->rounds && left; round++) {
-        const int64_t once = !round || !ONCE(~t->once, t->single - 1) ? t->once : 0;
+        const int64_t once = !round || ONCE(t->once, t->single - 1) ? t->once : 0; /* the last takes one step where all do: else, once more, all take two */
         if (round) { /* M times the modes */
             blend(6 * t->bodies, (int)t->single, (Layout){1, t->rows}, t->rows, w->ahead, w->force, known.mix, 0, (int)t->single);
             memcpy(once ? w->next : w->force, w->ahead, sizeof(lanes) * t->rows * t->single);

@@ -120,25 +120,25 @@ _Span = tuple[int, int, int, int]
 
 
 @lru_cache(maxsize=_AT_HAND)
-def _cuts(faces: bytes, places: bytes) -> tuple[list[Array], list[_Span]]:
+def _cuts(faces: bytes, places: bytes) -> tuple[tuple[Array, ...], tuple[_Span, ...]]:
     """Leaves and spans of elements with these faces and places: at every order of a mesh the same."""
     leaves: list[Array] = []
     spans: list[_Span] = []
-    both = np.frombuffer(faces, dtype=np.int64).reshape(-1, 4), np.frombuffer(places).reshape(-1, 3)
-    _cut(both, np.arange(len(both[0])), leaves, spans)
-    return leaves, spans
+    own = np.frombuffer(faces, dtype=np.int64).reshape(-1, 4)
+    _cut(own, np.frombuffer(places).reshape(-1, 3), np.arange(len(own)), leaves, spans)
+    return tuple(leaves), tuple(spans)
 
 
-def _cut(both: tuple[Array, Array], elements: Array, leaves: list[Array], spans: list[_Span]) -> int:
+def _cut(faces: Array, places: Array, elements: Array, leaves: list[Array], spans: list[_Span]) -> int:
     """Cut elements; a span is the first leaf, the one after the last, and the numbers of both halves. The number of the own span."""
     if len(elements) <= _LEAF:
         leaves.append(elements)
         spans.append((len(leaves) - 1, len(leaves), -1, -1))
         return len(spans) - 1
     first = len(leaves)
-    one, other = _halves(*(each[elements] for each in both))
-    left = _cut(both, elements[one], leaves, spans)
-    right = _cut(both, elements[other], leaves, spans)
+    one, other = _halves(faces[elements], places[elements])
+    left = _cut(faces, places, elements[one], leaves, spans)
+    right = _cut(faces, places, elements[other], leaves, spans)
     spans.append((first, len(leaves), left, right))
     return len(spans) - 1
 
@@ -165,7 +165,7 @@ def _halves(faces: Array, places: Array) -> tuple[Array, Array]:
     return found
 
 
-def _owners(grid: Grid, leaf: Array, spans: list[tuple[int, int, int, int]]) -> tuple[Array, Array]:
+def _owners(grid: Grid, leaf: Array, spans: tuple[_Span, ...]) -> tuple[Array, Array]:
     """The span each node is eliminated at, the least that holds all its elements, and the first of their leaves, which `leaf` tells.
 
     Nodes of one cut stand in the order of these leaves: those that a half of the half meets too lie together.
