@@ -204,12 +204,12 @@ def test_the_solver_is_needed_only_for_what_is_not_in_the_cache(tmp_path: Path, 
         raise DesignError(())
 
     stage = propped(6 * mm)
-    monkeypatch.setattr(parts_module, "require_solver", missing)
+    monkeypatch.setattr(parts_module, "require_installed", missing)
     with pytest.raises(DesignError):
         solid(stage, COARSE, cache=Cache(tmp_path))
     monkeypatch.undo()
     kept = solid(stage, COARSE, cache=Cache(tmp_path))
-    monkeypatch.setattr(parts_module, "require_solver", missing)
+    monkeypatch.setattr(parts_module, "require_installed", missing)
     assert same(solid(stage, COARSE, cache=Cache(tmp_path)), kept)
 
 

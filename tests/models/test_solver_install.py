@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import tomllib
 from importlib.metadata import PackageNotFoundError
+from pathlib import Path
 
 import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.solid.fea import install
+from flexstage.solid.fea.bar import bar
+from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.fea.install import SOLVER_VERSION, require_solver, solver_findings
+from flexstage.solid.fea.parts import Ways, reduce_parts
 from tests.hygiene.source import ROOT
 
 
@@ -43,5 +47,16 @@ def test_another_version_is_named_with_the_wanted_one(monkeypatch: pytest.Monkey
 def test_a_missing_library_leads_to_the_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(install, "import_module", unloadable)
     (finding,) = solver_findings()
+    assert "libquadmath.so.0" in finding.what
+    assert "flexstage doctor" in finding.advice
+
+
+@pytest.mark.parametrize("error", ["ImportError", "OSError"])
+def test_what_does_not_load_in_a_process_of_its_own_leads_to_the_doctor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: str) -> None:
+    (tmp_path / "ngsolve.py").write_text(f"raise {error}('libquadmath.so.0: cannot open shared object file')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(DesignError) as told:
+        reduce_parts((bar(),), Reduction(Fineness(order=2)), Ways(cache=None))
+    (finding,) = told.value.findings
     assert "libquadmath.so.0" in finding.what
     assert "flexstage doctor" in finding.advice

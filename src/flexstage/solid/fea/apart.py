@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 from flexstage.base.finding import Finding
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.install import require_installed
 from flexstage.solid.fea.progress import Stage
 from flexstage.solid.fea.remote import Limits, Pool, work_all
 from flexstage.solid.fea.worker import Call, Job
@@ -66,7 +66,7 @@ def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
 
 
 def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[bytes]:
-    require_solver()
+    require_installed()
     results: dict[_Drawing, bytes] = {}
     work_all(jobs, results.__setitem__, limits, pool=pool)
     return [results[job] for job in jobs]

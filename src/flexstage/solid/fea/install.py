@@ -34,7 +34,7 @@ def require_solver() -> None:
 def require_installed() -> None:
     """Raise a `DesignError` that names the remedy if NGSolve or netgen is missing or of another version; they are not loaded.
 
-    For what may have all its results at hand: what computes asks `require_solver`.
+    For what computes in processes of their own, if at all: they load it, and say so where it does not load.
 
     >>> require_installed()
     """

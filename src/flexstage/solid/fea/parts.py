@@ -15,7 +15,7 @@ from flexstage.solid.fea.cache import Cache, find, keep, key_of
 from flexstage.solid.fea.component import Component, with_yielding_ends
 from flexstage.solid.fea.content import KEPT, content
 from flexstage.solid.fea.fineness import Hold, Reduction
-from flexstage.solid.fea.install import require_solver
+from flexstage.solid.fea.install import require_installed
 from flexstage.solid.fea.reducing import Reduce, StoredJob
 from flexstage.solid.fea.remote import Limits, Pool, work_all
 from flexstage.solid.fea.store import from_bytes, versions
@@ -122,7 +122,7 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> tuple[dict[str, Any], tuple
         first.setdefault(job.key, job)
     missing = [job for job in first.values() if not store.holds(job)]
     if missing:
-        require_solver()
+        require_installed()  # the processes load it
         missing.sort(key=lambda job: -job.seconds())  # the longest first: the others fill the time beside it
         work_all(missing, store.take, ways.limits, ways.progress, ways.pool)
     return {key: store.results[key] for key in first}, tuple(store.notices)

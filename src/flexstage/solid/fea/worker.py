@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from flexstage.base.finding import Finding
 from flexstage.base.jobs import Line, limit_memory
+from flexstage.solid.fea.install import require_solver
 from flexstage.solid.fea.memory import Counts
 from flexstage.solid.fea.progress import Report, Stage
 from flexstage.solid.fea.store import Versions
@@ -88,7 +89,10 @@ class Task:
 
 
 def work(line: Line, task: Task) -> bytes:
-    """Do a task's job: stages and counts of meshes are told, and for room for each mesh it waits."""
+    """Do a task's job: stages and counts of meshes are told, and for room for each mesh it waits.
+
+    Raises a `DesignError` that names the remedy if the solver does not load.
+    """
 
     def ask(counts: Counts) -> None:
         line.tell(counts)
@@ -101,5 +105,8 @@ def work(line: Line, task: Task) -> bytes:
     faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
     try:
         return task.job.work(Call(report, ask, task.attempt, task.made))
+    except (ImportError, OSError):
+        require_solver()  # what did not load may be the solver
+        raise
     finally:
         faulthandler.cancel_dump_traceback_later()
