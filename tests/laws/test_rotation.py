@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from flexstage.spatial.frame import axes
-from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate
+from flexstage.spatial.rotation import exponential, logarithm, logarithm_rate, rotation_vector
 
 angles = st.one_of(st.floats(0.0, 3.1), st.floats(-9.0, 0.0).map(lambda power: 10.0**power))
 directions = st.integers(0, 2**32 - 1).map(lambda seed: _unit(np.random.default_rng(seed).normal(size=3)))
@@ -23,6 +24,14 @@ def _unit(vector):
 def test_logarithm_undoes_exponential(vector):
     found = logarithm(exponential(vector))
     np.testing.assert_allclose(found, vector, rtol=1e-12, atol=1e-15 + 4e-16 / (np.pi - np.linalg.norm(vector)))
+
+
+@given(st.one_of(vectors, directions.map(lambda axis: np.pi * axis), st.sampled_from([*np.eye(3)]).map(lambda axis: np.pi * axis)))
+def test_rotation_vector_is_that_of_another_code_up_to_half_a_turn(vector):
+    rotation = exponential(vector)
+    found = rotation_vector(rotation)
+    np.testing.assert_allclose(exponential(found), rotation, atol=4e-15)
+    np.testing.assert_allclose(found, Rotation.from_matrix(rotation).as_rotvec(), rtol=4e-15, atol=4e-15)
 
 
 @given(vectors)

@@ -5,6 +5,8 @@ A rotation vector points along the axis, its length is the angle [rad]. All arra
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from flexstage.base.number import Array
@@ -46,6 +48,31 @@ def logarithm(rotation: Array) -> Array:
     series = 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (5.0 / 112.0 + square * 35.0 / 1152.0)))
     factor = np.where(small, series, 2.0 * np.arctan(sine / (1.0 + cosine)) / sine)
     return factor[..., None] * axis
+
+
+def rotation_vector(rotation: Array) -> Array:
+    """Rotation vector (3,) [rad] of one real rotation matrix (3, 3), for every angle up to pi.
+
+    By the unit quaternion, its largest component first (Shepperd, J. Guid. Control 1, 223, 1978): exact where `logarithm` has none.
+
+    >>> (rotation_vector(np.diag([-1.0, 1.0, -1.0])) / np.pi).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    skew = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    trace = rotation[0, 0] + rotation[1, 1] + rotation[2, 2]
+    largest = int(np.argmax([*np.diag(rotation), trace]))
+    if largest == 3:
+        axis, scalar = skew, 1.0 + trace
+    else:
+        axis, scalar = rotation[largest] + rotation[:, largest], skew[largest]
+        axis[largest] = 1.0 - trace + 2.0 * rotation[largest, largest]
+    a, b, c, d = (float(value) for value in (*axis, scalar))
+    length = math.copysign(math.sqrt(a * a + b * b + c * c + d * d), d)
+    a, b, c, d = a / length, b / length, c / length, d / length
+    sine = math.sqrt(a * a + b * b + c * c)
+    angle = 2.0 * math.atan2(sine, d)
+    scale = angle / math.sin(0.5 * angle) if angle > 1e-3 else 2.0 + angle**2 / 12.0 + 7.0 * angle**4 / 2880.0
+    return scale * np.array([a, b, c])
 
 
 def logarithm_rate(vector: Array) -> Array:

@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import scipy
 from netgen import occ
 
 from flexstage.base.finding import refuse
@@ -34,6 +33,7 @@ from flexstage.solid.fea.piece import MILLIMETRES, Form
 from flexstage.solid.fea.reinforced_leaf import reinforced_solid
 from flexstage.solid.fea.specimen import Specimen, bar, cut
 from flexstage.spatial.frame import Frame
+from flexstage.spatial.rotation import rotation_vector
 
 SHORTENED = 0.03
 """By how much of their radius arcs stop short of an end face they would touch without an angle."""
@@ -82,7 +82,7 @@ def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
     >>> round(there.center.x, 6)
     100.0
     """
-    turn = scipy.spatial.transform.Rotation.from_matrix(np.real(frame.rotation)).as_rotvec()
+    turn = rotation_vector(np.real(frame.rotation))
     angle = float(np.linalg.norm(turn))
     if angle > 0.0:
         axis = occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*(turn / angle)))
