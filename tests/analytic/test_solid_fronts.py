@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from flexstage.base.sparse import Compressed
 from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
 from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, stiffness
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.frontal import Matrix, dissect, factorise_fronts
+from flexstage.solid.fea.frontal import dissect, factorise_fronts
 from flexstage.solid.fea.krylov import Pencil, lowest_modes
 from flexstage.solid.fea.mesh import mesh_component
 
@@ -89,9 +90,9 @@ def test_fronts_are_shared_by_those_that_hold_nothing_there_and_only_by_them() -
     assert not shared[-1]
 
 
-def sparse(factor: float) -> Matrix:
+def sparse(factor: float) -> Compressed:
     values, columns, starts = ELASTIC.mat.CSR()
-    return Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), factor * np.asarray(values))
+    return Compressed(np.asarray(starts, dtype=np.int64), np.asarray(columns), factor * np.asarray(values), SPACE.size)
 
 
 def test_matrices_are_added() -> None:

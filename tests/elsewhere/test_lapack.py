@@ -1,4 +1,4 @@
-"""LAPACK and assignments without the rest of scipy: its results to the last bit."""
+"""LAPACK, sparse products and assignments without the rest of scipy: its results to the last bit."""
 
 import subprocess
 import sys
@@ -9,6 +9,7 @@ import scipy
 
 from flexstage.base import lapack
 from flexstage.base.assignment import assignment
+from flexstage.base.sparse import Compressed
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
@@ -38,6 +39,28 @@ def test_a_matrix_that_is_not_definite_and_a_singular_triangle_are_refused():
         lapack.solve_triangular(np.zeros((2, 2)), np.ones(2), lower=True)
 
 
+@pytest.mark.parametrize("kind", [np.int32, np.int64])
+@pytest.mark.parametrize("shape", [(1, 1), (7, 5), (40, 60)])
+def test_products_are_those_of_scipy(shape, kind):
+    random = np.random.default_rng(shape[0])
+    known = scipy.sparse.random_array(shape, density=0.3, format="csr", rng=random)
+    matrix = Compressed(known.indptr.astype(np.int64), known.indices.astype(kind), known.data, shape[1])
+    vectors, some = random.standard_normal((shape[1], 3)), np.flatnonzero(random.random(shape[0]) < 0.5)
+    np.testing.assert_array_equal(matrix @ vectors, known @ vectors)
+    np.testing.assert_array_equal(matrix @ np.asfortranarray(vectors), known @ vectors)
+    few = random.standard_normal((len(some), 3))
+    np.testing.assert_array_equal(matrix.transpose_times(some, few), known[some].T @ few)
+
+
+def test_entries_of_a_row_stand_in_the_order_of_their_columns():
+    random = np.random.default_rng(1)
+    rows, values = random.integers(0, 7, 30), random.standard_normal(30)
+    known = scipy.sparse.csr_array((values, (rows, np.arange(30))), (9, 30))
+    found = Compressed.of_entries(rows, values, (9, 30))
+    for mine, other in ((found.starts, known.indptr), (found.columns, known.indices), (found.values, known.data)):
+        np.testing.assert_array_equal(mine, other)
+
+
 def test_assignments_are_those_of_scipy():
     random = np.random.default_rng(0)
     for shape in ((1, 1), (3, 7), (7, 3), (20, 20)):
@@ -50,6 +73,13 @@ def test_assignments_are_those_of_scipy():
     [
         ("from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2))", "scipy.linalg"),
         ("from flexstage.base.assignment import assignment as f; f(numpy.eye(2))", "scipy.optimize"),
+        (
+            "from flexstage.base.sparse import Compressed as f; f(numpy.arange(3), numpy.arange(2), numpy.ones(2), 2) @ numpy.eye(2)",
+            "scipy.sparse",
+        ),
+        ("from flexstage.solid.fea import contact, reduce", "scipy.linalg"),
+        ("from flexstage.solid.fea import contact, reduce", "scipy.sparse"),
+        ("from flexstage.solid.fea import contact, reduce", "scipy.spatial"),
     ],
 )
 def test_the_rest_of_scipy_is_not_loaded(asked, package):

@@ -52,7 +52,9 @@ def test_a_missing_library_leads_to_the_doctor(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize("error", ["ImportError", "OSError"])
-def test_what_does_not_load_in_a_process_of_its_own_leads_to_the_doctor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: str) -> None:
+def test_what_does_not_load_in_a_process_of_its_own_leads_to_the_doctor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: str
+) -> None:
     (tmp_path / "ngsolve.py").write_text(f"raise {error}('libquadmath.so.0: cannot open shared object file')")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(DesignError) as told:

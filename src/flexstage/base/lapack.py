@@ -1,4 +1,4 @@
-"""LAPACK for one real matrix at a time, by scipy's bindings without what else `scipy.linalg` imports, a fifth of a second.
+"""LAPACK and BLAS, one real matrix at a time, by scipy's bindings without what else `scipy.linalg` imports, a fifth of a second.
 
 Routines, workspace and order in memory are those that `scipy.linalg` takes, so its results are these to the last bit.
 """
@@ -13,15 +13,21 @@ from flexstage.base.binding import binding
 from flexstage.base.number import Array
 
 
-def _lapack() -> Any:
+def lapack() -> Any:
+    """The routines of LAPACK, as in `scipy.linalg.lapack`."""
     return binding("scipy.linalg._flapack", "scipy.linalg.lapack")
+
+
+def blas() -> Any:
+    """The routines of BLAS, as in `scipy.linalg.blas`."""
+    return binding("scipy.linalg._fblas", "scipy.linalg.blas")
 
 
 def cholesky(matrix: Array) -> Array:
     """L of a positive definite matrix (n, n), A = L L^T. Raises `numpy.linalg.LinAlgError` for another one."""
     if not matrix.size:
         return np.empty(matrix.shape)
-    factor, fault = _lapack().dpotrf(_finite(matrix), lower=True, overwrite_a=False, clean=True)
+    factor, fault = lapack().dpotrf(_finite(matrix), lower=True, overwrite_a=False, clean=True)
     _require(fault, "the matrix is not positive definite")
     return factor
 
@@ -32,9 +38,9 @@ def solve_triangular(triangle: Array, right: Array, *, lower: bool) -> Array:
         return np.empty(right.shape)
     triangle, right = _finite(triangle), _finite(right)
     if triangle.flags.f_contiguous:
-        found, fault = _lapack().dtrtrs(triangle, right, overwrite_b=False, lower=lower, trans=0, unitdiag=False)
+        found, fault = lapack().dtrtrs(triangle, right, overwrite_b=False, lower=lower, trans=0, unitdiag=False)
     else:
-        found, fault = _lapack().dtrtrs(triangle.T, right, overwrite_b=False, lower=not lower, trans=1, unitdiag=False)
+        found, fault = lapack().dtrtrs(triangle.T, right, overwrite_b=False, lower=not lower, trans=1, unitdiag=False)
     _require(fault, "the triangle is singular")
     return found
 
@@ -49,7 +55,7 @@ def pivoted_qr(matrix: Array) -> tuple[Array, Array, Array]:
     if not matrix.size:
         return np.identity(rows), np.empty(matrix.shape), np.arange(columns, dtype=np.int32)
     matrix = _finite(matrix)
-    geqp3, orgqr = _lapack().dgeqp3, _lapack().dorgqr
+    geqp3, orgqr = lapack().dgeqp3, lapack().dorgqr
     factors, order, scale, _, _ = geqp3(matrix, overwrite_a=False, lwork=_space(geqp3(matrix, overwrite_a=False, lwork=-1)))
     upper, whole = np.triu(factors), np.empty((rows, rows))
     whole[:, :columns] = factors[:, :rows]
@@ -61,9 +67,9 @@ def pivoted_qr(matrix: Array) -> tuple[Array, Array, Array]:
 def lowest_shapes(matrix: Array, count: int) -> Array:
     """Eigenvectors (n, count) of the least eigenvalues of a symmetric matrix (n, n)."""
     matrix = _finite(matrix)
-    *spaces, _ = _lapack().dsyevr_lwork(n=len(matrix), lower=True)
+    *spaces, _ = lapack().dsyevr_lwork(n=len(matrix), lower=True)
     lwork, liwork = (int(np.real(each)) for each in spaces)
-    _, shapes, found, _, fault = _lapack().dsyevr(
+    _, shapes, found, _, fault = lapack().dsyevr(
         a=matrix, range="I", il=1, iu=count, lower=True, compute_v=1, lwork=lwork, liwork=liwork, overwrite_a=False
     )
     _require(fault, "its eigenvalues are not found")

@@ -5,16 +5,16 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
 import ngsolve
 import numpy as np
-from scipy import sparse
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.frontal import Fronts, Grid, Matrix, dissect, factorise_fronts
+from flexstage.base.sparse import Compressed
+from flexstage.solid.fea.frontal import Fronts, Grid, dissect, factorise_fronts
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.mirror import MIRRORS, Mirrors
 from flexstage.solid.fea.piece import MILLIMETRES, Medium
@@ -169,28 +169,26 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """int rho u . v dV [kg] by its `scalar` matrix (n / 3, n / 3): the same for each component, and nothing between them."""
+    """int rho u . v dV [kg] by the sum of `scalar` matrices (n / 3, n / 3): the same for each component, and nothing between them."""
 
-    scalar: sparse.csr_matrix
+    scalar: tuple[Compressed, ...]
 
     def times(self, vectors: Array) -> Array:
         """The momenta (n, k) of unit velocities (n, k)."""
         count, columns = len(vectors) // 3, vectors.shape[1]
-        moved = self.scalar @ vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
+        each = vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
+        moved = functools.reduce(operator.iadd, (matrix @ each for matrix in self.scalar))
         return moved.reshape(count, 3, columns).transpose(1, 0, 2).reshape(3 * count, columns)
 
 
 def total(parts: Sequence[Inertia]) -> Inertia:
     """The inertia of what has some inertias.
 
-    >>> total([Inertia(sparse.eye_array(1)), Inertia(sparse.eye_array(1))]).scalar.toarray().item()
-    2.0
+    >>> one = Inertia((Compressed(np.array([0, 1]), np.array([0]), np.array([1.0]), 1),))
+    >>> total([one, one]).times(np.ones((3, 1))).tolist()
+    [[2.0], [2.0], [2.0]]
     """
-    return Inertia(_sum(part.scalar for part in parts))
-
-
-def _sum(matrices: Iterable[sparse.csr_matrix]) -> sparse.csr_matrix:
-    return functools.reduce(operator.add, matrices)
+    return Inertia(tuple(matrix for part in parts for matrix in part.scalar))
 
 
 def inertia(space: Field, elements: Array | None = None) -> Inertia:
@@ -209,7 +207,8 @@ def inertia(space: Field, elements: Array | None = None) -> Inertia:
     form = ngsolve.BilinearForm(scalar, symmetric=True)
     form += _PER_VOLUME * space.density * u * v * _volume(elements)
     form.Assemble()
-    return Inertia(_matrix(form).copy())
+    shared = _matrix(form)
+    return Inertia((replace(shared, columns=shared.columns.copy(), values=shared.values.copy()),))
 
 
 def _volume(elements: Array | None) -> object:
@@ -441,14 +440,15 @@ def times(forms: Forms, vectors: Array) -> Array:
     """
     moving, result = vectors.any(axis=1), np.zeros_like(vectors)
     for matrix in map(_matrix, forms):
-        result += matrix @ vectors if np.mean(moving) > _FEW else matrix[moving].T @ vectors[moving]  # it is symmetric
+        few = np.mean(moving) <= _FEW
+        result += matrix.transpose_times(np.flatnonzero(moving), vectors[moving]) if few else matrix @ vectors  # it is symmetric
     return result
 
 
-def _matrix(form: ngsolve.BilinearForm) -> sparse.csr_matrix:
+def _matrix(form: ngsolve.BilinearForm) -> Compressed:
     """The matrix (n, n) of a form, whose memory it shares."""
     values, columns, starts = (np.asarray(each) for each in form.mat.CSR())
-    return sparse.csr_matrix((values, columns, starts), shape=(form.mat.height, form.mat.width))
+    return Compressed(starts.astype(np.int64), columns, values, form.mat.width)
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
@@ -563,14 +563,15 @@ def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver
 
 def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> list[Solver]:
     """Solvers for forces (n, k) of each of some kinds."""
-    parts = [form.mat.CSR() for form in forms]
-    matrices = [Matrix(np.asarray(starts, dtype=np.int64), np.asarray(columns), np.asarray(values)) for values, columns, starts in parts]
+    matrices = [_matrix(form) for form in forms]
     held = np.array([held_at_mirrors(space, kind) for kind in kinds])
     try:
         return [found.solve for found in factorise_fronts(space.fronts, matrices, held)]
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
-        whole, create = _sum(map(_matrix, forms)).tocoo(), cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)
-        law = create(whole.row, whole.col, whole.data, space.size, space.size)
+        rows = [np.repeat(np.arange(space.size), np.diff(matrix.starts)) for matrix in matrices]
+        create = cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)  # adds up what is named twice
+        entries = (rows, [matrix.columns for matrix in matrices], [matrix.values for matrix in matrices])
+        law = create(*(np.concatenate(each) for each in entries), space.size, space.size)
         inverses = [law.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky") for also in held]
         return [functools.partial(_apply_held, inverse.Mult, also) for inverse, also in zip(inverses, held, strict=True)]
 

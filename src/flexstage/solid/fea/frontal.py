@@ -13,13 +13,12 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
+from flexstage.base.lapack import blas, lapack
 from flexstage.base.number import Array
+from flexstage.base.sparse import Compressed
 
-_DOUBLE = np.zeros((1, 1))
-_dtrsm, _dsyrk = get_blas_funcs(("trsm", "syrk"), (_DOUBLE,))
-(_dpotrf,) = get_lapack_funcs(("potrf",), (_DOUBLE,))
+_dtrsm, _dsyrk, _dpotrf = blas().dtrsm, blas().dsyrk, lapack().dpotrf
 
 _AT_HAND = 8
 """Meshes whose cuts are kept for the next order."""
@@ -46,19 +45,6 @@ class Grid:
     nodes: Array
     elements: Array
     count: int
-
-
-@dataclass(frozen=True, eq=False)
-class Matrix:
-    """A symmetric matrix, both triangles, by rows: `starts`, `columns` and `values` as in a CSR matrix.
-
-    Degrees of freedom are in the order of components: those of all nodes along x, then along y, then along z; every pair of nodes that has
-    an entry has all nine.
-    """
-
-    starts: Array
-    columns: Array
-    values: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,9 +198,11 @@ class Factorised:
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrices: Sequence[Matrix], held: Array) -> tuple[Factorised, ...]:
+def factorise_fronts(order: Fronts, matrices: Sequence[Compressed], held: Array) -> tuple[Factorised, ...]:
     """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
+    Matrices are whole, both triangles. Degrees of freedom are in the order of components: those of all nodes along x, then along y, then
+    along z; every pair of nodes that has an entry has all nine.
     Those of a set (masks (k, n)) are coupled to no other. A front that meets none of any set, nor do those before it, is the same for all.
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
     """
@@ -329,12 +317,12 @@ def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
 class _Entries:
     """Entries of a matrix by nodes; `rank` is that of elimination, -1 of nodes that are held."""
 
-    matrix: Matrix
+    matrix: Compressed
     nodes: Array
     rank: Array
 
     @staticmethod
-    def of(order: Fronts, matrix: Matrix) -> _Entries:
+    def of(order: Fronts, matrix: Compressed) -> _Entries:
         """The entries, to be taken in an order."""
         rank = np.full((len(matrix.starts) - 1) // 3, -1, dtype=np.int64)
         rank[order.nodes] = np.arange(len(order.nodes))

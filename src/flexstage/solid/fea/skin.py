@@ -7,9 +7,9 @@ from typing import Any
 
 import ngsolve
 import numpy as np
-from scipy import sparse
 
 from flexstage.base.number import Array
+from flexstage.base.sparse import Compressed
 from flexstage.solid.fea.field import Columns, Field, hooke
 from flexstage.solid.fea.mirror import MIRRORS
 from flexstage.solid.fea.piece import MILLIMETRES
@@ -92,7 +92,7 @@ def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
     )
 
 
-def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> sparse.csr_matrix:
+def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Compressed:
     """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind."""
     scalar, mesh = space.space.components[0], space.meshed.mesh
     turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
@@ -111,7 +111,7 @@ def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> spars
         values.append(np.stack(slopes).transpose(0, 2, 1).ravel())
         columns.append(np.tile(np.array(scalar.GetDofNrs(element)), 9))
     starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) // 9 for each in columns], 9))])
-    return sparse.csr_matrix((np.concatenate(values), np.concatenate(columns), starts), shape=(9 * len(behind), scalar.ndof))
+    return Compressed(starts, np.concatenate(columns), np.concatenate(values), scalar.ndof)
 
 
 def _media(space: Field) -> Array:
@@ -125,11 +125,11 @@ def _weights(points: Any) -> Array:
     return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
 
 
-def _mean_by_vertex(triangles: Array, weights: Array) -> sparse.csr_matrix:
+def _mean_by_vertex(triangles: Array, weights: Array) -> Compressed:
     """What makes weighted means at vertices of values at the corners of all triangles."""
     count = int(triangles.max()) + 1
     shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
-    return sparse.csr_matrix((shares, (triangles.ravel(), np.arange(triangles.size))), shape=(count, triangles.size))
+    return Compressed.of_entries(triangles.ravel(), shares, (count, triangles.size))
 
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
