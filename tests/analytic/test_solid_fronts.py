@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from typing import Any
+
 import ngsolve
 import numpy as np
 import pytest
@@ -10,9 +15,9 @@ from scipy.linalg import eigh
 from flexstage.base.sparse import Compressed
 from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, stiffness
+from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
 from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.frontal import dissect, factorise_fronts
+from flexstage.solid.fea.frontal import Factorised, Fronts, dissect, factorise_fronts
 from flexstage.solid.fea.krylov import Pencil, lowest_modes
 from flexstage.solid.fea.mesh import mesh_component
 
@@ -43,7 +48,8 @@ def test_motions_are_those_of_the_other_solver() -> None:
     assert not found[~SPACE.free].any()
 
 
-def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("definite", [0, 1, 3])
+def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver(monkeypatch: pytest.MonkeyPatch, definite: int) -> None:
     """With a quarter, whose mirrors hold what motions of a kind do not move, and its matrix in two parts."""
     space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
     half = np.arange(space.meshed.mesh.ne) % 2 == 0
@@ -51,7 +57,8 @@ def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver
     parts = [stiffness(space, half), stiffness(space, ~half)]
     expected = factorise_kinds(space, [stiffness(space)])(forces)
 
-    def refuse(*_: object) -> None:
+    def refuse(order: Fronts, matrices: Sequence[Compressed], held: np.ndarray) -> Iterator[Factorised]:
+        yield from islice(factorise_fronts(order, matrices, held), definite)
         raise np.linalg.LinAlgError
 
     monkeypatch.setattr("flexstage.solid.fea.field.factorise_fronts", refuse)
@@ -81,13 +88,33 @@ def test_fronts_are_shared_by_those_that_hold_nothing_there_and_only_by_them() -
     held, forces = np.zeros((2, 3, SPACE.size // 3), dtype=bool), np.random.default_rng(3).standard_normal((SPACE.size, 2))
     held[1, 1] = nodes_on(SPACE, "end")
     held = held.reshape(2, -1)
-    together = factorise_fronts(SPACE.fronts, [sparse(1.0)], held)
+    together = tuple(factorise_fronts(SPACE.fronts, [sparse(1.0)], held))
     for found, own in zip(together, held, strict=True):
         (alone,) = factorise_fronts(SPACE.fronts, [sparse(1.0)], own[None])
         np.testing.assert_array_equal(found.solve(forces), alone.solve(forces))
     shared = [one is other for one, other in zip(*(found.factors for found in together), strict=True)]
     assert any(shared)
     assert not shared[-1]
+
+
+def test_what_is_solved_once_has_one_factor_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
+    forces, law = Columns(np.random.default_rng(6).standard_normal((space.size, 4)), np.arange(4)), [stiffness(space)]
+    expected, used = factorise_kinds(space, law)(forces), []
+
+    def solve(factorised: Factorised, own: np.ndarray) -> np.ndarray:
+        used.append(weakref.ref(factorised))
+        return solve_whole(factorised, own)
+
+    def eliminate(*arguments: Any) -> Any:
+        assert not any(each() for each in used)
+        return eliminate_whole(*arguments)
+
+    solve_whole, eliminate_whole = Factorised.solve, frontal._eliminate_fronts
+    monkeypatch.setattr(Factorised, "solve", solve)
+    monkeypatch.setattr(frontal, "_eliminate_fronts", eliminate)
+    np.testing.assert_array_equal(solve_kinds(space, law, forces), expected)
+    assert len(used) == 4
 
 
 def sparse(factor: float) -> Compressed:
@@ -104,7 +131,7 @@ def test_matrices_are_added() -> None:
 
 def test_what_is_not_definite_is_refused() -> None:
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
-        factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), [sparse(-1.0)], ~SPACE.free[None])
+        next(factorise_fronts(dissect(grid(SPACE), SPACE.free.reshape(3, -1)[0]), [sparse(-1.0)], ~SPACE.free[None]))
 
 
 def test_lowest_modes_are_the_dense_ones() -> None:

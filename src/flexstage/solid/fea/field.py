@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import operator
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
@@ -532,7 +532,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
     >>> factorise_kinds(space, [stiffness(space)])(Columns(np.zeros((space.size, 4)), np.arange(4))).shape == (space.size, 4)
     True
     """
-    solvers = _solvers(space, forms, range(space.meshed.mirrors.copies))
+    solvers = list(_solvers(space, forms, range(space.meshed.mirrors.copies)))
 
     def solve(forces: Columns) -> Array:
         result = np.empty_like(forces.values)
@@ -541,6 +541,24 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
         return result
 
     return solve
+
+
+def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
+    """Solve with the sum of forms' matrices for forces of all kinds, once: of kinds one after another no factor is kept.
+
+    >>> from flexstage.solid.fea.bar import bar
+    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2), by_symmetry=True), ["foot"], 2)
+    >>> forces, law = Columns(np.ones((space.size, 4)), np.arange(4)), [stiffness(space)]
+    >>> np.array_equal(solve_kinds(space, law, forces), factorise_kinds(space, law)(forces))
+    True
+    """
+    result = np.empty_like(forces.values)
+    solvers = _solvers(space, forms, range(space.meshed.mirrors.copies))
+    for kind in range(space.meshed.mirrors.copies):
+        result[:, forces.kinds == kind] = next(solvers)(forces.kind(kind))
+    return result
 
 
 def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
@@ -561,19 +579,23 @@ def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver
     return lambda forces: solve(forces.reshape(len(forces), -1)).reshape(forces.shape)
 
 
-def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> list[Solver]:
-    """Solvers for forces (n, k) of each of some kinds."""
-    matrices = [_matrix(form) for form in forms]
-    held = np.array([held_at_mirrors(space, kind) for kind in kinds])
+def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> Iterator[Solver]:
+    """Solvers for forces (n, k) of each of some kinds, made as they are asked for."""
+    matrices, held = [_matrix(form) for form in forms], [held_at_mirrors(space, kind) for kind in kinds]
+    done = 0
     try:
-        return [found.solve for found in factorise_fronts(space.fronts, matrices, held)]
+        for solve in map(operator.attrgetter("solve"), factorise_fronts(space.fronts, matrices, np.array(held))):
+            yield solve
+            del solve  # its factor is as large as the next one
+            done += 1
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
         rows = [np.repeat(np.arange(space.size), np.diff(matrix.starts)) for matrix in matrices]
         create = cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)  # adds up what is named twice
         entries = (rows, [matrix.columns for matrix in matrices], [matrix.values for matrix in matrices])
         law = create(*(np.concatenate(each) for each in entries), space.size, space.size)
-        inverses = [law.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky") for also in held]
-        return [functools.partial(_apply_held, inverse.Mult, also) for inverse, also in zip(inverses, held, strict=True)]
+        for also in held[done:]:
+            inverse = law.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky")
+            yield functools.partial(_apply_held, inverse.Mult, also)
 
 
 def _apply_held(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], held: Array, forces: Array) -> Array:

@@ -7,7 +7,7 @@ Numer. Anal. 10, 345, 1973). A node is what has three degrees of freedom: the th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -22,7 +22,7 @@ _dtrsm, _dsyrk, _dpotrf = blas().dtrsm, blas().dsyrk, lapack().dpotrf
 
 _AT_HAND = 8
 """Meshes whose cuts are kept for the next order."""
-_LEAF = 16
+_LEAF = 12
 """Elements that are not cut further."""
 _LEAST, _UNEVEN = 0.2, 0.5
 """Least share of the elements on either side of a cut; how many faces more one is worth that leaves halves equal."""
@@ -198,36 +198,47 @@ class Factorised:
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrices: Sequence[Compressed], held: Array) -> tuple[Factorised, ...]:
+def factorise_fronts(order: Fronts, matrices: Sequence[Compressed], held: Array) -> Iterator[Factorised]:
     """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
     Matrices are whole, both triangles. Degrees of freedom are in the order of components: those of all nodes along x, then along y, then
-    along z; every pair of nodes that has an entry has all nine.
-    Those of a set (masks (k, n)) are coupled to no other. A front that meets none of any set, nor do those before it, is the same for all.
+    along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are coupled to no other.
+    A front that meets none of any set, nor do those before it, is the same for all. The sets are done one after another, as they are
+    asked for: what is not the same takes no memory but in what was given out.
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
-    parts, local = [_Entries.of(order, matrix) for matrix in matrices], np.empty(len(order.nodes), dtype=np.int64)
-    traces: dict[int, list[Array]] = {}
-    factors: list[list[_Factor]] = []
-    for number, front in enumerate(order.fronts):
+    parts, met = [_Entries.of(order, matrix) for matrix in matrices], by_node.any(axis=(0, 2))
+    apart: list[bool] = []
+    for front in order.fronts:
+        inner = any(apart[child] for child in front.children)
+        apart.append(bool(inner or met[front.first : front.last].any() or met[front.beyond].any()))
+    traces: dict[int, Array] = {}
+    alike = _eliminate_fronts(order, parts, np.flatnonzero(np.logical_not(apart)), np.zeros_like(by_node[0]), traces)
+    for kind, own in enumerate(by_node):
+        left = traces if kind == len(by_node) - 1 else dict(traces)
+        yield Factorised(order, own, _in_order(alike | _eliminate_fronts(order, parts, np.flatnonzero(apart), own, left)))
+
+
+def _in_order(factors: dict[int, _Factor]) -> tuple[_Factor, ...]:
+    return tuple(factors[number] for number in range(len(factors)))
+
+
+def _eliminate_fronts(order: Fronts, parts: list[_Entries], numbers: Array, held: Array, traces: dict[int, Array]) -> dict[int, _Factor]:
+    """Factors of some fronts, children before their parents: `traces` of those before are taken out, those that others need put in."""
+    local, factors = np.empty(len(order.nodes), dtype=np.int64), {}
+    for number in numbers.tolist():
+        front = order.fronts[number]
         nodes = np.concatenate([np.arange(front.first, front.last), front.beyond])
         local[nodes] = np.arange(len(nodes))
         own, beyond = 3 * (front.last - front.first), 3 * len(front.beyond)
         panel = _Panel.of(np.zeros(own * (own + beyond)), own, beyond)
         for entries in parts:
             entries.add(panel, front, local)
+        panel.uncouple(np.flatnonzero(held[nodes]))
         below = [(local[order.fronts[child].beyond], traces.pop(child)) for child in front.children]
-        alike = not by_node[:, nodes].any() and all(len(left) == 1 for _, left in below)
-        factors.append([])
-        traces[number] = []
-        for kind in range(1 if alike else len(held)):
-            law = panel if alike or kind == len(held) - 1 else panel.copy()
-            law.uncouple(np.flatnonzero(by_node[kind, nodes]))
-            factor, trace = _eliminate(law, _gather(law, [(met, left[kind % len(left)]) for met, left in below]))
-            factors[-1].append(factor)
-            traces[number].append(trace)
-    return tuple(Factorised(order, own, tuple(each[kind % len(each)] for each in factors)) for kind, own in enumerate(by_node))
+        factors[number], traces[number] = _eliminate(panel, _gather(panel, below))
+    return factors
 
 
 def _gather(panel: _Panel, below: list[tuple[Array, Array]]) -> Array:
@@ -256,10 +267,6 @@ class _Panel:
         """Of so many columns, with so many rows below."""
         square = own * own
         return _Panel(entries[:square].reshape(own, own, order="F"), entries[square:].reshape(beyond, own, order="F"), entries)
-
-    def copy(self) -> _Panel:
-        """Another like it."""
-        return _Panel.of(self.entries.copy(), len(self.own), len(self.below))
 
     def uncouple(self, held: Array) -> None:
         """Leave of some rows, and of the same of its own columns, the diagonal alone."""

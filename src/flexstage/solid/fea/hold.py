@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -25,11 +26,12 @@ from flexstage.solid.fea.field import (
     mean_motion,
     rigid,
     shift_stiffness,
+    solve_kinds,
     times,
     warp_kinds,
     warping_motion,
 )
-from flexstage.solid.fea.fineness import Hold
+from flexstage.solid.fea.fineness import Hold, Reduction
 from flexstage.spatial.frame import Frame
 
 _SHIFT = (2.0 * np.pi * 10.0) ** 2
@@ -57,26 +59,28 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
     return hold is Hold.RIGID or interface.joint.link in stacks or isinstance(interface.footprint, Piezo)
 
 
-def support(component: Component, space: Field, hold: Hold, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
+def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
     """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
 
-    What `loads` within make is solved for at once with the rest.
+    What `loads` within make is solved for at once with the rest: where nothing else is asked for, no factor is kept.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.field import field, inertia, stiffness
-    >>> from flexstage.solid.fea.fineness import Fineness
+    >>> from flexstage.solid.fea.fineness import Fineness, Reduction
     >>> from flexstage.solid.fea.mesh import mesh_component
     >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
     >>> elastic, none = [stiffness(space)], Columns.of(np.zeros((space.size, 0)))
-    >>> faces = support(bar(), space, Hold.AVERAGED, elastic=elastic, mass=inertia(space), loads=none).faces.values
+    >>> faces = support(bar(), space, Reduction(hold=Hold.AVERAGED), elastic=elastic, mass=inertia(space), loads=none).faces.values
     >>> round(float((faces.T @ times(elastic, faces))[0, 0]) * 1e-6, 6)  # E A / L, N/um
     100.0
     """
     if component.floats:
         return _afloat(component, space, mass, loads)
-    loose = [item for item in component.interfaces if not is_rigid(component, item, hold)]
+    loose = [item for item in component.interfaces if not is_rigid(component, item, reduction.hold)]
     unsupported = len(loose) == len(component.interfaces) and not component.fixed
-    plain = factorise_kinds(space, [shift_stiffness(space, _SHIFT)] if unsupported else elastic)
+    law = [shift_stiffness(space, _SHIFT)] if unsupported else elastic
+    once = not (loose or reduction.modes or reduction.residual)
+    plain = partial(solve_kinds, space, law) if once else factorise_kinds(space, law)
     if not loose:
         faces = [_face_motion(item, space) for item in component.interfaces]
         warps = [_face_warping(item, space) for item in component.interfaces if item.yields]

@@ -95,8 +95,8 @@ def entries(counts: Counts, order: int) -> float:
 def needed(counts: Counts, order: int, columns: int) -> float:
     """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
 
-    One side of what is symmetric has a factor for every kind of its motions, as many as there are sides. Within -15 and +30 % of what was
-    measured at orders two to four with modes; without them up to 65 % more.
+    One side of what is symmetric has a factor for every kind of its motions, as many as there are sides. Within -15 and +40 % of what was
+    measured at orders two to four with modes; without them, as one factor at a time is there, up to 70 % more.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030

@@ -113,7 +113,7 @@ def _motions(component: Component, mesh: PieceMesh, reduction: Reduction, spring
     loads += [Columns.of(force[:, None]) for force in strokes.values()]  # stacks are whole
     loads += [Columns.of(rows.T) for rows in seats.values()]
     elastic, mass = problem.stiffness, problem.inertia
-    held = support(component, problem.field, reduction.hold, elastic=elastic, mass=mass, loads=beside(loads))
+    held = support(component, problem.field, reduction, elastic=elastic, mass=mass, loads=beside(loads))
     report(Stage.REDUCING, 0.0)
     inner = [_modes(problem, held, reduction.modes, springs), held.within]
     if reduction.residual:
