@@ -136,6 +136,8 @@ def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
     """Solids that share faces, glued media included, hang together; anything else that falls apart has a gap."""
+    if len(shape.solids) == 1:
+        return
     groups: list[set[tuple[float, ...]]] = []
     for solid in shape.solids:
         faces = {tuple(np.round((*_coordinates(face.center), face.mass), 6)) for face in solid.faces}
@@ -181,13 +183,11 @@ def _distance(face: occ.Face, origin: Array) -> float:
 
 def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
     """Whether all of the face lies in the plane through `origin`."""
-    low, high = (_coordinates(corner) for corner in face.bounding_box)
-    middle = _coordinates(face.center)
-    if abs(float(normal @ (middle - origin))) > _TOLERANCE:
-        return False
-    return all(abs(float(normal @ (_coordinates(vertex.p) - origin))) <= _TOLERANCE for vertex in face.vertices) and bool(
-        np.all(high >= low)
-    )
+
+    def lies_there(point: occ.gp_Pnt) -> bool:
+        return abs(float(normal @ (_coordinates(point) - origin))) <= _TOLERANCE
+
+    return all(lies_there(vertex.p) for vertex in face.vertices) and lies_there(face.center)
 
 
 def _coordinates(point: occ.gp_Pnt) -> Array:

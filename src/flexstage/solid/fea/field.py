@@ -52,7 +52,19 @@ class Field:
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
 
-    @property
+    @cached_property
+    def members(self) -> tuple[Array, Array]:
+        """The functions (m,) of one component of the space and the elements (m,) of all that belong to each other, element by element."""
+        scalar, count = self.space.components[0], self.meshed.mesh.ne
+        nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
+        return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
+
+    @cached_property
+    def places(self) -> Array:
+        """Vertex means (elements, 3) of all elements [m]."""
+        return centroids(self.meshed.mesh)
+
+    @cached_property
     def free(self) -> Array:
         """Which degrees of freedom (n,) are not on a held face."""
         return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
@@ -351,10 +363,10 @@ def degrees_of(space: Field, elements: Array) -> Array:
     >>> bool(degrees_of(space, np.ones(space.meshed.mesh.ne, dtype=bool)).all())
     True
     """
-    result = np.zeros(space.size, dtype=bool)
-    for number in np.flatnonzero(elements):
-        result[list(space.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))))] = True
-    return result
+    nodes, owners = space.members
+    result = np.zeros(space.size // 3, dtype=bool)
+    result[nodes[elements[owners]]] = True
+    return np.tile(result, 3)
 
 
 def nodes_on(space: Field, face: str) -> Array:
@@ -612,12 +624,11 @@ def grid(space: Field) -> Grid:
     >>> 3 * grid(space).count == space.size
     True
     """
-    mesh, scalar = space.meshed.mesh, space.space.components[0]
-    nodes = [scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)) for number in range(mesh.ne)]
+    nodes, elements = space.members
     return Grid(
-        faces=np.array([[face.nr for face in element.faces] for element in mesh.Elements(ngsolve.VOL)]),
-        places=centroids(mesh),
-        nodes=np.concatenate([np.array(each, dtype=np.int64) for each in nodes]),
-        elements=np.repeat(np.arange(mesh.ne), [len(each) for each in nodes]),
-        count=scalar.ndof,
+        faces=np.array([[face.nr for face in element.faces] for element in space.meshed.mesh.Elements(ngsolve.VOL)]),
+        places=space.places,
+        nodes=nodes,
+        elements=elements,
+        count=space.size // 3,
     )

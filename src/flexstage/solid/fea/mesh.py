@@ -283,7 +283,8 @@ def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: f
 
 def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
     """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
-    centre = np.array([[face.center.x, face.center.y, face.center.z]]) / MILLIMETRES
+    middle = face.center  # worked out each time it is asked for
+    centre = np.array([[middle.x, middle.y, middle.z]]) / MILLIMETRES
     corners = np.array([[vertex.p.x, vertex.p.y, vertex.p.z] for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
     held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
     # A wall of a block around the end of a hinge has its centre on the hinge.

@@ -35,7 +35,7 @@ from flexstage.solid.fea.field import (
 from flexstage.solid.fea.fineness import Reduction
 from flexstage.solid.fea.hold import Support, is_rigid, middle, support
 from flexstage.solid.fea.krylov import Pencil, lowest_modes
-from flexstage.solid.fea.mesh import PieceMesh, centroids
+from flexstage.solid.fea.mesh import PieceMesh
 from flexstage.solid.fea.piece import span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.skin import skin, surface_owners
@@ -257,7 +257,7 @@ def _sections(problem: _Problem, number: int) -> Array:
     The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
     """
     piece, space = problem.component.pieces[number], problem.field
-    along = (centroids(space.meshed.mesh) - piece.frame.position) @ piece.frame.rotation[:, 0]
+    along = (space.places - piece.frame.position) @ piece.frame.rotation[:, 0]
     beyond = degrees_of(space, (space.meshed.owner == number) & (along > 0.0))
     return rigid(space, piece.frame) * beyond[:, None]
 
