@@ -40,16 +40,19 @@ def test_a_matrix_that_is_not_definite_and_a_singular_triangle_are_refused():
 
 
 @pytest.mark.parametrize("kind", [np.int32, np.int64])
-@pytest.mark.parametrize("shape", [(1, 1), (7, 5), (40, 60)])
-def test_products_are_those_of_scipy(shape, kind):
-    random = np.random.default_rng(shape[0])
-    known = scipy.sparse.random_array(shape, density=0.3, format="csr", rng=random)
-    matrix = Compressed(known.indptr.astype(np.int64), known.indices.astype(kind), known.data, shape[1])
-    vectors, some = random.standard_normal((shape[1], 3)), np.flatnonzero(random.random(shape[0]) < 0.5)
-    np.testing.assert_array_equal(matrix @ vectors, known @ vectors)
-    np.testing.assert_array_equal(matrix @ np.asfortranarray(vectors), known @ vectors)
-    few = random.standard_normal((len(some), 3))
-    np.testing.assert_array_equal(matrix.transpose_times(some, few), known[some].T @ few)
+@pytest.mark.parametrize("size", [1, 7, 60])
+def test_products_are_those_of_scipy(size, kind):
+    random = np.random.default_rng(size)
+    half = scipy.sparse.random_array((size, size), density=0.3, format="csr", rng=random)
+    known = (half + half.T).tocsr()
+    matrix = Compressed(known.indptr.astype(np.int64), known.indices.astype(kind), known.data, size)
+    vectors = random.standard_normal((size, 3))
+    for form in (vectors, np.asfortranarray(vectors)):
+        np.testing.assert_array_equal(matrix @ form, known @ vectors)
+        np.testing.assert_array_equal(matrix.symmetric_times(form), known @ vectors)
+    few = np.where(np.arange(size)[:, None] % 3 == 1, vectors, 0.0)
+    np.testing.assert_array_equal(matrix.symmetric_times(few), known[few.any(axis=1)].T @ few[few.any(axis=1)])
+    np.testing.assert_allclose(matrix.symmetric_times(few), known @ few, rtol=0, atol=1e-14)
 
 
 def test_entries_of_a_row_stand_in_the_order_of_their_columns():

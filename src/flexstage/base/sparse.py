@@ -13,6 +13,9 @@ import scipy
 from flexstage.base.binding import binding
 from flexstage.base.number import Array
 
+_FEW = 0.5
+"""Share of the entries of vectors below which those alone are multiplied that are not nought."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sparse:
@@ -231,7 +234,12 @@ class Compressed:
         _products().csr_matvecs(rows, self.width, count, *self._indices(), self.values, vectors.ravel(), result.ravel())
         return result
 
-    def transpose_times(self, rows: Array, vectors: Array) -> Array:
+    def symmetric_times(self, vectors: Array) -> Array:
+        """Times vectors (n, k) of a symmetric matrix: by its columns where they are not nought, should these be few."""
+        moving = vectors.any(axis=1)
+        return self @ vectors if np.mean(moving) > _FEW else self._transpose_times(np.flatnonzero(moving), vectors[moving])
+
+    def _transpose_times(self, rows: Array, vectors: Array) -> Array:
         """The transpose of some rows (c,), times vectors (c, k)."""
         starts, columns = self._indices()
         some = np.concatenate([[0], np.cumsum(np.diff(starts)[rows])]).astype(columns.dtype)

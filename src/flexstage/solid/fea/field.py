@@ -23,8 +23,6 @@ from flexstage.spatial.frame import Frame
 _PER_METRE = 1.0 / MILLIMETRES
 """Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
 _PER_VOLUME = 1.0 / MILLIMETRES**3
-_FEW = 0.2
-"""Share of degrees of freedom below which those that move alone are multiplied."""
 _BELL = 6
 """By how much the order of integration is raised where a bell is integrated."""
 
@@ -189,7 +187,7 @@ class Inertia:
         """The momenta (n, k) of unit velocities (n, k)."""
         count, columns = len(vectors) // 3, vectors.shape[1]
         each = vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
-        moved = functools.reduce(operator.iadd, (matrix @ each for matrix in self.scalar))
+        moved = functools.reduce(operator.iadd, (matrix.symmetric_times(each) for matrix in self.scalar))
         return moved.reshape(count, 3, columns).transpose(1, 0, 2).reshape(3 * count, columns)
 
 
@@ -450,11 +448,7 @@ def times(forms: Forms, vectors: Array) -> Array:
     >>> times([stiffness(space)], np.zeros((space.size, 2))).shape == (space.size, 2)
     True
     """
-    moving, result = vectors.any(axis=1), np.zeros_like(vectors)
-    for matrix in map(_matrix, forms):
-        few = np.mean(moving) <= _FEW
-        result += matrix.transpose_times(np.flatnonzero(moving), vectors[moving]) if few else matrix @ vectors  # it is symmetric
-    return result
+    return functools.reduce(operator.iadd, (matrix.symmetric_times(vectors) for matrix in map(_matrix, forms)))
 
 
 def _matrix(form: ngsolve.BilinearForm) -> Compressed:

@@ -141,10 +141,10 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
 
 
 def _momenta(problem: _Problem, body: str) -> tuple[Array, Array]:
-    """Rigid motions R (n, 6) about a body's reference point, and the momenta M R (n, 6) of its elements alone."""
-    motion = rigid(problem.field, Frame(np.eye(3), problem.component.bodies[body]))
+    """Rigid motions R (n, 6) of a body's elements about its reference point, nought elsewhere, and their momenta M R (n, 6)."""
     law, own = next((alike.inertia, group.degrees) for alike in problem.assembled for group in alike.groups if group.name == body)
-    return motion, np.where(own[:, None], law.times(motion), 0.0)
+    motion = np.where(own[:, None], rigid(problem.field, Frame(np.eye(3), problem.component.bodies[body])), 0.0)
+    return motion, law.times(motion)
 
 
 def _seat(problem: _Problem, end: End) -> Array:
@@ -215,12 +215,14 @@ def _project(found: _Motions, report: Report) -> Superelement:
     moving: dict[str, Array] = {}
     resultants: dict[str, Array] = {}
     names, mirrors = groups(component), space.meshed.mirrors
-    twist = mirrors.twist_kinds(np.eye(3))
+    twist, everything = mirrors.twist_kinds(np.eye(3)), rigid(space, identity())
+    carried = np.zeros((basis.shape[1], 6))
     for number, part in enumerate(contributions(space, found.problem.assembled, basis)):
         report(Stage.PROJECTING, number / len(names))
         name = part.name
         elastic[name] = _symmetrise(mirrors.whole(part.strained.T @ part.forces, kinds, kinds))
         mass[name] = _symmetrise(mirrors.whole(part.motions.T @ part.momenta, kinds, kinds))
+        carried += mirrors.whole(part.momenta.T @ everything[part.rows], kinds, twist)
         if name in component.bodies:
             motion = rigid(space, Frame(np.eye(3), component.bodies[name]))[part.rows]
             bodies[name] = np.linalg.solve(found.weights[name], mirrors.whole(motion.T @ part.momenta, twist, kinds))
@@ -229,8 +231,6 @@ def _project(found: _Motions, report: Report) -> Superelement:
             link = names[name][0]
             across = mirrors.twist_kinds(component.pieces[link].frame.rotation)
             resultants[name] = mirrors.whole(_sections(found.problem, link)[part.rows].T @ part.forces, across, kinds)
-    everything = rigid(space, identity())
-    carried = mirrors.whole(basis.T @ found.problem.inertia.times(everything), kinds, twist)
     projected = {number: basis.T @ force for number, force in found.strokes.items()}
     return Superelement(
         interfaces=len(component.interfaces) + component.floats,

@@ -42,7 +42,8 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     while np.any(folded):  # ends: an element all of whose sides are straight is the mesher's own
         _flatten(shape, folded)
         lowest, highest = jacobians(mesh)
-        folded = _folded_elements(lowest, highest) & ~(kept | _flattened_edges(shape))
+        folded = _folded_elements(lowest, highest) & ~kept
+        folded[folded] = [_is_curved(shape, number) for number in np.flatnonzero(folded)]
     worst = float(np.min(lowest))
     return None if worst > 0.0 else f"a straight element is inside out, Jacobian {worst:.3g}"
 
@@ -79,14 +80,12 @@ def _shape(mesh: ngsolve.Mesh) -> ngsolve.GridFunction:
 def _flatten(shape: ngsolve.GridFunction, elements: Array) -> None:
     values = shape.vec.FV().NumPy()
     for number in np.flatnonzero(elements):
-        values[_coordinates(shape, int(number))] = 0.0
+        values[_coordinates(shape, number)] = 0.0
 
 
-def _flattened_edges(shape: ngsolve.GridFunction) -> Array:
-    values = shape.vec.FV().NumPy()
-    count = shape.space.mesh.ne
-    return np.array([not np.any(values[_coordinates(shape, number)]) for number in range(count)])
+def _is_curved(shape: ngsolve.GridFunction, number: int) -> bool:
+    return bool(np.any(shape.vec.FV().NumPy()[_coordinates(shape, number)]))
 
 
 def _coordinates(shape: ngsolve.GridFunction, number: int) -> list[int]:
-    return [dof for dof in shape.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)) if dof >= 0]
+    return [dof for dof in shape.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))) if dof >= 0]
