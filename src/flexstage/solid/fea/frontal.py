@@ -29,8 +29,11 @@ _LEAST, _UNEVEN = 0.2, 0.5
 _COLUMNS = 256
 """Columns of a trace that are added at once where its nodes lie scattered: more runs of them than this share of their number."""
 _SCATTERED = 0.12
+_EDGES = np.eye(3)
 _ACROSS = np.array([turn for turn in np.ndindex(3, 3, 3) if turn > (1, 1, 1)]) - 1.0
-"""What cuts are tried across: the edges and diagonals of a cube."""
+"""What cuts are tried across: the edges of a cube, and the edges and diagonals."""
+_SMALL = 40
+"""Elements of which fewer are cut across edges alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +51,32 @@ class Grid:
 
 
 @dataclass(frozen=True, eq=False)
+class _Place:
+    """Where `nodes` lie: in `runs` of consecutive ones, from where to where in the list, and the first of them."""
+
+    nodes: Array
+    runs: list[tuple[int, int, int]]
+
+    @staticmethod
+    def of(nodes: Array) -> _Place:
+        """Nodes in rising order."""
+        bounds = [0, *(np.flatnonzero(nodes[1:] - nodes[:-1] != 1) + 1).tolist(), len(nodes)] if len(nodes) else []
+        return _Place(nodes, [(first, last, int(nodes[first])) for first, last in pairwise(bounds)])
+
+
+@dataclass(frozen=True, eq=False)
 class _Front:
-    """Nodes `first` to `last` in the order of elimination go at this cut and leave a trace on those `beyond`; its children went before."""
+    """Nodes `first` to `last` in the order of elimination go at this cut and leave a trace on those `beyond`.
+
+    Its `children` went before; of the nodes that each left a trace on, those `near` go here, those `far` lie beyond: by their places there.
+    """
 
     first: int
     last: int
     beyond: Array
     children: tuple[int, ...]
+    near: tuple[_Place, ...]
+    far: tuple[_Place, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +120,15 @@ def dissect(grid: Grid, free: Array) -> Fronts:
         inner = () if left < 0 else (left, right)
         met = [fronts[half].beyond for half in inner] or [rank[touched[ends[start] : ends[stop]]]]
         beyond = np.unique(np.concatenate(met))
-        fronts.append(_Front(first, last, beyond[beyond >= last], inner))
+        fronts.append(_front(first, last, beyond[beyond >= last], {child: fronts[child].beyond for child in inner}))
     return Fronts(nodes, tuple(fronts))
+
+
+def _front(first: int, last: int, beyond: Array, met: dict[int, Array]) -> _Front:
+    """A front, with the nodes that each of its children left a trace on."""
+    near = tuple(_Place.of(nodes[nodes < last] - first) for nodes in met.values())
+    far = tuple(_Place.of(np.searchsorted(beyond, nodes[nodes >= last])) for nodes in met.values())
+    return _Front(first, last, beyond, tuple(met), near, far)
 
 
 _Span = tuple[int, int, int, int]
@@ -139,7 +168,7 @@ def _halves(faces: Array, places: Array) -> tuple[Array, Array]:
     last = np.zeros(int(local.max()) + 1, dtype=np.int64)
     first = np.zeros_like(last)
     least, found = np.inf, (place, place)
-    for direction in _ACROSS:
+    for direction in _EDGES if count < _SMALL else _ACROSS:
         order = np.argsort(places @ direction, kind="stable")
         met = local[order].ravel()
         last[met], first[met[::-1]] = place, place[::-1]
@@ -236,21 +265,19 @@ def _eliminate_fronts(order: Fronts, parts: list[_Entries], numbers: Array, held
         for entries in parts:
             entries.add(panel, front, local)
         panel.uncouple(np.flatnonzero(held[nodes]))
-        below = [(local[order.fronts[child].beyond], traces.pop(child)) for child in front.children]
-        factors[number], traces[number] = _eliminate(panel, _gather(panel, below))
+        trace = _gather(panel, front, [traces.pop(child) for child in front.children])
+        factors[number], traces[number] = _eliminate(panel, trace)
     return factors
 
 
-def _gather(panel: _Panel, below: list[tuple[Array, Array]]) -> Array:
-    """Add the traces of the fronts before, on the nodes that they met, to a front's own columns, and to what is beyond: a new trace."""
-    own, size = len(panel.own) // 3, len(panel.below)
-    trace = np.zeros((size, size), order="F")
-    for met, left in below:
-        cut = int(np.searchsorted(met, own))
-        near, far = _Place.of(met[:cut]), _Place.of(met[cut:] - own)
-        _add_trace(panel.own, left[: 3 * cut, : 3 * cut], near, near)
-        _add_trace(panel.below, left[3 * cut :, : 3 * cut], far, near)
-        _add_trace(trace, left[3 * cut :, 3 * cut :], far, far)
+def _gather(panel: _Panel, front: _Front, before: list[Array]) -> Array:
+    """Add the traces of the fronts before to a front's own columns, and to what is beyond: a new trace."""
+    trace = np.zeros((len(panel.below), len(panel.below)), order="F")
+    for left, near, far in zip(before, front.near, front.far, strict=True):
+        cut = 3 * len(near.nodes)
+        _add_trace(panel.own, left[:cut, :cut], near, near)
+        _add_trace(panel.below, left[cut:, :cut], far, near)
+        _add_trace(trace, left[cut:, cut:], far, far)
     return trace
 
 
@@ -275,20 +302,6 @@ class _Panel:
         self.own[own], self.own[:, own], self.below[:, own] = 0.0, 0.0, 0.0
         self.own[own, own] = diagonal
         self.below[held[len(own) :] - len(self.own)] = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class _Place:
-    """Where `nodes` lie: in `runs` of consecutive ones, from where to where in the list, and the first of them."""
-
-    nodes: Array
-    runs: list[tuple[int, int, int]]
-
-    @staticmethod
-    def of(nodes: Array) -> _Place:
-        """Nodes in rising order."""
-        bounds = [0, *(np.flatnonzero(np.diff(nodes) != 1) + 1).tolist(), len(nodes)] if len(nodes) else []
-        return _Place(nodes, [(first, last, int(nodes[first])) for first, last in pairwise(bounds)])
 
 
 def _add_trace(law: Array, trace: Array, rows: _Place, columns: _Place) -> None:
