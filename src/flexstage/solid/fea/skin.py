@@ -25,6 +25,8 @@ _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
 """Points within a triangle, in the order of its corners."""
 _CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
 """Values at the corners of what is linear, from those at the points within: 5/3 of the own less 1/3 of the others."""
+_EVEN = frozenset((order + 1) * (order + 2) * (order + 3) // 6 for order in range(1, 12))
+"""Functions of elements that are of one order."""
 _LEAST_WEIGHT = 1e-12
 _NEAR = 1e-9
 """Relative to the drawing's size: what counts as lying in a plane."""
@@ -93,25 +95,37 @@ def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
 
 
 def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Compressed:
-    """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind."""
+    """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind.
+
+    Elements whose corners are numbered in the same order have the same functions where all are of one order: those are evaluated once.
+    """
     scalar, mesh = space.space.components[0], space.meshed.mesh
     turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
     inverse = MILLIMETRES * np.linalg.inv(np.asarray(turned).reshape(len(behind), 3, 3, 3))
     weights = np.array([(a, b, 1.0 - a - b) for a, b in _WITHIN])
-    values: list[Array] = []
-    columns: list[Array] = []
-    for triangle, number in enumerate(behind):
-        element = ngsolve.ElementId(ngsolve.VOL, int(number))
+    elements = [ngsolve.ElementId(ngsolve.VOL, int(number)) for number in behind]
+    nodes = [scalar.GetDofNrs(element) for element in elements]
+    alike: dict[tuple[int, ...], list[int]] = {}
+    for triangle, element in enumerate(elements):
         members = [vertex.nr for vertex in mesh[element].vertices]
-        places = [members.index(corner) for corner in corners[triangle]]
-        function = scalar.GetFE(element)
+        places = (members.index(corner) for corner in corners[triangle])
+        own = len(nodes[triangle])
+        key = (own, *places, *np.argsort(members)) if own in _EVEN else (-triangle,)
+        alike.setdefault(key, []).append(triangle)
+    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) for each in nodes], 9))])
+    values, columns = np.empty(starts[-1]), np.empty(starts[-1], dtype=np.int64)
+    for triangles in alike.values():
+        first = triangles[0]
+        members = [vertex.nr for vertex in mesh[elements[first]].vertices]
         share = np.zeros((3, 4))
-        share[:, places] = weights
-        slopes = [np.array(function.CalcDShape(*point[:3]).NumPy()) @ own for point, own in zip(share, inverse[triangle], strict=True)]
-        values.append(np.stack(slopes).transpose(0, 2, 1).ravel())
-        columns.append(np.tile(np.array(scalar.GetDofNrs(element)), 9))
-    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) // 9 for each in columns], 9))])
-    return Compressed(starts, np.concatenate(columns), np.concatenate(values), scalar.ndof)
+        share[:, [members.index(corner) for corner in corners[first]]] = weights
+        function = scalar.GetFE(elements[first])
+        shapes = np.stack([np.array(function.CalcDShape(*point[:3]).NumPy()) for point in share])
+        slopes = (shapes @ inverse[triangles]).transpose(0, 1, 3, 2)  # by triangle, point, derivative, function
+        at = starts[9 * np.array(triangles)][:, None] + np.arange(slopes[0].size)
+        values[at] = slopes.reshape(len(triangles), -1)
+        columns[at] = np.tile(np.array([nodes[triangle] for triangle in triangles]), 9)
+    return Compressed(starts, columns, values, scalar.ndof)
 
 
 def _media(space: Field) -> Array:
