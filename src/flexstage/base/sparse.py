@@ -1,4 +1,4 @@
-"""Matrices of large stages: rows that are zero but in few columns, and what is made of many of them, without the zeros."""
+"""Matrices without their zeros: rows of large stages that are zero but in few columns, what is made of them, and those of solids."""
 
 from __future__ import annotations
 
