@@ -115,6 +115,8 @@ def test_what_is_solved_once_has_one_factor_at_a_time(monkeypatch: pytest.Monkey
     monkeypatch.setattr(frontal, "_eliminate_fronts", eliminate)
     np.testing.assert_array_equal(solve_kinds(space, law, forces), expected)
     assert len(used) == 4
+    np.testing.assert_allclose(solve_kinds(space, law, forces.some(slice(2, 3))), expected[:, 2:3], atol=1e-12 * np.abs(expected).max())
+    assert len(used) == 5
 
 
 def sparse(factor: float) -> Compressed:

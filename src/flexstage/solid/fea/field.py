@@ -550,7 +550,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Solve with the sum of forms' matrices for forces of all kinds, once: of kinds one after another no factor is kept.
+    """Solve with the sum of forms' matrices for forces of some kinds, once: kind after kind, no factor is kept.
 
     >>> from flexstage.solid.fea.bar import bar
     >>> from flexstage.solid.fea.fineness import Fineness
@@ -560,9 +560,9 @@ def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
     >>> np.array_equal(solve_kinds(space, law, forces), factorise_kinds(space, law)(forces))
     True
     """
-    result = np.empty_like(forces.values)
-    solvers = _solvers(space, forms, range(space.meshed.mirrors.copies))
-    for kind in range(space.meshed.mirrors.copies):
+    result, kinds = np.empty_like(forces.values), np.unique(forces.kinds)
+    solvers = _solvers(space, forms, kinds)
+    for kind in kinds:
         result[:, forces.kinds == kind] = next(solvers)(forces.kind(kind))
     return result
 
