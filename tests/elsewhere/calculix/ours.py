@@ -34,7 +34,7 @@ def solved(problem: Problem, mesh: PieceMesh, law: Law = Law()) -> Solution:
     """Compliance of the loaded face and the lowest frequencies."""
     space = field(mesh, [problem.held], law.order)
     elastic = stiffness(space)
-    mass = _sparse(_by_four_points(space)) if law.few_points else sparse.block_diag([inertia(space).scalar] * 3, format="csr")
+    mass = _sparse(_by_four_points(space)) if law.few_points else _mass(space)
     solve = factorise(space, elastic)
     forces = np.column_stack([_force(space, problem.loaded, axis) for axis in range(3)])
     free = np.flatnonzero(space.free)
@@ -67,6 +67,11 @@ def _force(space: Field, face: str, axis: int) -> Array:
     form += space.space.TestFunction()[axis] / area * ngsolve.ds(definedon=mesh.Boundaries(face))
     form.Assemble()
     return np.array(form.vec.FV().NumPy())
+
+
+def _mass(space: Field) -> sparse.csr_matrix:
+    (one,) = inertia(space).scalar
+    return sparse.block_diag([sparse.csr_matrix((one.values, one.columns, one.starts))] * 3, format="csr")
 
 
 def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:

@@ -237,7 +237,7 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Compressed], held: Array)
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
-    parts, met = [_Entries.of(order, matrix) for matrix in matrices], by_node.any(axis=(0, 2))
+    parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))
     apart: list[bool] = []
     for front in order.fronts:
         inner = any(apart[child] for child in front.children)

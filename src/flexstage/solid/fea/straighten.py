@@ -43,7 +43,7 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
         _flatten(shape, folded)
         lowest, highest = jacobians(mesh)
         folded = _folded_elements(lowest, highest) & ~kept
-        folded[folded] = [_is_curved(shape, number) for number in np.flatnonzero(folded)]
+        folded[folded] = [_is_curved(shape, number) for number in np.flatnonzero(folded).tolist()]
     worst = float(np.min(lowest))
     return None if worst > 0.0 else f"a straight element is inside out, Jacobian {worst:.3g}"
 
@@ -79,7 +79,7 @@ def _shape(mesh: ngsolve.Mesh) -> ngsolve.GridFunction:
 
 def _flatten(shape: ngsolve.GridFunction, elements: Array) -> None:
     values = shape.vec.FV().NumPy()
-    for number in np.flatnonzero(elements):
+    for number in np.flatnonzero(elements).tolist():
         values[_coordinates(shape, number)] = 0.0
 
 
@@ -88,4 +88,4 @@ def _is_curved(shape: ngsolve.GridFunction, number: int) -> bool:
 
 
 def _coordinates(shape: ngsolve.GridFunction, number: int) -> list[int]:
-    return [dof for dof in shape.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, int(number))) if dof >= 0]
+    return [dof for dof in shape.space.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)) if dof >= 0]
