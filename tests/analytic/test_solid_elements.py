@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import ngsolve
 import numpy as np
 import pytest
 from netgen import occ
 
 from flexstage.parts.body import Block
+from flexstage.solid.fea import skin
 from flexstage.solid.fea.component import Component, Joint
 from flexstage.solid.fea.field import apply_form, factorise, field, stiffness
 from flexstage.solid.fea.fineness import Fineness
@@ -113,3 +116,20 @@ def test_energy_error_falls_with_the_order(order):
         mesh.Refine()
     rates = np.log2(np.divide(errors[:-1], errors[1:]))
     np.testing.assert_allclose(rates, order, atol=0.25)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_derivatives_behind_a_surface_are_those_of_the_field(order):
+    """Of any function, in elements of two orders and between them."""
+    mesh = mesh_component(bar(), Fineness(neck=0.6, block=0.6, order=order))
+    finer = np.random.default_rng(order).random(mesh.mesh.ne) < 0.3
+    space = field(replace(mesh, finer=finer), [], order)
+    function = ngsolve.GridFunction(space.space.components[0])
+    function.vec.FV().NumPy()[:] = np.random.default_rng(9).standard_normal(space.size // 3)
+    elements = list(mesh.mesh.Elements(ngsolve.BND))
+    corners = np.array([[vertex.nr for vertex in element.vertices] for element in elements])
+    behind = np.array([mesh.mesh[element.faces[0]].elements[0].nr for element in elements])
+    points = mesh.mesh.MapToAllElements(ngsolve.IntegrationRule(skin._WITHIN, [0.0, 0.0, 0.0]), ngsolve.BND)
+    found = skin._gradient(space, corners, behind, points) @ np.array(function.vec.FV().NumPy())[:, None]
+    expected = 1e3 * ngsolve.BoundaryFromVolumeCF(ngsolve.Grad(function))(points)
+    np.testing.assert_allclose(found.reshape(-1, 3), expected, rtol=0, atol=1e-12 * np.abs(expected).max())
