@@ -55,6 +55,11 @@ def test_products_are_those_of_scipy(size, kind):
     np.testing.assert_allclose(matrix.symmetric_times(few), known @ few, rtol=0, atol=1e-14)
 
 
+def test_vectors_of_another_length_are_refused():
+    with pytest.raises(ValueError, match="vectors of 3 entries for a matrix of 2 columns"):
+        Compressed(np.arange(3), np.arange(2), np.ones(2), 2) @ np.ones((3, 1))
+
+
 def test_entries_of_a_row_stand_in_the_order_of_their_columns():
     random = np.random.default_rng(1)
     rows, values = random.integers(0, 7, 30), random.standard_normal(30)

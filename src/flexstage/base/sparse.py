@@ -228,14 +228,16 @@ class Compressed:
         return Compressed(starts, order, values[order], shape[1])
 
     def __matmul__(self, vectors: Array) -> Array:
-        """Times vectors (n, k)."""
+        """Times vectors (n, k). Raises `ValueError` for vectors of another length."""
+        if len(vectors) != self.width:
+            raise ValueError(f"vectors of {len(vectors)} entries for a matrix of {self.width} columns")
         rows, count = len(self.starts) - 1, vectors.shape[1]
         result = np.zeros((rows, count))
         _products().csr_matvecs(rows, self.width, count, *self._indices(), self.values, vectors.ravel(), result.ravel())
         return result
 
     def symmetric_times(self, vectors: Array) -> Array:
-        """Times vectors (n, k) of a symmetric matrix: by its columns where they are not nought, should these be few."""
+        """Times vectors (n, k), of a symmetric matrix: by those of its columns alone, should they be few, where these are not nought."""
         moving = vectors.any(axis=1)
         return self @ vectors if np.mean(moving) > _FEW else self._transpose_times(np.flatnonzero(moving), vectors[moving])
 
