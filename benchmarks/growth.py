@@ -240,6 +240,8 @@ def measure(what: str, count: int) -> None:
 
 def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None:
     """Seconds and megabytes over size, both logarithmic, as SVG."""
+    from matplotlib.ticker import LogLocator
+
     from flexstage.show.figures.export import to_svg
     from flexstage.show.figures.style import canvas, style_context
 
@@ -252,6 +254,8 @@ def draw(curves: dict[str, list[tuple[float, float, float]]], file: str) -> None
             for each in (axis.xaxis, axis.yaxis):
                 each.set_major_formatter("{x:g}")
                 each.set_minor_formatter("")
+            if place == 2:
+                axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))  # little more than a decade
         figure.legend(*axis.get_legend_handles_labels(), loc="outside right upper")
     svg = to_svg(figure, "growth", "processor time and memory over the number of bodies, designs, samples, hinges and workers")
     Path(file).write_text(re.sub(r"var\([^,]*, *([^)]*)\)", r"\1", svg).replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
