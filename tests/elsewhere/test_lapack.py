@@ -64,7 +64,7 @@ def test_entries_of_a_row_stand_in_the_order_of_their_columns():
     random = np.random.default_rng(1)
     rows, values = random.integers(0, 7, 30), random.standard_normal(30)
     known = scipy.sparse.csr_array((values, (rows, np.arange(30))), (9, 30))
-    found = Compressed.of_entries(rows, values, (9, 30))
+    found = Compressed.of_entries(rows, values, 9)
     for mine, other in ((found.starts, known.indptr), (found.columns, known.indices), (found.values, known.data)):
         np.testing.assert_array_equal(mine, other)
 

@@ -207,7 +207,7 @@ class Rows:
 class Compressed:
     """A real matrix (m, n) by rows: of row i the entries from `starts[i]` to `starts[i + 1]`, in `columns`, n being its `width`.
 
-    Products are those of `scipy.sparse`, by its bindings without what else it imports, a fifth of a second.
+    Products are those of `scipy.sparse`, by its bindings without what else it imports.
     """
 
     starts: Array
@@ -216,16 +216,16 @@ class Compressed:
     width: int
 
     @staticmethod
-    def of_entries(rows: Array, values: Array, shape: tuple[int, int]) -> Compressed:
-        """The matrix with one of the values (n,) in each column, in a row of its own choice.
+    def of_entries(rows: Array, values: Array, count: int) -> Compressed:
+        """The matrix of `count` rows with one of the values (n,) in each column, in a row of its own choice.
 
         >>> import numpy as np
-        >>> (Compressed.of_entries(np.array([1, 0]), np.array([3.0, 4.0]), (2, 2)) @ np.eye(2)).tolist()
+        >>> (Compressed.of_entries(np.array([1, 0]), np.array([3.0, 4.0]), 2) @ np.eye(2)).tolist()
         [[0.0, 4.0], [3.0, 0.0]]
         """
         order = np.argsort(rows, kind="stable")
-        starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=shape[0]))])
-        return Compressed(starts, order, values[order], shape[1])
+        starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=count))])
+        return Compressed(starts, order, values[order], len(rows))
 
     def __matmul__(self, vectors: Array) -> Array:
         """Times vectors (n, k). Raises `ValueError` for vectors of another length."""

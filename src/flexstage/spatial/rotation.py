@@ -71,7 +71,7 @@ def rotation_vector(rotation: Array) -> Array:
     a, b, c, d = a / length, b / length, c / length, d / length
     sine = math.sqrt(a * a + b * b + c * c)
     angle = 2.0 * math.atan2(sine, d)
-    scale = angle / math.sin(0.5 * angle) if angle > 1e-3 else 2.0 + angle**2 / 12.0 + 7.0 * angle**4 / 2880.0
+    scale = angle / math.sin(0.5 * angle) if angle > 0.0 else 2.0
     return scale * np.array([a, b, c])
 
 

@@ -539,14 +539,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
     True
     """
     solvers = list(_solvers(space, forms, range(space.meshed.mirrors.copies)))
-
-    def solve(forces: Columns) -> Array:
-        result = np.empty_like(forces.values)
-        for kind in np.unique(forces.kinds):
-            result[:, forces.kinds == kind] = solvers[kind](forces.kind(kind))
-        return result
-
-    return solve
+    return lambda forces: _solve_each(forces, solvers.__getitem__)
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
@@ -560,10 +553,15 @@ def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
     >>> np.array_equal(solve_kinds(space, law, forces), factorise_kinds(space, law)(forces))
     True
     """
-    result, kinds = np.empty_like(forces.values), np.unique(forces.kinds)
-    solvers = _solvers(space, forms, kinds)
-    for kind in kinds:
-        result[:, forces.kinds == kind] = next(solvers)(forces.kind(kind))
+    solvers = _solvers(space, forms, np.unique(forces.kinds))
+    return _solve_each(forces, lambda _kind: next(solvers))
+
+
+def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
+    """Displacements that forces make, kind after kind, each by its solver."""
+    result = np.empty_like(forces.values)
+    for kind in np.unique(forces.kinds):
+        result[:, forces.kinds == kind] = solver(kind)(forces.kind(kind))
     return result
 
 

@@ -143,7 +143,7 @@ def _mean_by_vertex(triangles: Array, weights: Array) -> Compressed:
     """What makes weighted means at vertices of values at the corners of all triangles."""
     count = int(triangles.max()) + 1
     shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
-    return Compressed.of_entries(triangles.ravel(), shares, (count, triangles.size))
+    return Compressed.of_entries(triangles.ravel(), shares, count)
 
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
