@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.stability import Stability, prestress, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
@@ -202,3 +202,62 @@ def test_a_repeated_load_factor_names_the_bodies_of_all_its_shapes():
     stage = double_triangle()
     wanted = tuple(f"{unit}/{body}" for unit in ("B4", "B5", "B6") for body in ("base", "tip"))
     assert stability(stage, lumped(stage)).moving == wanted
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0], ids=["pressed", "pulled"])
+def test_a_platform_on_a_strut_leans_and_tilts(side: float) -> None:
+    """A strut of length L that turns about both ends, under a platform on springs k and c: P = k L leans it, P = c / h tilts the platform.
+
+    V = (k - P / L) d^2 / 2 + (c - P h) t^2 / 2 with the load P a height h above the strut's end, k and c at that end. Upside down (the
+    platform hangs) both stiffen. The reference of the platform, away from the strut's end, couples d and t and changes nothing.
+    """
+    length, height, across, tilting = 0.05, 0.03, 4e3, 3.0
+    # The rod's own law is free of moments; the springs hold the platform sideways and against tilting, at the strut's end.
+    strut = fs.Spring(stiffness=1e9, length=length)
+    guide = fs.Spring(diagonal=(across, 1.5 * across, 0.0, tilting, 2.0 * tilting, 5.0))
+    down = np.array([0.0, 0.0, -side])
+    stage = fs.Mechanism(
+        "strut",
+        materials={},
+        parts={"strut": strut, "guide": guide},
+        bodies={"platform": fs.Body(mass=1.0, inertia=fs.Inertia(1e-3, 1e-3, 1e-3), centre=(0.01, 0.02, 0.1), reference=(0.02, 0.01, -0.01))},
+        links={
+            "strut": fs.Link(("ground", "platform"), "strut", (0.0, 0.0, 0.5 * length), Z),
+            "guide": fs.Link(("ground", "platform"), "guide", (0.0, 0.0, length), (1.0, 0.0, 0.0)),
+        },
+        forces={"load": fs.Force("platform", (0.0, 0.0, length + height), tuple(down))},
+        gravity=(0.0, 0.0, 0.0),
+    )
+    found = of(stage)
+    if side < 0.0:
+        assert np.isinf(found.dead)
+        assert found.stiffens == pytest.approx(max(1.0 / (across * length), height / tilting), rel=1e-4)
+        return
+    assert found.dead == pytest.approx(min(across * length, tilting / height), rel=1e-4)
+    high = replace(stage, forces={"load": fs.Force("platform", (0.0, 0.0, length + 0.005), (0.0, 0.0, -1.0))})
+    assert of(high).dead == pytest.approx(min(across * length, tilting / 0.005), rel=1e-4)
+
+
+@pytest.mark.parametrize("sides", [(0.0003, 0.02), (0.0002, 0.004)], ids=["wide", "narrow"])
+def test_tension_stiffens_torsion_by_the_spread_of_its_fibres(sides: tuple[float, float]) -> None:
+    """A taut strip turns about its axis against N I_p / (A L) more (Timoshenko & Gere, 1961, 5.3), times (t'^2) / (t')^2 in the mean.
+
+    Ends kept from warping: the rate of twist is t' ~ 1 - cosh(2 a x / L) / cosh(a), a = (G J / E C_w)^1/2 L / 2 = 6^1/2 L / w of a thin
+    strip without Poisson's ratio (Vlasov).
+    """
+    thickness, width, length, tension = *sides, 0.06, 1e-3
+    stage = fs.Mechanism(
+        "strip",
+        materials={"steel": STEEL},
+        parts={"leaf": fs.Leaf("steel", length, thickness, width)},
+        bodies={"platform": fs.Body(reference=(length, 0.0, 0.0))},
+        links={"leaf": fs.Link(("ground", "platform"), "leaf", (0.5 * length, 0.0, 0.0), (1.0, 0.0, 0.0), bends=Z)},
+        forces={"pull": fs.Force("platform", (length, 0.0, 0.0), (tension, 0.0, 0.0))},
+        gravity=(0.0, 0.0, 0.0),
+    )
+    model = fs.lumped(stage)
+    turn = list(model.coordinates).index("platform.rx")
+    added = (prestress(stage, model).stiffness_matrix - model.stiffness_matrix)[turn, turn]
+    end = np.tanh(a := np.sqrt(6.0) * length / width) / a
+    uneven = (1.0 - 1.5 * end + 0.5 / np.cosh(a) ** 2) / (1.0 - end) ** 2
+    assert added == pytest.approx(uneven * tension * (thickness**2 + width**2) / 12.0 / length, rel=2e-3)

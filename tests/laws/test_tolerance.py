@@ -19,7 +19,8 @@ from flexstage.studies.tolerances.allowance import allowance
 from flexstage.studies.tolerances.crosstalk import command, pose_measures, poses
 from flexstage.studies.tolerances.distribution import Distribution, Shape
 from flexstage.studies.tolerances.file import loads_tolerance
-from flexstage.studies.tolerances.slopes import slopes
+from flexstage.studies.tolerances.run import Toleranced
+from flexstage.studies.tolerances.slopes import Slopes, slopes
 from flexstage.studies.tolerances.summary import binomial, summary
 
 LEAVES = 4
@@ -143,6 +144,36 @@ tolerance = {{ copies = 2000, require = false, crosstalk = false }}
     assert found.together.share == pytest.approx(wanted, abs=4.0 * error)
     assert found.together.low < wanted < found.together.high
     assert allowance(study, results, slope, found).together == pytest.approx(1.0 / ndtri(0.99), rel=1e-9)
+    shares = np.array([int(name) for name in Toleranced(study, results, slope, found, None).responses[0].percentiles]) / 100.0
+    assert shares.tolist() == [0.01, 0.05, 0.5, 0.95, 0.99]
+    assert found.spread.percentiles[:, 0] == pytest.approx(nominal * (1.0 + 0.02 * ndtri(shares)), abs=2e-3 * nominal)
+
+
+@pytest.mark.parametrize("copies", [100, 1000])
+def test_the_usual_crosstalk_of_normal_errors_is_that_of_nineteen_in_twenty_copies(copies):
+    """Normal errors of deviation s: 95 % are within 1.96 s; the quantile's standard error is (p (1 - p) / n)^1/2 over the density there."""
+    study = loads_tolerance(
+        f"""
+format = "flexstage study 1"
+case = "double-triangle"
+tolerance = {{ copies = {copies} }}
+scatter.hole = {{ of = "parts.neck.thickness", normal = "1 um" }}
+"""
+    )
+    own = [float(name.split(".")[1:2] == name.split(".")[2:3]) for name in study.columns]
+    rng = np.random.default_rng(copies)
+    errors = 1e-3 * rng.standard_normal((copies, len(own)))
+    results = Results(np.arange(copies), np.zeros((copies, 1)), own + errors, {}, ((), ()), ((), ()), copies, {}, "")
+    flat = np.zeros((len(own), 1))
+    found = summary(study, results, Slopes(np.array(own), flat, np.ones(len(own), bool))).crosstalk
+    assert [each.kind for each in found] == ["open", "held"]
+    density = 2.0 * np.exp(-0.5 * ndtri(0.975) ** 2) / np.sqrt(2.0 * np.pi)
+    error = np.sqrt(0.95 * 0.05 / copies) / density
+    for each in found:
+        scatter = each.usual / 1e-3 - ndtri(0.975)
+        assert abs(np.mean(scatter)) < 4.0 * error / np.sqrt(scatter.size) + 0.01
+        assert np.std(scatter) == pytest.approx(error, rel=0.5)
+        assert np.all(each.worst >= each.usual)
 
 
 def test_what_is_allowed_keeps_what_is_wanted(guide):
