@@ -18,7 +18,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
-from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.compiled import kernel, tables
 from flexstage.models.nonlinear.condense import condense, settle
@@ -385,6 +385,36 @@ def test_a_flexure_without_load_answers_with_its_compliance():
     assert stiff[0, 0] == pytest.approx(0.05**2 * area / (np.pi / 4.0 * 1e-12), rel=1e-12)
     assert stiff[3, 3] == pytest.approx(1.0 / 1.3, rel=1e-12)
     assert np.allclose(stiff, stiff.T, atol=1e-9)
+
+
+def sized(size: float) -> Mechanism:
+    """A loaded guide drawn `size` times as large, its masses, modulus and forces the same; loads act off the reference of its platform."""
+    drawn = guide(mass=2.0)
+    place = size * np.array([0.1, 0.0, 0.0])
+    inertia = Inertia(*(each * size**2 for each in (1e-3, 2e-3, 3e-3)))
+    body = Body(mass=2.0, inertia=inertia, centre=tuple(place + size * np.array(AWAY)), reference=tuple(place))
+    force = UNIT * np.array([6.0, 30.0, -9.0])
+    return replace(
+        drawn,
+        materials={"steel": replace(STEEL, density=STEEL.density / size**3, expansion=1e-3)},
+        parts={"leaf": replace(LEAF, length=size * LEAF.length, thickness=size * LEAF.thickness, width=size * LEAF.width)},
+        bodies={"platform": body},
+        links={name: replace(link, at=tuple(size * np.array(link.at))) for name, link in drawn.links.items()},
+        forces={"push": Force("platform", tuple(size * np.array([0.13, 0.03, 0.05])), tuple(force))},
+        gravity=(0.0, -9.80665, 0.0),
+    )
+
+
+def test_a_stage_that_is_warm_all_over_is_one_drawn_larger():
+    """Of one material: places and tangent under weight and a force off the reference are those of a stage 1 + alpha T times as large."""
+    warm, larger = nonlinear(sized(1.0), temperature=20.0, ground="steel"), nonlinear(sized(1.02))
+    states = [equilibrium(model) for model in (warm, larger)]
+    places = [state.pose.position[0, 0] for state in states]
+    assert np.linalg.norm(places[1] - larger.reference[0]) > 1e-3
+    np.testing.assert_allclose(places[0], places[1], atol=1e-9)
+    matrices = [stiffness(state)[0] for state in states]
+    scale = np.sqrt(np.abs(np.diag(matrices[1])))
+    assert np.max(np.abs(matrices[0] - matrices[1]) / scale / scale[:, None]) < 1e-7
 
 
 def test_what_does_not_converge_is_not_a_number():
