@@ -220,7 +220,9 @@ def test_a_platform_on_a_strut_leans_and_tilts(side: float) -> None:
         "strut",
         materials={},
         parts={"strut": strut, "guide": guide},
-        bodies={"platform": fs.Body(mass=1.0, inertia=fs.Inertia(1e-3, 1e-3, 1e-3), centre=(0.01, 0.02, 0.1), reference=(0.02, 0.01, -0.01))},
+        bodies={
+            "platform": fs.Body(mass=1.0, inertia=fs.Inertia(1e-3, 1e-3, 1e-3), centre=(0.01, 0.02, 0.1), reference=(0.02, 0.01, -0.01))
+        },
         links={
             "strut": fs.Link(("ground", "platform"), "strut", (0.0, 0.0, 0.5 * length), Z),
             "guide": fs.Link(("ground", "platform"), "guide", (0.0, 0.0, length), (1.0, 0.0, 0.0)),

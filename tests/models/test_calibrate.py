@@ -133,6 +133,18 @@ def test_comments_stay_and_the_drawn_hinges_are_kept() -> None:
     assert stage.tags["parts.neck-front.compliance"].startswith("derived FEA")
 
 
+def test_the_error_of_a_calibrated_file_is_that_of_its_worst_hinge() -> None:
+    """Each part states its own, to two digits as its source has it; the file's tags the largest."""
+    errors = iter([0.02, 0.05, 0.01])
+
+    def compute(forms: Mapping[str, HingeForm]) -> dict[str, HingeSolid]:
+        return {name: replace(found, error=next(errors)) for name, found in softened(1.0)(forms).items()}
+
+    found = fs.solid.calibrate(fs.dumps(parallelogram()), compute)
+    assert {tag for tag in fs.loads(found.text).tags.values() if tag.startswith("derived FEA")} == {"derived FEA within 5 %"}
+    assert sorted(part.source.rpartition("error ")[2] for part in found.parts.values()) == ["1 %", "2 %", "5 %"]
+
+
 def test_tags_of_the_drawn_hinge_follow_it() -> None:
     stage = double_triangle()
     after = fs.loads(fs.solid.calibrate(fs.dumps(stage), softened(1.0)).text)

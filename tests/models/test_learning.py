@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
 import scipy
 
 from flexstage.base.finding import DesignError
@@ -11,7 +12,7 @@ from flexstage.cases.registry import case
 from flexstage.control.closed import loop
 from flexstage.control.export.files import path_file
 from flexstage.control.figures.time import lesson_figure
-from flexstage.control.learning.learn import fade_ends, filter_path, robust_band
+from flexstage.control.learning.learn import fade_ends, filter_path, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, readings, through
 from flexstage.control.learning.shaper import zv, zvd
 from flexstage.control.study.checks import setup_findings
@@ -162,6 +163,18 @@ def test_the_inverse_leaves_nothing_of_a_slow_path():
         for follow in (None, FollowSetup(Following.INVERSE))
     )
     assert inverted < 1e-2 * plain  # what is left is beyond the band
+
+
+def test_gauges_of_a_first_order_show_the_true_path_late():
+    """Of a slow cosine step, a gauge with a corner frequency shows the response of that lag."""
+    corner, count = 200.0, 2000
+    resolved, control, closed = closed_of("parallelogram", gauges=GaugeSetup(resolution=0.0, bandwidth=corner))
+    time = np.arange(count) / resolved.rate
+    path = 0.5 * (1.0 - np.cos(np.pi * np.clip((time - 0.05) / 0.04, 0.0, 1.0)))
+    seen = lsim(([1.0], [1.0 / (2.0 * np.pi * corner), 1.0]), U=path, T=time)[1]
+    found = wanted_readings(closed, control.system, 1e-6 * path[:, None], 800.0)[:, 0]
+    assert found == pytest.approx(1e-6 * seen, abs=2e-10)
+    assert np.max(np.abs(seen - path)) > 0.03
 
 
 def test_a_shaped_step_rings_less():
