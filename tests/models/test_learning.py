@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import lsim
 import scipy
+from scipy.signal import lsim
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
