@@ -46,6 +46,9 @@ def test_every_corner_lies_within_the_budget(name):
     errors = np.abs(strokes @ gain.T - asked)
     bound = found.ideal.values[:, 0] + found.ideal.values[:, 1]
     assert np.all(errors <= bound * (1.0 + 1e-9) + 1e-18)
+    own = [kinematics.jacobian.values[:, [each]] @ kinematics.mapping.values[[each]] for each in range(len(kinematics.actuators))]
+    lost = sum(part * loss for part, loss in zip(own, np.diag(lost_motion(kinematics, model).loss.values), strict=True))
+    np.testing.assert_allclose(found.ideal.values[:, 0], np.abs(lost) @ np.array(list(command.values())), rtol=1e-9, atol=1e-18)
     wanted = np.linalg.lstsq(kinematics.mapping.values, strokes.T, rcond=None)[0]
     corrected = (gain @ lost_motion(kinematics, model).correction.values @ wanted).T
     left = np.abs(corrected - asked)

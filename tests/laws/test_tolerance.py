@@ -143,7 +143,9 @@ tolerance = {{ copies = 2000, require = false, crosstalk = false }}
     error = np.sqrt(wanted * (1.0 - wanted) / 2000)
     assert found.together.share == pytest.approx(wanted, abs=4.0 * error)
     assert found.together.low < wanted < found.together.high
-    assert allowance(study, results, slope, found).together == pytest.approx(1.0 / ndtri(0.99), rel=1e-9)
+    allowed = allowance(study, results, slope, found)
+    assert allowed.together == pytest.approx(1.0 / ndtri(0.99), rel=1e-9)
+    assert allowed.then.share == pytest.approx(0.99, abs=4.0 * np.sqrt(0.99 * 0.01 / 2000))
     shares = np.array([int(name) for name in Toleranced(study, results, slope, found, None).responses[0].percentiles]) / 100.0
     assert shares.tolist() == [0.01, 0.05, 0.5, 0.95, 0.99]
     assert found.spread.percentiles[:, 0] == pytest.approx(nominal * (1.0 + 0.02 * ndtri(shares)), abs=2e-3 * nominal)
@@ -174,6 +176,31 @@ scatter.hole = {{ of = "parts.neck.thickness", normal = "1 um" }}
         assert abs(np.mean(scatter)) < 4.0 * error / np.sqrt(scatter.size) + 0.01
         assert np.std(scatter) == pytest.approx(error, rel=0.5)
         assert np.all(each.worst >= each.usual)
+
+
+def test_contributions_are_shares_of_the_variance(guide):
+    """k ~ E t^3: deviations of 6 % of E and 1 % of t have variances 36 : 9, by derivatives and by copies that scatter in one alone."""
+    study = guide(
+        '[scatter]\nsteel = { of = "materials.steel.young", normal = "6 %" }\nwire = { of = "leaf.thickness", normal = "1 %" }', copies=512
+    )
+    slope, results = slopes(study), told(study)
+    found = summary(study, results, slope).spread
+    assert found.by_slope[:, 0] == pytest.approx([0.8, 0.2], abs=1e-3)
+    assert found.by_sample[:, 0] == pytest.approx([0.8, 0.2], abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("entry", "reach", "by_slope"),
+    [('normal = "30 %", within = "90 %"', 1.0 - (1.0 - 0.3 * ndtri(0.9)) ** 3, False), ('uniform = "3 %"', 3.0 * 0.8 * 0.03, True)],
+)
+def test_the_reach_of_a_response_is_its_one_sided_quantile(guide, entry, reach, by_slope):
+    """k ~ t^3 of nine copies in ten falls no further: from the sample where it is not linear in t, else by the deviations' distribution."""
+    limit = 'limits."stiffness.x" = "at least 1 N/mm"\n'
+    study = guide(f'{limit}scatter.wire = {{ of = "leaf.thickness", {entry} }}', copies=1024, wishes=', yield = "90 %"')
+    slope, results = slopes(study), told(study)
+    found = allowance(study, results, slope, summary(study, results, slope))
+    assert found.by_slope.tolist() == [by_slope]
+    assert found.reach[0] / slope.values[0] == pytest.approx(reach, rel=0.02)
 
 
 def test_what_is_allowed_keeps_what_is_wanted(guide):
