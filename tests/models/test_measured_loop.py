@@ -13,6 +13,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.closed import Cut, loop
 from flexstage.control.electronics import hardware
+from flexstage.control.measured_margins import MeasuredMargins, measured_margins
 from flexstage.control.noise import noise_budget
 from flexstage.control.plants import Plant
 from flexstage.control.simulation.machine import machine, without_limits
@@ -43,8 +44,10 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
 from flexstage.models.lumped import lumped
+from tests.conftest import FULL
 from tests.models.synthetic_records import record, truth
 
+COPIES = 200 if FULL else 24
 SHAKEN = VibrationSetup(criterion=Criterion("VC-D"))
 SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN))
 
@@ -144,6 +147,32 @@ def test_a_loop_of_six_axes_designed_on_a_record_with_delay_is_the_one_of_the_tr
 @pytest.mark.full
 def test_a_loop_of_six_axes_designed_at_uneven_lines_is_the_one_of_the_truth() -> None:
     compared(double_triangle(), swept(double_triangle(), np.geomspace(30.0, 700.0, 1500), 200e-6), 200e-6)
+
+
+def test_intervals_of_margins_hold_the_truth_and_are_no_wider_than_errors_are() -> None:
+    """Responses with the errors that their coherence states, drawn again and again: gain, phase and rejection of the loop on each."""
+    stage, error, averages = parallelogram(), 0.01, 50
+    lines = np.geomspace(20.0, 2000.0, 160)
+    test = swept(stage, lines, 60e-6, noise=0.0)
+    studied = loop_study(stage, SETUP, test=test)
+    closed = loop(studied.plant, studied.controller.system)
+    stored = test.found.responses
+    coherence = np.full(stored.values.shape, 1.0 / (1.0 + averages * error**2))
+
+    def read(noise: float, seed: int) -> MeasuredMargins:
+        draw = np.random.default_rng(seed).standard_normal((2, *stored.values.shape)) * np.sqrt(0.5)
+        values = stored.values * (1.0 + noise * (draw[0] + 1j * draw[1]))
+        seen = replace(stored, values=values, coherence=coherence, averages=averages)
+        return measured_margins(closed, replace(test, test=seen, found=replace(test.found, responses=seen)), studied.plant)
+
+    exact, found = read(0.0, 0), [read(error, seed) for seed in range(COPIES)]
+    for name in ("gain_high", "phase", "rejection"):
+        (truth,), rows = ([getattr(margins.loops["x"], name) for margins in group] for group in ([exact], found))
+        inside = np.mean([each.low <= truth.value <= each.high for each in rows])
+        assert inside >= 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / COPIES)
+        half = 0.5 * np.mean([each.high - each.low for each in rows])
+        spread = np.std([each.value for each in rows], ddof=1)
+        assert 0.85 < half / (1.96 * spread) < 1.45
 
 
 def test_responses_of_records_are_as_far_off_as_they_say_at_resonances_too() -> None:
