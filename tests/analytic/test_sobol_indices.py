@@ -13,8 +13,8 @@ TOGETHER = B**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
 VARIANCE = ALONE.sum() + TOGETHER
 
 
-def ishigami(sampling: Sampling, count: int) -> Effects:
-    plan = Plan(sampling, 3, count=count, seed=1)
+def ishigami(sampling: Sampling, count: int, seed: int = 1) -> Effects:
+    plan = Plan(sampling, 3, count=count, seed=seed)
     at = np.pi * (2.0 * shares(plan, 0, plan.designs) - 1.0)
     value = np.sin(at[:, 0]) + A * np.sin(at[:, 1]) ** 2 + B * at[:, 2] ** 4 * np.sin(at[:, 0])
     names, units = (("a", "b", "c"), ("y", "still")), (("", "", ""), ("", ""))
@@ -42,3 +42,23 @@ def test_correlation_ratios_of_other_plans(sampling):
 def test_a_handful_of_designs_tells_no_shares():
     found = ishigami(Sampling.LATIN_HYPERCUBE, 6)
     assert np.all(np.isnan(found.first))
+
+
+def test_stated_standard_errors_are_the_scatter_of_the_indices():
+    """Of the index that scatters most, over independent plans; the scatter of Sobol points is at most that of random ones."""
+    found = [ishigami(Sampling.SALTELLI, 256, seed) for seed in range(40)]
+    every = np.array([np.concatenate([each.first[:, 0], each.total[:, 0]]) for each in found])
+    scatter = np.max(np.std(every, axis=0, ddof=1))
+    assert 0.3 < scatter / np.mean([each.errors[0, 0] for each in found]) < 1.2
+
+
+def test_correlation_ratios_are_without_bias():
+    """Half of the variance is a step at the middle, the rest is chance: the ratio is 1/2 in the mean of responses, however few designs."""
+    plan = Plan(Sampling.MONTE_CARLO, 1, count=64, seed=3)
+    at = shares(plan, 0, 64)
+    step = np.where(at > np.median(at), 1.0, -1.0)
+    values = step + np.random.default_rng(0).standard_normal((64, 4000))
+    names, units = (("a",), tuple(f"y{n}" for n in range(4000))), (("",), ("",) * 4000)
+    found = effects(Results(np.arange(64), at, values, {}, names, units, 64, {}, ""), plan).first[0]
+    noise = np.mean(np.var(values - step, axis=0))
+    assert np.mean(found) == pytest.approx(1.0 / (1.0 + noise), abs=0.005)
