@@ -4,8 +4,11 @@ import asyncio
 import base64
 import contextlib
 import os
+import random
 import signal
+import types
 from dataclasses import replace
+from typing import Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 import pytest
@@ -579,7 +582,10 @@ def test_strangers_are_refused(studio):
     async def all_of_it():
         assert await status("/socket", Origin="http://evil.example") == 403
         assert await status("/socket") == 403
+        own = f"Upgrade: websocket\r\nConnection: Upgrade\r\nOrigin: http://{host}\r\nOrigin: http://{host}"
+        assert b" 403 " in (await _got(server.port, "/socket", f"{host}\r\n{own}")).split(b"\r\n")[0]
         assert await closed(encode(say.Hello("wrong", say.VERSION))) == 1008
+        assert await closed(encode(say.Hello("", say.VERSION)).replace('""', '"\\ud800"')) == 1008
         assert await closed(encode(say.Undo(1))) == 1008
         assert await closed("x" * 10) == 1008
         assert await closed("x" * (LARGEST + 1)) == 1009
@@ -589,7 +595,7 @@ def test_strangers_are_refused(studio):
         assert server.token.encode() not in page
         assert b" 403 " in (await _got(server.port, "/", "evil.example")).split(b"\r\n")[0]
         assert b" 403 " in (await _got(server.port, "/", f"evil.example:{server.port}")).split(b"\r\n")[0]
-        for path in ("/../pyproject.toml", "/protocol.py", "/static/studio.js", "/report/../guide.toml", "/%2e%2e/a", "//studio.js"):
+        for path in ("/../pyproject.toml", "/protocol.py", "/static/studio.js", "/report/../guide.toml", "/%2e%2e/a", "//studio.js", "//["):
             assert b" 404 " in (await _got(server.port, path)).split(b"\r\n")[0], path
 
     do(all_of_it())
@@ -606,6 +612,9 @@ async def test_nonsense_of_a_page_is_answered(page, studio):
     assert said.problems
     said = await page.ask(say.Rest, address=THICKNESS, value=-1.0)
     assert isinstance(said, say.Refusal)
+    for low, high in ((0.0, 1.0), (-1e308, 1.0), (2.0, 1.0), (1.0, 1e308)):
+        said = await page.ask(say.Respond, inputs=(), outputs=(), low=low, high=high)
+        assert "is no band" in said.problems[0].what
 
 
 STUDY = """format = "flexstage study 1"
@@ -670,6 +679,40 @@ if "--record" in words:
     print("on", words[words.index("--record") + 1])
 pathlib.Path(words[words.index("--report") + 1]).write_text("")
 """
+
+
+@on_page
+async def test_random_requests_are_answered_and_none_of_them_is_a_failure_of_the_program(page, studio):
+    """All kinds but those that start a long computation, with values that their fields may have."""
+    chance = random.Random(3)  # noqa: S311 nothing secret
+    some = {
+        str: [THICKNESS, "left", "platform.x", "B", "", "1 mm", "+10 %", "\0", "x" * 5000],
+        int: [0, -1, 7, 2**53 - 1],
+        float: [0.0, 1e-3, -1.0, 1e308, -1e308, 5e-324],
+    }
+
+    def value(hint):
+        origin, inner = get_origin(hint), get_args(hint)
+        if origin in (types.UnionType, Union):
+            return value(chance.choice(inner))
+        if origin is Literal:
+            return chance.choice(inner)
+        if origin is tuple:
+            return tuple(value(inner[0]) for _ in range(chance.randrange(3)))
+        if origin is dict:
+            return {value(str): value(inner[1]) for _ in range(chance.randrange(3))}
+        return chance.choice(some[hint]) if hint in some else chance.random() < 0.5 if hint is bool else None
+
+    kinds = sorted({*get_args(say.Request)} - {say.Hello, say.Run, say.Derive, say.Travel, say.Save}, key=lambda each: each.__name__)
+    for _ in range(400 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 40):
+        kind = chance.choice(kinds)
+        fields = {name: value(hint) for name, hint in get_type_hints(kind).items() if name != "id"}
+        said = await page.ask(kind, **fields)
+        assert not any("flexstage failed" in each.what for each in getattr(said, "problems", ())), (kind, fields, said)
+    await page.ask(say.Look, panes=())
+    long = await page.ask(say.Run, command="identify", study=None, record="x" * 5000, options=())
+    assert isinstance(long, say.Refusal)
+    assert "no such record" in long.problems[0].what
 
 
 @on_page

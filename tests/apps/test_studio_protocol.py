@@ -45,6 +45,13 @@ VALUES = st.recursive(
 )
 
 
+ANY = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.just(10**400) | st.floats() | st.text(st.characters(exclude_categories=()), max_size=3),
+    lambda inner: st.lists(inner, max_size=2) | st.dictionaries(st.sampled_from("ab"), inner, max_size=2),
+    max_leaves=3,
+)
+
+
 @given(VALUES, VALUES)
 @example("a" * 200, "a" * 63 + "b" * 3 + "a" * 134)
 @example("a" * 200, "a" * 190)
@@ -95,6 +102,14 @@ def test_arrays_keep_every_bit():
         '{"kind": "undo", "id": true}',
         '{"kind": "undo", "id": 1, "more": 2}',
         '{"kind": "drag", "id": 1, "address": "a", "value": "1"}',
+        '{"kind": "drag", "id": 1, "address": "a", "value": NaN}',
+        '{"kind": "drag", "id": 1, "address": "a", "value": 1e999}',
+        '{"kind": "drag", "id": 1, "address": "a", "value": 1' + 400 * "0" + "}",
+        '{"kind": "cancel", "id": 1, "job": 1' + 400 * "0" + "}",
+        '{"kind": "cancel", "id": -9007199254740993, "job": 1}',
+        '{"kind": "edit", "id": 1, "text": "\\ud800", "revision": 1}',
+        '{"kind": "run", "id": 1, "command": "loop", "study": null, "record": 0, "options": []}',
+        '{"kind": "run", "id": 1, "command": ["loop"], "study": null, "record": null, "options": []}',
         '{"kind": "run", "id": 1, "command": "rm", "study": null, "record": null, "options": []}',
         "[" * 100_000,
     ],
@@ -102,6 +117,17 @@ def test_arrays_keep_every_bit():
 def test_what_is_no_request_is_refused(text):
     with pytest.raises(DesignError, match="Reload the page"):
         decode(text)
+
+
+@given(st.sampled_from(get_args(protocol.Request)), st.data())
+def test_any_message_is_a_request_or_refused(kind, data):
+    """Every field with what JSON can hold; what is read is sent again as it came."""
+    text = json.dumps({name: data.draw(ANY) for name in wire._hints(kind)} | {"kind": kind.__name__.lower()})
+    try:
+        found = decode(text)
+    except DesignError:
+        return
+    assert decode(encode(found)) == found
 
 
 def test_what_the_server_says_is_no_request():

@@ -83,6 +83,12 @@ def problem(finding: Finding) -> Problem:
     return Problem(finding.where, finding.what, finding.advice)
 
 
+def failure(task: str, error: Exception) -> Problem:
+    """An error of the program itself."""
+    what = f"flexstage failed at it, and that is its fault, not your design's: {type(error).__name__}: {error}"
+    return Problem(task, what, "Save the design, and report it with this message")
+
+
 @one_thread
 def work(line: Line, task: str, *arguments: Any) -> Outcome:
     """Do a task; what goes wrong is told, whatever it is."""
@@ -96,8 +102,7 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
         value, problems = None, (Problem(task, "there is not enough memory for it", "Close other programs, or make the design smaller"),)
     except Exception as error:  # noqa: BLE001 (one question that fails is no reason to lose the others)
         traceback.print_exc()
-        what = f"flexstage failed at it, and that is its fault, not your design's: {type(error).__name__}: {error}"
-        value, problems = None, (Problem(task, what, "Save the design, and report it with this message"),)
+        value, problems = None, (failure(task, error),)
     return Outcome(value, problems, time.process_time() - start)
 
 

@@ -70,9 +70,11 @@ class Jobs:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
             raise refuse(request.command, "it needs a study: what varies, and what is wanted", "Write one, see docs/studies.md")
-        if (request.record or request.command == "identify") and not (request.record and (self._path.parent / request.record).is_file()):
+        if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
             raise refuse(request.command, "there is no such record", "Name a file, from the folder of the design")
         for option in request.options:
+            if "\0" in option:
+                raise refuse(request.command, "an option has a null character", "Leave it out")
             if option.partition("=")[0] in _WRITING:
                 raise refuse(request.command, f"{option} writes a file, which is the studio's to choose", "Leave it out")
         number = len(self._jobs) + 1
@@ -83,6 +85,11 @@ class Jobs:
         task.add_done_callback(self._work.discard)
         self._push()
         return number
+
+    def _is_file(self, record: str) -> bool:
+        with contextlib.suppress(OSError, ValueError):  # a name that is none
+            return (self._path.parent / record).is_file()
+        return False
 
     def cancel(self, number: int) -> None:
         """End a job; refused for a number that is none."""

@@ -45,7 +45,7 @@ from flexstage.apps.studio.protocol import (
 )
 from flexstage.apps.studio.reading import design, problems_of
 from flexstage.apps.studio.wire import floats
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array
 from flexstage.mechanism.store.lines import line_numbers, line_of
@@ -222,6 +222,8 @@ def _strokes(found: SingleAxis) -> Iterator[Stroke]:
 def _response(known: Bench, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
     model = known.felt.model
+    if low is not None and high is not None and not 0.0 < low < high < np.sqrt(np.finfo(float).max):
+        raise refuse("response", f"{low:g} Hz to {high:g} Hz is no band", "Give a low frequency above zero and a higher one")
     grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
     return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
 

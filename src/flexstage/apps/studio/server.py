@@ -7,7 +7,6 @@ import contextlib
 import http
 import os
 import secrets
-import urllib.parse
 from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
@@ -116,10 +115,9 @@ class Studio:
         hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
         if request.headers.get_all("Host") not in [[host] for host in hosts]:
             return _answer(http.HTTPStatus.FORBIDDEN, "This server answers its own computer only.\n")
-        path = urllib.parse.urlsplit(request.path).path
+        path = request.path.partition("?")[0]
         if path == "/socket":
-            origin = request.headers.get("Origin", "")
-            if origin not in {f"http://{host}" for host in hosts}:
+            if request.headers.get_all("Origin") not in [[f"http://{host}"] for host in hosts]:
                 return _answer(http.HTTPStatus.FORBIDDEN, "This socket answers the studio's own page only.\n")
             if len(self._pages) >= _PAGES:
                 return _answer(http.HTTPStatus.SERVICE_UNAVAILABLE, f"{_PAGES} windows are open; close one.\n")

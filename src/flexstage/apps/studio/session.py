@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.engine import Outcome, Reading, problem
+from flexstage.apps.studio.engine import Outcome, Reading, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs
@@ -113,6 +113,8 @@ class Session:
             tell(say.Refusal(request.id, error.problems))
         except DesignError as error:
             tell(say.Refusal(request.id, tuple(map(problem, error.findings))))
+        except Exception as error:  # noqa: BLE001 (one request that fails is no reason to lose the others)
+            tell(say.Refusal(request.id, (failure(type(request).__name__.lower(), error),)))
 
     async def _edit(self, request: say.Edit, page: int, tell: Tell) -> None:
         try:

@@ -6,6 +6,7 @@ import base64
 import functools
 import json
 import math
+import re
 import types
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -17,6 +18,9 @@ from flexstage.base.finding import refuse
 
 _ADVICE = "Reload the page: it is of another version than its server"
 _Kinds: TypeAlias = Mapping[str, type]
+_LARGEST = 2**53 - 1
+"""The largest integer that a page and this server read alike."""
+_SURROGATE = re.compile("[\ud800-\udfff]")
 _BLOCK = 64
 """Letters that are compared at once."""
 FOLLOWING = (protocol.State, protocol.Scene, protocol.Figures, protocol.Verdicts, protocol.Reach, protocol.Cautions, protocol.Jobs)
@@ -210,17 +214,24 @@ def _value(hint: Any, found: Any, where: str) -> Any:
         return _record(hint, found, where)
     if hint is Any:
         return found
-    if hint is float:
-        return float(found) if isinstance(found, (int, float)) and not isinstance(found, bool) else _wrong(where, found)
-    return found if type(found) is hint else _wrong(where, found)
+    if hint is float and type(found) is int:
+        found = float(found) if abs(found) <= _LARGEST else found
+    return found if type(found) is hint and _is_sound(found) else _wrong(where, found)
+
+
+def _is_sound(found: Any) -> bool:
+    """Whether a value is what JSON has in any language: a finite float, an integer that a float holds exactly, text that is Unicode."""
+    if isinstance(found, float):
+        return math.isfinite(found)
+    return abs(found) <= _LARGEST if isinstance(found, int) else not isinstance(found, str) or _SURROGATE.search(found) is None
 
 
 def _of_union(hints: tuple[Any, ...], found: Any, where: str) -> Any:
-    """Of a union: null, a text, or what is left."""
+    """The value by the one of a union's hints that its type fits, by the last one where none does."""
     if found is None and type(None) in hints:
         return None
-    rest = [hint for hint in hints if hint is not type(None) and (hint is not str or isinstance(found, str))]
-    return _value(str if str in rest else rest[-1], found, where)
+    rest = [hint for hint in hints if hint is not type(None)]
+    return _value(str if str in rest and isinstance(found, str) else rest[-1], found, where)
 
 
 def _of(kind: type, found: Any, where: str) -> Any:
@@ -235,4 +246,13 @@ def _record(kind: Any, found: Any, where: str) -> Any:
 
 
 def _wrong(where: str, found: Any) -> Any:
-    raise refuse(where, f"found {type(found).__name__} where something else is expected", _ADVICE)
+    raise refuse(where, f"found {_shown(found)} where something else is expected", _ADVICE)
+
+
+def _shown(found: Any) -> str:
+    """A value that its field cannot have: what is out of range by that, others by their kind."""
+    if type(found) is int and abs(found) > _LARGEST:
+        return f"an integer of {len(str(abs(found)))} digits"
+    if isinstance(found, str) and not _is_sound(found):
+        return "text with half a surrogate pair"
+    return f"{found}" if isinstance(found, float) else type(found).__name__
