@@ -1,10 +1,12 @@
 """A page of the studio without a browser: it asks, and keeps what it is told."""
 
 import asyncio
+import contextlib
 import threading
 from contextlib import contextmanager
 
 from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.server import Studio
@@ -26,7 +28,7 @@ class Page:
 
     async def _listen(self):
         hearer = Hearer()
-        async for text in self.connection:
+        async for text in _texts(self.connection):
             self.bytes += len(text)
             message = hearer.decode(text)
             kind = type(message)
@@ -68,6 +70,24 @@ class Page:
     async def close(self):
         await self.connection.close()
         self._listener.cancel()
+
+    async def edit_on(self, text):
+        """Edit until the connection ends: the number of the last edit that was acknowledged, and of the last one that was sent."""
+        known = number = 0
+        with contextlib.suppress(ConnectionClosed):
+            while not self._listener.done():
+                number += 1
+                answer = asyncio.ensure_future(self.begin(say.Edit, text=text(number), revision=self.state.revision))
+                await asyncio.wait([answer, self._listener], return_when=asyncio.FIRST_COMPLETED)
+                known = number if answer.done() and isinstance(answer.result()[1], say.Done) else known
+        return known, number
+
+
+async def _texts(connection):
+    """What is heard until the connection ends, however it does."""
+    with contextlib.suppress(ConnectionClosed):
+        async for text in connection:
+            yield text
 
 
 async def opened(studio, token=None):

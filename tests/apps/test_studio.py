@@ -155,6 +155,74 @@ async def test_a_mistake_is_told_at_its_line_and_the_last_design_stays(page, stu
     assert "not TOML" in page.state.problems[0].what
 
 
+ERRORS = {
+    "require.frequency.platfrm.1": ("[require]", '"frequency.platfrm.1" = "at least 3 Hz"'),
+    "require.mass": ("[require]", 'mass = "at most 3 Hz"'),
+    "require.stroke.x": ("[require]", '"stroke.x" = "at least 1 um at nowhere"'),
+    "paths.out.drive": ("[paths.out]", 'drive = "platform.q"\nto = ["0 mm", "1 mm"]\npoints = 3'),
+    "tags": ("[tags]", '"parts.nothing" = "assumed"'),
+    "links.extra": ("[links.extra]", 'joins = ["ground", "platform"]\npart = "nothing"\nat = ["0 mm", "0 mm", "0 mm"]'),
+}
+
+
+@pytest.mark.parametrize("where", ERRORS)
+def test_an_error_in_any_table_is_shown_at_its_line(studio, where):
+    """When it is typed, and when the file is opened with it: the text is not sound, and figures are not of its revision."""
+    head, row = ERRORS[where]
+    wrong = TEXT.replace(f"{head}\n", f"{head}\n{row}\n", 1) if f"{head}\n" in TEXT else f"{TEXT}\n{head}\n{row}\n"
+
+    def is_shown(page):
+        problems = page.state.problems
+        rows = page.state.text.splitlines()
+        assert not page.state.sound
+        assert any(
+            each.line and (row.split(" =")[0] in rows[each.line - 1] or rows[each.line - 1] in f"{head}\n{row}") for each in problems
+        )
+
+    async def typed(page):
+        before = page.told[say.Figures]
+        await page.ask(say.Edit, text=wrong, revision=page.state.revision)
+        await page.until(lambda page: page.state.text == wrong)
+        is_shown(page)
+        assert page.told[say.Figures] == before
+        assert page.told[say.Figures].revision != page.state.revision
+
+    async def at_first(page):
+        await page.until(lambda page: say.State in page.told and page.told[say.Engine].state == "ready")
+        is_shown(page)
+        assert say.Figures not in page.told
+        await page.ask(say.Edit, text=TEXT, revision=page.state.revision)
+        await page.settle()
+        assert (page.state.sound, page.state.problems, page.told[say.Verdicts].revision) == (True, (), page.state.revision)
+
+    on_page(lambda page, _: typed(page))(studio)
+    if where != "require.mass":
+        return
+    path = studio[0].session.stored.path
+    path.write_text(wrong, encoding="utf-8")
+    with served(path) as (other, do):
+
+        async def opened_first():
+            page = await opened(other)
+            try:
+                await at_first(page)
+            finally:
+                await page.close()
+
+        do(opened_first())
+
+
+@on_page
+async def test_a_stage_that_its_load_buckles_is_an_error_though_its_text_is_sound(page, studio):
+    await page.ask(say.Edit, text=dumps(upright(500.0)), revision=page.state.revision)
+    await page.until(lambda page: page.state.name != "guide" and page.state.problems)
+    assert not page.state.sound
+    assert "does not hold" in page.state.problems[0].what
+    await page.ask(say.Undo)
+    await page.settle()
+    assert (page.state.sound, page.state.problems) == (True, ())
+
+
 @on_page
 async def test_a_wrong_unit_is_refused_in_the_words_of_the_checks(page, studio):
     for text, words in (("3 kg", "a mass, where a length is expected"), ("0.4", "without a unit"), ("-1 mm", "not greater than 0 mm")):
@@ -602,6 +670,40 @@ def test_strangers_are_refused(studio):
 
 
 @on_page
+async def test_random_requests_are_answered_and_none_of_them_is_a_failure_of_the_program(page, studio):
+    """All kinds but those that start a long computation, with values that their fields may have."""
+    chance = random.Random(3)  # noqa: S311 nothing secret
+    some = {
+        str: [THICKNESS, "left", "platform.x", "B", "", "1 mm", "+10 %", "\0", "x" * 5000],
+        int: [0, -1, 7, 2**53 - 1],
+        float: [0.0, 1e-3, -1.0, 1e308, -1e308, 5e-324],
+    }
+
+    def value(hint):
+        origin, inner = get_origin(hint), get_args(hint)
+        if origin in (types.UnionType, Union):
+            return value(chance.choice(inner))
+        if origin is Literal:
+            return chance.choice(inner)
+        if origin is tuple:
+            return tuple(value(inner[0]) for _ in range(chance.randrange(3)))
+        if origin is dict:
+            return {value(str): value(inner[1]) for _ in range(chance.randrange(3))}
+        return chance.choice(some[hint]) if hint in some else chance.random() < 0.5 if hint is bool else None
+
+    kinds = sorted({*get_args(say.Request)} - {say.Hello, say.Run, say.Derive, say.Travel, say.Save}, key=lambda each: each.__name__)
+    for _ in range(400 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 40):
+        kind = chance.choice(kinds)
+        fields = {name: value(hint) for name, hint in get_type_hints(kind).items() if name != "id"}
+        said = await page.ask(kind, **fields)
+        assert not any("flexstage failed" in each.what for each in getattr(said, "problems", ())), (kind, fields, said)
+    await page.ask(say.Look, panes=())
+    long = await page.ask(say.Run, command="identify", study=None, record="x" * 5000, options=())
+    assert isinstance(long, say.Refusal)
+    assert "no such record" in long.problems[0].what
+
+
+@on_page
 async def test_nonsense_of_a_page_is_answered(page, studio):
     page._answers[0] = asyncio.get_running_loop().create_future()
     await page.connection.send('{"kind": "nothing"}')
@@ -679,40 +781,6 @@ if "--record" in words:
     print("on", words[words.index("--record") + 1])
 pathlib.Path(words[words.index("--report") + 1]).write_text("")
 """
-
-
-@on_page
-async def test_random_requests_are_answered_and_none_of_them_is_a_failure_of_the_program(page, studio):
-    """All kinds but those that start a long computation, with values that their fields may have."""
-    chance = random.Random(3)  # noqa: S311 nothing secret
-    some = {
-        str: [THICKNESS, "left", "platform.x", "B", "", "1 mm", "+10 %", "\0", "x" * 5000],
-        int: [0, -1, 7, 2**53 - 1],
-        float: [0.0, 1e-3, -1.0, 1e308, -1e308, 5e-324],
-    }
-
-    def value(hint):
-        origin, inner = get_origin(hint), get_args(hint)
-        if origin in (types.UnionType, Union):
-            return value(chance.choice(inner))
-        if origin is Literal:
-            return chance.choice(inner)
-        if origin is tuple:
-            return tuple(value(inner[0]) for _ in range(chance.randrange(3)))
-        if origin is dict:
-            return {value(str): value(inner[1]) for _ in range(chance.randrange(3))}
-        return chance.choice(some[hint]) if hint in some else chance.random() < 0.5 if hint is bool else None
-
-    kinds = sorted({*get_args(say.Request)} - {say.Hello, say.Run, say.Derive, say.Travel, say.Save}, key=lambda each: each.__name__)
-    for _ in range(400 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 40):
-        kind = chance.choice(kinds)
-        fields = {name: value(hint) for name, hint in get_type_hints(kind).items() if name != "id"}
-        said = await page.ask(kind, **fields)
-        assert not any("flexstage failed" in each.what for each in getattr(said, "problems", ())), (kind, fields, said)
-    await page.ask(say.Look, panes=())
-    long = await page.ask(say.Run, command="identify", study=None, record="x" * 5000, options=())
-    assert isinstance(long, say.Refusal)
-    assert "no such record" in long.problems[0].what
 
 
 @on_page

@@ -202,6 +202,24 @@ def test_a_mistake_shows_at_its_line_and_the_last_sound_design_stays(page: Page)
     assert page.locator("#problems .error").count() == 0
 
 
+def test_a_file_with_an_error_in_its_requirements_opens_with_it_at_its_line(browser: Browser, serve: Serve) -> None:
+    """No pane waits for results that never come, and no status is green; the mended text is computed."""
+    text = fs.dumps(fs.case("parallelogram"))
+    url, _ = serve(text.replace("[require]", '[require]\n"frequency.platfrm.1" = "at least 3 Hz"'))
+    made = browser.new_page()
+    made.goto(url)
+    until(made, "document.querySelectorAll('#problems .error').length")
+    line = 1 + text.splitlines().index("[require]") + 1
+    assert f"line {line}: require.frequency.platfrm.1" in made.inner_text("#problems")
+    assert made.locator("#head .good, #text .bar .good").count() == 0
+    assert all("the design file has errors" in made.inner_text(each) for each in ("#verdicts", "#pane-figures"))
+    made.evaluate("(text) => studio.ask({ kind: 'edit', text, revision: studio.state.value.revision })", text)
+    settled(made)
+    until(made, "document.querySelector('#engine').classList.contains('good')")
+    assert "frequency.platform.1" in made.inner_text("#verdicts")
+    made.close()
+
+
 @pytest.mark.full
 def test_two_pages_show_the_same_text_and_one_may_close_in_the_middle(page: Page, served: Served) -> None:
     other = page.context.new_page()

@@ -15,6 +15,7 @@ from flexstage.apps.studio.protocol import (
     VERSION,
     Amount,
     Done,
+    Draft,
     Engine,
     Figure,
     Figures,
@@ -99,7 +100,7 @@ def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Pro
     return State(
         revision, page, "leaf.toml", "one leaf", text, digest="", saved=saved, sound=not problems, changed=0, undo=True, redo=False,
         problems=problems, cautions=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
-        links={"leaf": 4}, paths=(), pins=(),
+        links={"leaf": 4}, paths=(), pins=(), unprotected="", drafts=(),
     )  # fmt: skip
 
 
@@ -203,6 +204,47 @@ def test_findings_stand_at_their_line_and_a_click_goes_there(page: Page, server:
     assert page.locator("#editor .cm-activeLine").inner_text() == 'thickness = "0.5"'
     assert page.locator("#editor .cm-lint-marker-error").count() == 1
     assert "frequency.1" in page.inner_text("#verdicts")
+
+
+def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: Server) -> None:
+    """While a text has errors, and until the results of the mended one are there."""
+    chips = "() => ['engine', 'sound'].map((each) => document.getElementById(each).classList.contains('good'))"
+    colours = "() => [...document.querySelectorAll('#verdicts .pill, #verdicts tr b')].map((each) => getComputedStyle(each).color)"
+    figures = Figures(1, (), None, None, (), (), None, (), "", {}, 0.0)
+    server.say(Engine("ready", "", None), figures)
+    until(page, lambda: page.evaluate(chips) == [True, True])
+    green = page.evaluate(colours)
+    server.say(state(2, TEXT + "\n[require]", problems=(Problem("require.mass", "found a frequency", "Write for example 2 kg.", 6, 1),)))
+    until(page, lambda: page.evaluate(chips) == [False, False])
+    assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
+    assert not set(green) & set(page.evaluate(colours))
+    server.say(state(3))
+    until(page, lambda: "error" not in page.inner_text("#text .bar"))
+    assert page.evaluate(chips) == [False, False]
+    server.say(replace(figures, revision=3), verdicts(3))
+    until(page, lambda: page.evaluate(chips) == [True, True])
+    assert page.evaluate(colours) == green
+
+
+@pytest.mark.parametrize("button", ["take them back", "discard them"])
+def test_unsaved_changes_of_a_studio_that_ended_are_offered(page: Page, server: Server, button: str) -> None:
+    server.say(replace(state(1), drafts=(Draft("a.json", 1.7e9, True),), unprotected="the disk is full"))
+    until(page, lambda: "the file was changed since" in page.inner_text("#drafts"))
+    assert "the disk is full" in page.inner_text("#changed")
+    page.get_by_role("button", name=button).click()
+    until(page, lambda: [(each["draft"], each["keep"]) for each in server.of("recover")] == [("a.json", button == "take them back")])
+    server.say(state(1))
+    until(page, lambda: page.inner_text("#drafts") == "")
+
+
+def test_what_was_typed_while_the_server_was_away_is_sent_when_it_is_back(page: Page, server: Server) -> None:
+    assert server.socket is not None
+    server.socket.close(code=1001)
+    until(page, lambda: "lost" in page.inner_text("#engine"))
+    page.locator("#editor .cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("# typed meanwhile")
+    until(page, lambda: [each["text"] for each in server.of("edit")] == [TEXT + "# typed meanwhile"])
 
 
 def test_save_waits_for_what_was_typed(page: Page, server: Server) -> None:

@@ -8,7 +8,7 @@
  * the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
  * pages when it changes: the first of a kind whole, then `changes` alone (`wire.change`). Numbers are in SI units, null where unknown.
  */
-export const VERSION = 2;
+export const VERSION = 3;
 
 /** A finding: the object or address it is about, what was found, what to do; line and column from 1 where the text shows them. */
 export interface Problem {
@@ -202,6 +202,13 @@ export interface JobState {
   report: string | null;
 }
 
+/** The text that a studio had not saved when it ended: its last change [s since 1970], and whether the file was changed since. */
+export interface Draft {
+  name: string;
+  time: number;
+  stale: boolean;
+}
+
 /** A line of a card: what it is, and what it says in words and units. */
 export interface Fact {
   name: string;
@@ -385,6 +392,14 @@ export interface Reload {
   id: number;
 }
 
+/** Take the unsaved text of a studio that ended, which `State.drafts` lists; without `keep` it is discarded. */
+export interface Recover {
+  kind: "recover";
+  id: number;
+  draft: string;
+  keep: boolean;
+}
+
 /** What can be inserted. */
 export interface Palette {
   kind: "palette";
@@ -439,9 +454,10 @@ export interface Welcome {
 /**
  * The text and what it says; pushed at every change. `digest` is that of the file on disk.
  *
- * `sound`: the text is a design. If not, `problems` say why, and numbers and figures are those of the last one that was. `changed`
- * counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made the change (0: the
- * server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
+ * `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
+ * text without. `changed` counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made
+ * the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
+ * the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
  */
 export interface State {
   kind: "state";
@@ -467,6 +483,8 @@ export interface State {
   links: Record<string, number | null>;
   paths: string[];
   pins: string[];
+  unprotected: string;
+  drafts: Draft[];
 }
 
 /** What the process that computes is doing, for how long as far as can be told [s]; `ended` where it died and is started anew. */
@@ -729,6 +747,7 @@ export type Request =
   | Redo
   | Save
   | Reload
+  | Recover
   | Palette
   | Insert
   | Look

@@ -215,7 +215,7 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
 def _part_name(target: Path) -> str:
     """A new name for a file beside another: its own, cut so that no disk finds it too long, and whose it is."""
     stem = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
-    return f".{stem}.{_host()}-{os.getpid()}-{os.urandom(4).hex()}{_PART}"
+    return f".{stem}.{process_mark()}-{os.urandom(4).hex()}{_PART}"
 
 
 def _write_error(where: str, error: Exception) -> DesignError:
@@ -230,7 +230,7 @@ def make_temporary_folder() -> Path:
     """
     try:
         remove_leftovers(Path(tempfile.gettempdir()))
-        return Path(tempfile.mkdtemp(prefix=f"flexstage-{_host()}-{os.getpid()}-"))
+        return Path(tempfile.mkdtemp(prefix=f"flexstage-{process_mark()}-"))
     except OSError as error:
         what = f"no folder for temporary files can be made ({error.strerror or error})"
         raise refuse("TMPDIR", what, "Let the environment variable TMPDIR name a folder with room that can be written to") from None
@@ -283,7 +283,22 @@ def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
         return False
     if ours["place"] != _host():
         return bool(ours["part"]) and time.time() - state.st_mtime > _DAY
-    return not _is_running(int(ours["process"]), state.st_mtime)
+    return has_ended(f"{ours['place']}-{ours['process']}", state.st_mtime)
+
+
+def process_mark() -> str:
+    """The name of this process among those of all machines that share a disk.
+
+    >>> has_ended(process_mark(), time.time())
+    False
+    """
+    return f"{_host()}-{os.getpid()}"
+
+
+def has_ended(mark: str, since: float) -> bool:
+    """Whether the process of a `process_mark` that wrote at a time [s since 1970] is gone; of another machine that is taken as true."""
+    host, _, number = mark.partition("-")
+    return host != _host() or not number.isdecimal() or not _is_running(int(number), since)
 
 
 def _is_running(number: int, since: float) -> bool:

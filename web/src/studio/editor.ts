@@ -69,6 +69,8 @@ export class Editor {
   private revision = 0;
   private isOurs = true;
   private line = 0;
+  private known = "";
+  private isBack = false;
 
   constructor(
     private readonly studio: Studio,
@@ -79,6 +81,8 @@ export class Editor {
     const root = host.attachShadow({ mode: "open" });
     this.view = new EditorView({ parent: root as unknown as HTMLElement, root, state: this.fresh() });
     studio.state.watch((state) => state && this.take(state));
+    for (const each of [studio.figures, studio.verdicts]) each.watch(() => this.judge());
+    studio.connection.state.watch((link) => (this.isBack = link === "open" && !this.isOurs));
     studio.connection.on("cautions", (said) => this.warn(said.revision, said.cautions));
     studio.line.watch(({ line, focus }) => this.goto(line, focus));
   }
@@ -115,16 +119,26 @@ export class Editor {
   private differ(): void {
     const mine = h("button", { type: "button", click: () => (this.edit(), fill(this.problems)) }, "keep mine");
     const theirs = h("button", { type: "button", click: () => ((this.isOurs = true), this.studio.state.value && this.take(this.studio.state.value)) }, "take theirs");
-    fill(this.problems, h("li", { className: "error" }, "Another page changed the text meanwhile. ", mine, " ", theirs));
+    fill(this.problems, h("li", { className: "error" }, "The text was changed elsewhere meanwhile. ", mine, " ", theirs));
   }
 
   private take(state: State): void {
     this.revision = state.revision;
     const now = this.view.state.doc.toString();
+    const isSame = this.known === state.text || state.text === now;
+    this.known = state.text;
     const isTyping = !this.isOurs && state.text !== now;
     if (state.text === now) this.isOurs = true;
     if (!isTyping) this.replace(state.text);
     this.mark(state);
+    if (this.isBack) this.resume(isSame);
+  }
+
+  /** The connection is back: what was typed meanwhile is sent, unless the server has another text than before. */
+  private resume(isSame: boolean): void {
+    this.isBack = false;
+    if (isSame) this.send();
+    else this.differ();
   }
 
   /** Puts another text in by its smallest change, so that the cursor and what is seen stay. */
@@ -144,10 +158,20 @@ export class Editor {
     const found: [Problem, Diagnostic["severity"]][] = [...state.problems.map((each) => [each, "error"] as [Problem, "error"]), ...state.cautions.map((each) => [each, "warning"] as [Problem, "warning"])];
     this.view.dispatch(setDiagnostics(this.view.state, found.filter(([each]) => each.line !== null).map(([each, severity]) => this.diagnostic(each, severity))));
     fill(this.problems, ...found.map(([each, severity]) => this.item(each, severity)));
+    this.judge();
+  }
+
+  /** Whether the text has errors, and what the results next to it are of. */
+  private judge(): void {
+    const { state, figures } = this.studio;
+    if (!state.value) return;
+    const { sound, problems } = state.value;
+    const count = `${problems.length} error${problems.length === 1 ? "" : "s"}`;
+    const results = figures.value === null ? "there are no results" : this.studio.isPresent(figures.value.revision) ? "results may be incomplete" : "results are of the last text without errors";
     const badge = byId("sound");
-    badge.className = state.sound ? "pill good" : "pill poor";
-    fill(badge, state.sound ? "sound" : `${state.problems.length} to mend; figures are the last sound design's`);
-    document.body.classList.toggle("unsound", !state.sound);
+    badge.className = sound ? (this.studio.isCurrent ? "pill good" : "pill") : "pill poor";
+    fill(badge, sound ? "sound" : `${count}: ${results}`);
+    document.body.classList.toggle("unsound", !sound);
   }
 
   private warn(revision: number, cautions: Problem[]): void {

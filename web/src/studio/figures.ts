@@ -5,6 +5,7 @@ import { byId, change, digits, fill, grouped, h, percent, shown, table } from ".
 import type { Studio } from "./studio";
 
 const PINS = ["A", "B", "C"];
+const NONE = "No results: the design file has errors, which are listed below its text.";
 
 /** The requirements: value, limit, and a bar of the margin, full at 50 % to spare. */
 export class VerdictTable {
@@ -13,12 +14,13 @@ export class VerdictTable {
   constructor(private readonly studio: Studio) {
     studio.verdicts.watch((said) => said && this.show(said.verdicts));
     studio.state.watch(() => this.age());
-    fill(this.root, h("h2", {}, "Verdicts"), h("p", { className: "quiet" }, "…"));
+    this.age();
   }
 
   private age(): void {
     const { verdicts, state } = this.studio;
     this.root.classList.toggle("aged", verdicts.value !== null && verdicts.value.revision !== state.value?.revision);
+    if (verdicts.value === null) fill(this.root, h("h2", {}, "Verdicts"), state.value?.sound === false ? h("p", { className: "poor" }, NONE) : h("p", { className: "quiet" }, "…"));
   }
 
   private show(verdicts: Judgement[]): void {
@@ -88,6 +90,7 @@ export class FigureTable {
     const { figures, reach, state } = this.studio;
     const told = [figures.value, reach.value].filter((each) => each !== null);
     this.root.classList.toggle("aged", told.some((each) => each.revision !== state.value?.revision));
+    if (!told.length && state.value?.sound === false) fill(this.body, h("p", { className: "poor" }, NONE));
   }
 
   private async results(): Promise<void> {

@@ -1,6 +1,6 @@
 // The head of the page: file, what changed, undo and save, the state of connection and engine, and what a person is told.
 
-import type { Engine, State } from "../protocol";
+import type { Draft, Engine, State } from "../protocol";
 import { byId, digits, fill, h } from "./dom";
 import type { Editor } from "./editor";
 import type { Studio } from "./studio";
@@ -19,7 +19,7 @@ export class Header {
     byId("redo").addEventListener("click", () => void this.redo());
     byId("save").addEventListener("click", () => void this.save());
     studio.state.watch((state) => state && this.show(state));
-    studio.connection.state.watch(() => this.tell());
+    for (const each of [studio.state, studio.figures, studio.verdicts, studio.connection.state]) each.watch(() => this.tell());
     studio.connection.on("engine", (said) => ((this.engine = said), this.tell()));
     studio.notice.watch(({ text, bad }) => this.say(text, bad));
     this.tell();
@@ -28,11 +28,20 @@ export class Header {
   private show(state: State): void {
     fill(byId("file"), state.file.split(/[\\/]/).at(-1) ?? state.file);
     byId("file").title = `${state.name}: ${state.file}`;
-    fill(byId("changed"), state.saved ? "saved" : state.changed ? `${state.changed} changed` : "text changed");
+    fill(byId("changed"), state.saved ? "saved" : state.changed ? `${state.changed} changed` : "text changed", state.unprotected && h("b", { className: "poor" }, ` not protected from a crash: ${state.unprotected}`));
+    fill(byId("drafts"), ...state.drafts.map((each) => this.draft(each)));
     byId<HTMLButtonElement>("undo").disabled = !state.undo;
     byId<HTMLButtonElement>("redo").disabled = !state.redo;
     byId<HTMLButtonElement>("save").disabled = state.saved;
     document.title = `${state.saved ? "" : "• "}${state.name} – flexstage studio`;
+  }
+
+  /** Unsaved changes of a studio that ended: they are taken back, or discarded. */
+  private draft(each: Draft): HTMLElement {
+    const since = new Date(1000 * each.time).toLocaleString();
+    const answer = (keep: boolean) => (): void => void this.studio.ask({ kind: "recover", draft: each.name, keep });
+    const words = `Unsaved changes of ${since} were found${each.stale ? "; the file was changed since" : ""}. `;
+    return h("p", {}, words, h("button", { type: "button", click: answer(true) }, "take them back"), " ", h("button", { type: "button", click: answer(false) }, "discard them"));
   }
 
   private tell(): void {
@@ -40,10 +49,12 @@ export class Header {
     const link = this.studio.connection.state.value;
     const engine = this.engine;
     const left = engine?.seconds ? `, ${digits(engine.seconds, 2)} s` : "";
-    const busy = engine && engine.state !== "ready" ? `${engine.text || engine.state}${left}` : "ready";
+    const { value: state } = this.studio.state;
+    const isBusy = engine !== null && engine.state !== "ready";
+    const idle = state && !state.sound ? "waits: the design has errors" : this.studio.isCurrent ? "ready" : "computes";
     const place = byId("engine");
-    place.className = link !== "open" || engine?.state === "ended" ? "pill poor" : engine && engine.state !== "ready" ? "pill fair" : "pill good";
-    fill(place, words[link] || busy);
+    place.className = link !== "open" || engine?.state === "ended" || state?.sound === false ? "pill poor" : isBusy || idle !== "ready" ? "pill fair" : "pill good";
+    fill(place, words[link] || (isBusy ? `${engine.text || engine.state}${left}` : idle));
   }
 
   private say(text: string, bad: boolean): void {

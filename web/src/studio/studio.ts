@@ -78,6 +78,12 @@ export class Studio {
     return revision === this.state.value?.revision;
   }
 
+  /** Whether the text has no error and what is shown of it is of the text as it is. */
+  get isCurrent(): boolean {
+    const { state, figures, verdicts } = this;
+    return state.value?.sound === true && [figures.value, verdicts.value].every((each) => each !== null && this.isPresent(each.revision));
+  }
+
   goto(line: number | null | undefined, focus = true): void {
     if (line) this.line.set({ line, focus });
   }

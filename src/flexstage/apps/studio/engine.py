@@ -26,6 +26,7 @@ TASKS: Mapping[str, str] = {
     "drag": "dragging:drag",
     "figures": "results:figures",
     "verdicts": "results:verdicts",
+    "errors": "results:errors",
     "reach": "results:reach",
     "scene": "results:scene",
     "still": "results:still",
@@ -107,10 +108,10 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
 
 
 def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, ...]:
-    """What is wrong, with its place in the file that most tasks take second."""
-    from flexstage.apps.studio.reading import spots
+    """Findings with their lines in the text that tasks take first, the file second."""
+    from flexstage.apps.studio.reading import problems_of
 
-    return spots(error.findings, str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))
+    return problems_of(error.findings, str(arguments[0]), str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))
 
 
 @lru_cache

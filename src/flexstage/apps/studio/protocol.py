@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-VERSION = 2
+VERSION = 3
 """Raised when a message changes its meaning."""
 
 # --- what messages are made of ---
@@ -241,6 +241,15 @@ class JobState:
 
 
 @dataclass(frozen=True)
+class Draft:
+    """The text that a studio had not saved when it ended: its last change [s since 1970], and whether the file was changed since."""
+
+    name: str
+    time: float
+    stale: bool
+
+
+@dataclass(frozen=True)
 class Fact:
     """A line of a card: what it is, and what it says in words and units."""
 
@@ -452,6 +461,15 @@ class Reload:
 
 
 @dataclass(frozen=True)
+class Recover:
+    """Take the unsaved text of a studio that ended, which `State.drafts` lists; without `keep` it is discarded."""
+
+    id: int
+    draft: str
+    keep: bool
+
+
+@dataclass(frozen=True)
 class Palette:
     """What can be inserted."""
 
@@ -514,9 +532,10 @@ class Welcome:
 class State:
     """The text and what it says; pushed at every change. `digest` is that of the file on disk.
 
-    `sound`: the text is a design. If not, `problems` say why, and numbers and figures are those of the last one that was. `changed`
-    counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made the change (0: the
-    server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
+    `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
+    text without. `changed` counts numbers that differ from the file's, `cautions` are those told last, `page` is the one whose request made
+    the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
+    the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
     """
 
     revision: int
@@ -541,6 +560,8 @@ class State:
     links: dict[str, int | None]
     paths: tuple[str, ...]
     pins: tuple[str, ...]
+    unprotected: str
+    drafts: tuple[Draft, ...]
 
 
 @dataclass(frozen=True)
@@ -822,6 +843,7 @@ Request: TypeAlias = (
     | Redo
     | Save
     | Reload
+    | Recover
     | Palette
     | Insert
     | Look

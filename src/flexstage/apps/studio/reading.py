@@ -10,10 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from flexstage.analysis.course import path_findings
+from flexstage.analysis.requirements import requirements
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.apps.studio.engine import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import first_design
 from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.unit import show
@@ -67,6 +69,8 @@ def read(text: str, file: str, stored: str) -> Reading:
     """What a text says, and what its numbers were in the `stored` one."""
     try:
         found = design(text, file)
+        requirements(found)
+        require(path_findings(found))
     except DesignError as error:
         return Reading(problems_of(error.findings, text, file))
     lines, assembly = line_numbers(text), expand(found)
@@ -88,13 +92,6 @@ def problems_of(findings: Iterable[Finding], text: str, file: str) -> tuple[Prob
     """Findings with line and column in the text."""
     rows, lines = text.splitlines(), line_numbers(text)
     return tuple(_problem(each, rows, lines, Path(file).name) for each in findings)
-
-
-def spots(findings: Iterable[Finding], file: str) -> tuple[Problem, ...]:
-    """Findings with line and column as far as they say them."""
-    where = Path(file).name
-    found = ((spot_of(each, where), each) for each in findings)
-    return tuple(Problem(spot.address or where, each.what, each.advice, spot.line, spot.column) for spot, each in found)
 
 
 def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int | None]:

@@ -112,7 +112,7 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
 def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
     """The requirements."""
     timer, lines = Timer(), line_numbers(text)
-    old = {each.requirement.text: each for each in judged(stored, file)} if stored != text else {}
+    old = {each.requirement.text: each for each in _stored_verdicts(stored, file)} if stored != text else {}
     found = tuple(_judgement(each, old.get(each.requirement.text, each), lines) for each in judged(text, file))
     return Verdicts(revision, found, timer.spent)
 
@@ -122,6 +122,13 @@ def reach(text: str, file: str, stored: str, revision: int) -> Reach:
     timer, (found, missing) = Timer(), _reached(text, file)
     strokes = () if found[0] is None else tuple(_strokes(found[0]))
     return Reach(revision, tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing, timer.spent)
+
+
+def errors(text: str, file: str) -> tuple[Problem, ...]:
+    """Findings of a description that can be read but not modelled: those of `flexstage check`."""
+    from flexstage.analysis.cautions import model_findings
+
+    return problems_of(model_findings(design(text, file)), text, file)
 
 
 def cautions(text: str, file: str, revision: int) -> Cautions:
@@ -187,10 +194,15 @@ def _known(known: Bench, name: str) -> Any:
 
 @lru_cache(maxsize=8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
-    """The verdicts on a design; none of a text that is none."""
+    """The verdicts on a design. Raises `DesignError` where its text has errors."""
     known = bench(text, file)
+    return judge(known.mechanism, known)
+
+
+def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
+    """The verdicts on the file's design; none where the file has errors."""
     try:
-        return judge(known.mechanism, known)
+        return judged(stored, file)
     except DesignError:
         return ()
 
@@ -306,12 +318,12 @@ def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
-    """Everything that designs are compared by, requirements first; nothing of a text that is no design."""
-    try:
-        design(text, file)
-    except DesignError:
-        return ()
-    rows = (*requirement_figures(judged(text, file)), *_stored_figures("figures", text, file), *_stored_figures("reach", text, file))
+    """Everything that designs are compared by, requirements first; nothing of a text with errors."""
+    rows = (
+        *requirement_figures(_stored_verdicts(text, file)),
+        *_stored_figures("figures", text, file),
+        *_stored_figures("reach", text, file),
+    )
     return tuple({each.name: each for each in reversed(rows)}.values())[::-1]
 
 

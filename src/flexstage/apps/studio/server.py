@@ -21,6 +21,7 @@ import flexstage
 from flexstage import show
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
+from flexstage.apps.studio.journal import Journal
 from flexstage.apps.studio.session import Session
 from flexstage.apps.studio.wire import FOLLOWING, Teller, decode
 from flexstage.base.finding import DesignError, refuse
@@ -58,8 +59,9 @@ class Studio:
 
     def __init__(self, path: Path, port: int = 0) -> None:
         self.session = Session(Stored.read(path.resolve()), self._tell_all)
-        self.token = secrets.token_urlsafe(24)
-        self._port = port
+        last = next(iter(self.session.drafts.values()), None)
+        self.token = last.token if last else secrets.token_urlsafe(24)
+        self._port, self._last_port = port, last.port if last else 0
         self._server: Server | None = None
         self._pages: dict[int, Outbox] = {}
         self._count = 0
@@ -78,18 +80,21 @@ class Studio:
     async def start(self) -> None:
         """Listen, and begin to compute. Raises `DesignError` where the port is taken."""
         try:
-            self._server = await self._listen()
+            with contextlib.suppress(OSError):  # pages of a studio that was killed look for it there
+                self._server = await self._listen(self._last_port) if self._last_port and not self._port else None
+            self._server = self._server or await self._listen(self._port)
         except OSError as error:
             what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
             raise refuse(f"--port {self._port}", what, "Choose another one, or leave it out") from None
         self._port = next(iter(self._server.sockets)).getsockname()[1]
+        self.session.journal = Journal(self.session.stored.path, self._port, self.token)
         self._start(self.session.open())
 
-    async def _listen(self) -> Server:
+    async def _listen(self, port: int) -> Server:
         return await serve(
             self._page,
             HOST,
-            self._port,
+            port,
             process_request=self._request,
             max_size=LARGEST,
             compression=None,

@@ -12,6 +12,7 @@ from flexstage.apps.studio.engine import Outcome, Reading, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs
+from flexstage.apps.studio.journal import Draft, Journal, discard, drafts
 from flexstage.apps.studio.palette import snippets
 from flexstage.base.finding import DesignError, refuse
 
@@ -24,6 +25,7 @@ _MOSTLY = 0.6
 _STAGES: tuple[tuple[str, str], ...] = (
     ("figures", "stiffness, lost motion, modes and responses"),
     ("verdicts", "requirements"),
+    ("errors", "errors"),
     ("reach", "strokes and stress"),
     ("scene", "the geometry"),
     ("cautions", "cautions"),
@@ -48,6 +50,10 @@ class Session:
 
     def __init__(self, stored: Stored, tell: Tell) -> None:
         self.stored = stored
+        self.journal = Journal(stored.path)
+        self.drafts = self._found_drafts()
+        """Unsaved texts of studios that have ended, by the name of their journal."""
+        self._unprotected = ""
         self.history = History(stored.text)
         self.reading: Reading | None = None
         self.problems: tuple[say.Problem, ...] = ()
@@ -66,6 +72,8 @@ class Session:
         self._drags, self._poses = Newest[say.Drag](self._revision), Newest[say.Pose](self._revision)
         self._computed = 0
         self._cautions: tuple[say.Problem, ...] = ()
+        self._failures: dict[str, tuple[say.Problem, ...]] = {}
+        """Errors of the computation by its stage."""
         self._pages: dict[int, tuple[str, ...]] = {}
         self._last: dict[str, tuple[Any, ...]] = {}
         """What each stage was computed of last."""
@@ -158,6 +166,7 @@ class Session:
         except DesignError as error:
             tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=True))
             return
+        self._protect()
         tell(say.Done(request.id, self.history.revision))
         await self._read()
 
@@ -165,14 +174,31 @@ class Session:
         self.stored = Stored.read(self.stored.path)
         same = self.stored.text == self.history.text
         self._take(self.history.change(self.stored.text, page))
+        self._protect()
         tell(say.Done(request.id, self.history.revision))
         if same:
             await self._read()
+
+    async def _recover(self, request: say.Recover, page: int, tell: Tell) -> None:
+        """Remove a journal once its text is in that of this studio, or if it is discarded."""
+        draft = self.drafts.get(request.draft)
+        if draft is None:
+            raise refuse(request.draft, "there is no unsaved text of this name", "Reload the page")
+        if request.keep:
+            self.history = replace(self.history, pins={**draft.pins, **self.history.pins})
+            self._take(self.history.change(draft.text, page))
+            self._protect()
+        if not (request.keep and self._unprotected):
+            discard(self._journals[request.draft])
+        self.drafts = {name: each for name, each in self.drafts.items() if name != request.draft}
+        tell(say.Done(request.id, self.history.revision))
+        self._push_state()
 
     async def _pin(self, request: say.Pin, _: int, tell: Tell) -> None:
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
             raise refuse(request.name, "twelve designs are pinned already", "Let one go first")
         self.history = self.history.pin(request.name, keep=request.keep)
+        self._protect()
         tell(say.Done(request.id, self.history.revision))
         self._push_state()
 
@@ -312,6 +338,7 @@ class Session:
         say.Redo: _undo,
         say.Save: _save,
         say.Reload: _reload,
+        say.Recover: _recover,
         say.Palette: _palette,
         say.Insert: _insert,
         say.Look: _look,
@@ -326,7 +353,27 @@ class Session:
         changed = history.revision != self.history.revision
         self.history = history
         if changed:
+            self._protect()
             self._start(self._read())
+
+    def _protect(self) -> None:
+        """Bring what is not saved to the disk, before the change is acknowledged; where that cannot be, pages show it."""
+        try:
+            if self.history.text == self.stored.text:
+                self.journal.clear()
+            else:
+                self.journal.keep(self.history.text, self.history.pins, self.stored.digest)
+            self._unprotected = ""
+        except DesignError as error:
+            self._unprotected = str(error)
+
+    def _found_drafts(self) -> dict[str, Draft]:
+        """Texts that studios have left unsaved; a journal whose text the file has by now is removed."""
+        found = drafts(self.stored.path)
+        self._journals = {place.name: place for place in found}
+        for place in [place for place, draft in found.items() if draft.text == self.stored.text]:
+            discard(place)
+        return {place.name: draft for place, draft in found.items() if draft.text != self.stored.text}
 
     async def _read(self) -> None:
         revision = self.history.revision
@@ -339,7 +386,9 @@ class Session:
         if outcome.value is not None and not self.problems:
             self.reading, self.sound, self._computed = outcome.value, text, revision
         self._push_state()
-        if not self.problems:
+        if self.problems:
+            self._push(say.Engine("ready", "", None))
+        else:
             self._start(self._compute(revision, text))
 
     async def _compute(self, revision: int, text: str) -> None:
@@ -353,14 +402,15 @@ class Session:
         for stage, called in _STAGES:
             work = self._work_of(stage, revision, text)
             if work is None or self._last.get(stage) == (work, revision):
+                self._report(stage, () if work is None else self._failures.get(stage, ()))
                 continue
             outcome = await self._announced(called, stage, work, lambda: self.sound == text and self._computed == revision)
             if outcome is None:
                 return
-            if outcome.problems:
-                self._push(say.Engine("ready", f"{called}: {outcome.problems[0].what}", None))
-            else:
+            self._report(stage, outcome.problems if stage != "errors" else outcome.problems or outcome.value)
+            if not outcome.problems:
                 self._last[stage] = work, revision
+            if outcome.value is not None and stage != "errors":
                 self._push(say.Scene(revision, outcome.value) if stage == "scene" else outcome.value)
             if stage == "cautions" and outcome.value and outcome.value.cautions != self._cautions:
                 self._cautions = outcome.value.cautions
@@ -368,10 +418,23 @@ class Session:
             if stage == "figures" and self._reader is None:
                 self._reader = Helper(self._died)  # not before: it takes processor time to start
 
+    def _report(self, stage: str, problems: tuple[say.Problem, ...]) -> None:
+        """Show the errors of a stage of the computation, in place of those that it had before."""
+        if problems != self._failures.get(stage, ()):
+            self._failures[stage] = problems
+            self._push_state()
+
+    @property
+    def _errors(self) -> tuple[say.Problem, ...]:
+        """Errors of the text, else those of its computation, each once."""
+        return self.problems or tuple(dict.fromkeys(each for found in self._failures.values() for each in found))
+
     def _work_of(self, stage: str, revision: int, text: str) -> tuple[Any, ...] | None:
         """Task and arguments of a stage; nothing where no page shows what it gives."""
         if stage == "figures":
             return stage, text, self._file, self.stored.text, revision, self._choice
+        if stage == "errors":
+            return stage, text, self._file
         if stage == "cautions":
             return stage, text, self._file, revision
         if stage == "scene":
@@ -419,11 +482,11 @@ class Session:
                 text=history.text,
                 digest=self.stored.digest,
                 saved=history.text == self.stored.text,
-                sound=not self.problems,
+                sound=not self._errors,
                 changed=sum(each.old is None or each.old != each.value for each in reading.amounts),
                 undo=bool(history.past),
                 redo=bool(history.future),
-                problems=self.problems,
+                problems=self._errors,
                 cautions=self._cautions,
                 amounts=reading.amounts,
                 actuators=reading.actuators,
@@ -434,6 +497,8 @@ class Session:
                 links=dict(reading.links or {}),
                 paths=reading.paths,
                 pins=tuple(history.pins),
+                unprotected=self._unprotected,
+                drafts=tuple(say.Draft(name, each.time, each.digest != self.stored.digest) for name, each in self.drafts.items()),
             )
         )
 
@@ -444,6 +509,7 @@ class Session:
     def _keep_optimum(self, text: str) -> None:
         """A better design that a job found is pinned."""
         self.history = replace(self.history, pins={**self.history.pins, "optimum": text})
+        self._protect()
         self._push_state()
 
     def _died(self, words: str) -> None:
@@ -482,7 +548,7 @@ class Session:
         task.add_done_callback(self._work.discard)
 
 
-_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.2}
+_FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "cautions": 0.2, "errors": 0.1}
 """Seconds that the stages of a design of thirty links take, before one was timed (benchmarks/studio.py)."""
 
 

@@ -70,7 +70,8 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
     """An address, and for that of a link in a unit or a copy (`B4/pivot.at`) what it may be in the file, the nearest first."""
     found = _OWNER.fullmatch(address)
     if found is None:
-        yield from (address, address.removeprefix("tags."), f"bodies.{address}", f"links.{address}")
+        yield from (address, address.removeprefix("tags."))
+        yield from (f"{kind}.{address}" for kind in ("bodies", "links") if f"{kind}.{address.partition('.')[0]}" in lines)
         return
     owner, name, rest = found["owner"], found["name"], found["rest"]
     link = f".links.{name}"
