@@ -32,6 +32,12 @@ builtins.open = io.open = hiding(open)
 for name in ("stat", "lstat", "open", "listdir", "scandir", "readlink"):
     setattr(os, name, hiding(getattr(os, name)))
 """
+PLAIN = """
+import sys
+from flexstage.apps.cli import run
+words = "new {0}.toml --case parallelogram", "check {0}.toml --json {0}.json", "plan {0}.toml -o {0}.svg", "modes {0}.toml --csv {0}"
+sys.exit(max(run(each.format(sys.argv[1]).split()) for each in words))
+"""
 COMMANDS = (
     "check stage.toml",
     "analyse stage.toml --report a.html --json a.json",
@@ -69,3 +75,14 @@ def test_the_main_commands_need_nothing_of_posix(tmp_path: Path) -> None:
     words = [sys.executable, "-P", "-c", f"import sys\n{RUN}", *COMMANDS]
     done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
+
+
+def test_names_that_the_locale_does_not_know_are_written(tmp_path: Path) -> None:
+    """Without UTF-8 in the locale, names of files are bytes; temporary ones next to them too."""
+    name = "gl\u00fch\u2192" + 40 * "\u00e9"
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    words = [sys.executable, "-c", PLAIN, name.encode()]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode(errors="replace")
+    written = {os.fsencode(each.name) for each in tmp_path.iterdir()}
+    assert {f"{name}{ending}".encode() for ending in (".toml", ".json", ".svg", "")} <= written

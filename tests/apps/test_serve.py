@@ -386,9 +386,12 @@ def test_clients_have_an_error_each_and_share_the_stage(port):
         assert one.ask("VEL? x") == "x=500.000000\n"
 
 
-def test_a_page_of_a_browser_is_shown_the_door(port):
+@pytest.mark.parametrize(
+    "request_line", ["POST / HTTP/1.1", "GET / HTTP/1.0", "PRI * HTTP/2.0", "get / http/1.0 ", f"PUT /{9000 * 'a'} HTTP/1.0"]
+)
+def test_a_page_of_a_browser_is_shown_the_door(port, request_line):
     with Client(port) as page:
-        page.socket.sendall(b"POST / HTTP/1.1\r\nHost: x\r\n\r\nMOV x 1\n")
+        page.socket.sendall(f"{request_line}\r\nHost: x\r\n\r\nMOV x 1\n".encode())
         with suppress(ConnectionResetError):
             assert page.file.read() == b""
 

@@ -24,7 +24,8 @@ from pathlib import Path
 from flexstage.base.finding import DesignError, refuse
 
 FOLDER_VARIABLE = "FLEXSTAGE_CACHE"
-_LONGEST = 60
+_LONGEST = 15
+"""Characters of a file's name, of four bytes at most, that a temporary one beside it has."""
 _PART = ".part"
 _OURS = re.compile(r"(?:\..*\.|flexstage-)(?P<place>[0-9a-f]{8})-(?P<process>[0-9]{1,9})-[^.-]+(?P<part>\.part)?", re.DOTALL)
 _TICK = 2.0
@@ -214,8 +215,7 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
 
 def _part_name(target: Path) -> str:
     """A new name for a file beside another: its own, cut so that no disk finds it too long, and whose it is."""
-    stem = os.fsencode(target.name)[:_LONGEST].decode(errors="ignore")
-    return f".{stem}.{process_mark()}-{os.urandom(4).hex()}{_PART}"
+    return f".{target.name[:_LONGEST]}.{process_mark()}-{os.urandom(4).hex()}{_PART}"
 
 
 def _write_error(where: str, error: Exception) -> DesignError:

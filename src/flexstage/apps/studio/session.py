@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, TypeVar
@@ -477,7 +478,7 @@ class Session:
             say.State(
                 revision=history.revision,
                 page=history.page,
-                file=self.stored.path.name,
+                file=os.fsencode(self.stored.path.name).decode(errors="replace"),
                 name=reading.name,
                 text=history.text,
                 digest=self.stored.digest,

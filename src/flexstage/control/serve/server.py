@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ _TURN = 500
 """Lines of a client that are answered before others are heard."""
 _SINGLE = b"\x05\x07\x09\x18"
 _READ = 65_536
+_HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE|PRI)\s|.*\sHTTP/\d", re.IGNORECASE)
+"""Requests of any version of HTTP, their version lost where the line is too long."""
 
 
 @dataclass
@@ -132,7 +135,7 @@ class Served:
             found = lines.split(received)
             for start in range(0, len(found), _TURN):
                 turn = found[start : start + _TURN]
-                if any(line.endswith(b"HTTP/1.1") for line in turn):  # a page of a browser has no business here
+                if any(map(_HTTP.match, turn)):  # a page of a browser has no business here
                     return
                 await self._answer(session, turn, writer)
 
