@@ -12,6 +12,7 @@ from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUs
 from flexstage.analysis.judge import judge
 from flexstage.analysis.load_effect import FELT, felt_links, load_effect
 from flexstage.analysis.stability import prestress, stability
+from flexstage.beams.compliance import stiffness
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.rest import rest_errors
@@ -62,6 +63,19 @@ def test_hanging_leaves_are_stiffer():
     assert found.model is not None
     stiffness = 1.0 / fs.statics(found.model).compliance.at("platform.x", "platform.fx")
     assert stiffness == pytest.approx(column(-9.80665 * 2.5), rel=1e-4)
+
+
+def test_calibrated_leaves_are_softened_as_drawn_ones():
+    """A matrix that stands for a drawn leaf shortens by its bending as that leaf does: 6 P / (5 L) across, without inner bending."""
+    stage, weight = upright(1.0), 9.80665
+    leaf = stage.parts["leaf"]
+    assert isinstance(leaf, fs.Leaf)
+    matrix = np.linalg.inv(stiffness(leaf, stage.materials["steel"]))
+    given = fs.Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), leaf.intended, stands_for="drawn")
+    found = load_effect(replace(stage, parts={**stage.parts, "leaf": given, "drawn": leaf}))
+    assert found is not None
+    assert found.change == pytest.approx(-1.2 * weight / 0.06 / column(1e-9), rel=5e-3)
+    assert found.change == pytest.approx(column(weight) / column(1e-9) - 1.0, rel=5e-3)
 
 
 def test_the_first_estimate_is_that_of_beam_columns():

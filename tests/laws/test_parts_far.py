@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.stability import prestress
 from flexstage.analysis.strained import left_out
 from flexstage.analysis.workspace.load import dead_loads
-from flexstage.mechanism.mechanism import Link, Mechanism, Stop
+from flexstage.mechanism.mechanism import Force, Link, Mechanism, Stop
 from flexstage.mechanism.pattern import Pose
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.parts.part import Part
@@ -67,3 +68,26 @@ def test_contacts_that_lift_and_stops_that_are_passed_are_told() -> None:
     for goes, told in ((0.9e-4, []), (-1.5e-4, []), (1.5e-4, ["end"])):
         state = fs.equilibrium(model, {"platform.fy": goes / flexible}, weight=0.0)
         assert [each.where for each in left_out(state)] == told
+
+
+AXIAL: dict[str, Part] = {
+    "bushing": fs.Spring(diagonal=(1e9, 2e4, 3e4, 50.0, 60.0, 70.0)),
+    "strut": fs.Spring(diagonal=(1e9, 2e4, 3e4, 50.0, 60.0, 70.0), length=0.03),
+    "stack": fs.Piezo(60e-6, 5e9, 0.04, 0.01),
+    "given": replace(GIVEN, compliance=tuple(tuple(row) for row in np.diag([1e-10, 1e-6, 1e-6, 1e-2, 1e-2, 1e-2]).tolist())),
+}
+"""Kinds that hardly stretch: what stretch does to their arms is none of their geometric stiffness."""
+
+
+@pytest.mark.parametrize("kind", sorted(AXIAL))
+def test_a_force_along_it_changes_its_stiffness_as_linearised_buckling_has_it(kind: str) -> None:
+    """The slope of the compliance by the force: what two models of the loaded stage, written apart, must share."""
+    step, slopes = 1e-3, []
+    still = replace(stage(AXIAL[kind], kind), gravity=(0.0, 0.0, 0.0))
+    pulled = [
+        replace(still, forces={"pull": Force("platform", at=(0.03, 0.0, 0.0), force=(sign * step, 0.0, 0.0))}) for sign in (1.0, -1.0)
+    ]
+    for loaded in (lambda each: prestress(each, fs.lumped(each)), lambda each: fs.linearise(fs.equilibrium(fs.nonlinear(each)))):
+        ahead, back = (static_gain(loaded(each), *NAMES).values for each in pulled)
+        slopes.append((ahead - back) / (2.0 * step))
+    assert np.max(np.abs(slopes[1] - slopes[0])) < 2e-3 * np.max(np.abs(slopes[0]))

@@ -9,8 +9,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+import flexstage as fs
 from flexstage.analysis.deflection import deflection
-from flexstage.analysis.stability import stability
+from flexstage.analysis.load_effect import load_effect
+from flexstage.analysis.stability import prestress, stability
 from flexstage.analysis.statics import statics
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import stiffness
@@ -23,9 +25,15 @@ from flexstage.models.batch.engine import Status, plan, platform_modes
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.hinge import Ends, _nudge, deform  # pyright: ignore[reportPrivateUsage]
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.given import Given
 from flexstage.parts.spring import Spring
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.spatial.rotation import exponential
 from tests.conftest import examples
 from tests.laws.strategies import mechanisms, orientations, places
 
@@ -160,3 +168,61 @@ def test_the_mass_of_a_spring_is_that_of_a_straight_line(length, weight):
 )
 def test_bad_springs_are_told(spring, what):
     assert any(str(finding).startswith(what) for finding in check(replace(held(), parts={"stiff": spring, "spring": spring})))
+
+
+@pytest.mark.parametrize("force", [40.0, -40.0])
+@pytest.mark.parametrize("stated", ["preload", "free_length"])
+def test_the_loaded_stage_has_the_springs_force_over_its_length(force, stated):
+    """Across a spring of length L that pushes with F: k - F / L at its loaded length, what else the platform's turning compliance takes."""
+    own = {"preload": force} if stated == "preload" else {"free_length": 0.02 + force / 1e3}
+    stage = held(strut=Spring(stiffness=1e3, length=0.02, **own))
+    moved = equilibrium(nonlinear(stage)).displacement()[0]
+    across = 2e4 - (force - 1e3 * moved) / (0.02 + moved)
+    about = linearise(equilibrium(nonlinear(stage)))
+    found = 1.0 / statics(about).compliance.values[1, 1]
+    np.testing.assert_allclose(found, across, rtol=1e-5)  # the tilt under the lever L / 2 on 1e4 N m/rad
+    near = 1.0 / statics(prestress(stage, lumped(stage))).compliance.values[1, 1]
+    np.testing.assert_allclose(near - 2e4, found - 2e4, rtol=2e-2)  # the drawn length instead of the loaded one
+    effect = load_effect(stage)
+    assert effect is not None
+    np.testing.assert_allclose(effect.change, found / 2e4 - 1.0, rtol=1e-2)
+
+
+def test_a_mass_on_a_spring_with_a_length_is_a_pendulum():
+    """F / l of the loaded spring and the stiffness that guides it: f = ((k + m g / l) / m)^1/2 / 2 pi."""
+    rate, guide, weight, length = 1e4, 100.0, 9.80665, 0.1
+    stage = held(coil=Spring(stiffness=rate, length=length))
+    parts = {**stage.parts, "stiff": Spring(diagonal=(0.0, guide, guide, 1e5, 1e5, 1e5))}
+    links = {**stage.links, "coil": replace(stage.links["coil"], at=(-length / 2.0, 0.0, 0.0))}
+    hung = replace(stage, parts=parts, links=links, gravity=(weight, 0.0, 0.0))
+    found = fs.analyse(hung).modes
+    expected = np.sqrt(guide + weight / (length + weight / rate)) / (2.0 * np.pi)
+    np.testing.assert_allclose(found.frequencies[:2], expected, rtol=1e-5)
+
+
+def test_a_spring_pulls_along_the_line_of_its_ends_however_far_they_move():
+    """Held anywhere, the platform carries k (l - L) along the line from the spring's one end to the other."""
+    rate, length, push, along = 2e3, 0.03, 5.0, np.array([2.0, -1.0, 2.0]) / 3.0
+    stage = held(strut=Spring(stiffness=rate, length=length, preload=push))
+    pose = Link(("ground", "platform"), "strut", (0.0, 0.0, 0.0), tuple(along.tolist()), (1.0, 2.0, 0.0))
+    weak = replace(stage, parts={**stage.parts, "stiff": Spring(diagonal=(1.0,) * 6)}, links={**stage.links, "strut": pose})
+    rng = np.random.default_rng(7)
+    shift, angle = 0.3 * length * rng.normal(size=(8, 3)), 0.4 * rng.normal(size=(8, 3))
+    values = dict(zip((f"platform.{each}" for each in COMPONENTS), np.concatenate([shift, angle], axis=-1).T, strict=True))
+    bare = replace(weak, links={"stiff": stage.links["stiff"]})
+    with_spring, without = (equilibrium(nonlinear(each), hold=values).reactions[:, :3] for each in (weak, bare))
+    line = shift + 0.5 * length * (exponential(angle) @ along + along)
+    span = np.linalg.norm(line, axis=-1, keepdims=True)
+    np.testing.assert_allclose(with_spring - without, (rate * (span - length) - push) * line / span, atol=1e-9 * rate * length)
+
+
+@given(st.integers(0, 2**32 - 1))
+@examples(20, 100)
+def test_rows_of_a_springs_deformation_are_its_slopes(seed):
+    rng = np.random.default_rng(seed)
+    model = nonlinear(held(strut=Spring(stiffness=1e3, length=0.02, preload=5.0)))
+    turns = exponential(0.5 * rng.normal(size=(2, 2, 1, 3)))
+    ends = Ends(0.01 * rng.normal(size=(2, 1, 3)), turns[0], 0.01 * rng.normal(size=(2, 1, 3)), turns[1])
+    _, rows = deform(model.hinges, ends)
+    stepped, _ = deform(model.hinges, _nudge(ends))
+    np.testing.assert_allclose(np.moveaxis(np.imag(stepped) / 1e-30, 0, -1), rows, rtol=1e-9, atol=1e-12)

@@ -225,7 +225,7 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> stage = nonlinear(parallelogram())
     >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3})).factor, 3)
-    6.08
+    11.072
     """
     there, hold = _brought(model, case)
     inputs = {channel.name for channel in model.inputs}

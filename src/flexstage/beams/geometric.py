@@ -13,7 +13,7 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of, law_of
 from flexstage.parts.given import Joint
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part, inner
+from flexstage.parts.part import Part, inner, strut_of
 from flexstage.parts.shape import Shaped
 
 ENDS = 12
@@ -49,9 +49,24 @@ def geometric(part: Part, material: Material | None) -> Geometric:
     own = inner(part)
     known = law_of(own)
     if isinstance(own, Joint) or (known is not None and known.beam is None):
-        length = None if isinstance(own, Joint) else own.strut
+        length = strut_of(own)
         return _of_point() if length is None else _of_strut(np.asarray(length))
     return _of_beam(beam_of(own, material), _SLENDER if isinstance(own, Shaped) and own.slender else _STOUT)
+
+
+def foreshortening(part: Part, material: Material | None) -> Array:
+    """Second-order deformation of a part by its own bending and twist: 1/2 e^T G e, e its relative twist at its centre; G (6, 6, 6).
+
+    K_g of its wrench w is then that of a bushing and sum w_i G_i. Zero of parts without a drawn length; its own stretch is left out.
+    """
+    own, axis = geometric(part, material), np.eye(3)[0]
+    result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]
+    if not np.any(own.half):
+        return np.zeros_like(result)
+    both = np.einsum("ia,b->iab", np.eye(3), axis)  # forces at +-half turn with the bodies that carry them
+    result[..., :3, 3:, 3:] -= own.half * (axis[:, None, None] * np.eye(3) - 0.5 * (both + np.swapaxes(both, -1, -2)))
+    result[..., 0, :] = result[..., :, 0] = 0.0
+    return result
 
 
 def _of_point() -> Geometric:

@@ -118,6 +118,16 @@ def push_of(part: Part) -> Number | None:
     return None if isinstance(own, Joint) else own.push
 
 
+def strut_of(part: Part) -> Number | None:
+    """Length [m] over which a part without a shape turns about both of its ends; `None` where it acts in one point.
+
+    >>> strut_of(Joint()) is None
+    True
+    """
+    own = inner(part)
+    return None if isinstance(own, Joint) else own.strut
+
+
 def span(part: Part) -> Number:
     """Length of a part along its x axis [m], zero for given matrices and joints.
 

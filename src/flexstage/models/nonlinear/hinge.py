@@ -1,7 +1,9 @@
 """Links known by their 6x6 about a centre, at large displacements: springs, stacks, given matrices, joints (docs/nonlinear.md, 15).
 
 Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the frame
-half-way, R_m = R_a exp(psi / 2): the same for exchanged ends.
+half-way, R_m = R_a exp(psi / 2): the same for exchanged ends. A strut (a spring with a length L) turns about both ends: its d_x is
+|x_b - x_a + (R_a + R_b) e_1 L / 2| - L, so that the force it carries acts along the line of its ends. A part with a drawn length also
+shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.spatial.frame import cross_matrix
-from flexstage.spatial.rotation import exponential, exponential_rate, logarithm, logarithm_rate
+from flexstage.spatial.rotation import cross, exponential, exponential_rate, logarithm, logarithm_rate
 
 _STEP = 1e-30
 
@@ -22,8 +24,9 @@ class Hinges:
     """Links about centres: bodies by number, the link's axes `turn` (l, 3, 3) as drawn, arms (l, 3) from the bodies' references.
 
     `stiffness` (l, 6, 6); per input the free deformation `stroke` and the wrench `thrust` on the second body, both (l, 6, m); `push` (l, 6)
-    is the wrench on it as drawn. `locked` (c, 2) are pairs of link and freedom without any deformation. Where designs differ from case to
-    case, all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
+    is the wrench on it as drawn; `strut` (l,) the length [m] between the ends that a strut turns about, zero of a link about its centre;
+    `bow` (l, 6, 6, 6) is G. `locked` (c, 2) are pairs of link and freedom without any deformation. Where designs differ from case to case,
+    all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
 
     names: tuple[str, ...]
@@ -36,6 +39,8 @@ class Hinges:
     stroke: Array
     thrust: Array
     push: Array
+    strut: Array
+    bow: Array
     locked: Array
 
 
@@ -66,7 +71,30 @@ def deform(hinges: Hinges, ends: Ends) -> tuple[Array, Array]:
     moved = back @ np.concatenate([-eye, cross_matrix(arm) + lever @ (eye - half), eye, lever @ half - cross_matrix(other_arm)], axis=-1)
     none = np.zeros_like(turning)
     turned = np.concatenate([none, -turning, none, turning], axis=-1)
-    return np.concatenate([(back @ gap[..., None])[..., 0], angle], axis=-1), np.concatenate([moved, turned], axis=-2)
+    strain = np.concatenate([(back @ gap[..., None])[..., 0], angle], axis=-1)
+    rows = np.concatenate([moved, turned], axis=-2)
+    struts = np.flatnonzero(np.any(_by_case(hinges.strut, 0), axis=1))
+    if len(struts):
+        length, axis, other_axis = (_of(each, struts) for each in (_by_case(hinges.strut, 0)[..., None], frame[..., 0], other[..., 0]))
+        line = _of(gap, struts) + 0.5 * length * (axis + other_axis)
+        span = np.sqrt(np.sum(line * line, axis=-1, keepdims=True))
+        along = line / span
+        one, two = _of(arm, struts) - 0.5 * length * axis, _of(other_arm, struts) + 0.5 * length * other_axis
+        strain[..., struts, :, :1] = span - length
+        rows[..., struts, :, :1, :] = np.concatenate([-along, cross(along, one), along, cross(two, along)], axis=-1)[..., None, :]
+    bow = _by_case(hinges.bow, 3)
+    bowed = np.flatnonzero(np.any(bow, axis=(1, 2, 3, 4)))
+    if len(bowed):
+        own = _of(strain, bowed)
+        slope = (bow[bowed] @ own[..., None, :, None])[..., 0]
+        strain[..., bowed, :, :] = own + 0.5 * (slope @ own[..., None])[..., 0]
+        rows[..., bowed, :, :, :] += slope @ rows[..., bowed, :, :, :]
+    return strain, rows
+
+
+def _of(values: Array, links: Array) -> Array:
+    """Vectors (..., l, b, c) of some links."""
+    return values[..., links, :, :]
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:

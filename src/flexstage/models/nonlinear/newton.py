@@ -23,7 +23,7 @@ USUAL = Effort()
 TOLD = ("status", "iterations", "residual", "reached")
 """What is told of every case."""
 _GOES_ON = -1
-_OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push")
+_OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push", "strut", "bow")
 """Tables of links about centres that differ from design to design."""
 
 

@@ -210,7 +210,7 @@ def branch(
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> found = branch(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
     >>> found.values.round(3).tolist()
-    [6.066, 6.067, 6.071]
+    [11.063, 11.065, 11.069]
     """
     given = critical(model, load, rest=rest, weight=weight)
     if given.kind is Kind.LIMIT:
@@ -238,7 +238,7 @@ def beyond(
     >>> load = {"platform.fx": -1e3}
     >>> given = critical(nonlinear(parallelogram()), load, weight=0.0)
     >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
-    [6.066, 6.067, 6.071]
+    [11.063, 11.065, 11.069]
     """
     start, what = given.state, f"at {given.factor:.6g} times the load"
     if given.kind is not Kind.BIFURCATION and side < 0.0:

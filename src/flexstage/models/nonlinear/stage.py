@@ -14,7 +14,9 @@ from flexstage.base.number import Array, stack
 from flexstage.beams.compliance import law
 from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
 from flexstage.beams.flexure.of_part import flexure_law
+from flexstage.beams.geometric import foreshortening
 from flexstage.beams.mass import mass
+from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.expansion import expansion
 from flexstage.mechanism.incidence import layout
@@ -26,7 +28,7 @@ from flexstage.models.nonlinear.corotated import Corotated
 from flexstage.models.nonlinear.hinge import Hinges
 from flexstage.models.nonlinear.state import Loads, Pose
 from flexstage.parts.condensation import condense
-from flexstage.parts.part import push_of, span
+from flexstage.parts.part import push_of, span, strut_of
 from flexstage.spatial.frame import spatial_rotation, transport
 
 
@@ -170,7 +172,7 @@ def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, tempera
         bodies=bodies,
         reference=reference,
         flexures=flexures,
-        hinges=_hinges(assembly, centred, drawn),
+        hinges=_hinges(mechanism, assembly, centred, drawn),
         elements=tuple(_element(item, number, reference) for item in assembly.superelements.values()),
         inputs=input_channels(assembly),
         places=Places(places.body, places.arm * growth.bodies[places.body, None]),
@@ -245,7 +247,7 @@ def _numbers(links: Iterable[PlacedLink], number: Mapping[str, int]) -> tuple[Ar
     return np.array(first, dtype=int), np.array(second, dtype=int)
 
 
-def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) -> Hinges:
+def _hinges(mechanism: Mechanism, assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) -> Hinges:
     first, second = _numbers(links.values(), drawn.number)
     count, inputs = len(links), len(input_channels(assembly))
     reference, growth = drawn.reference, drawn.growth
@@ -255,6 +257,7 @@ def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) 
     strokes, thrusts = imposed_strokes(assembly, free), exerted_wrenches(assembly)
     none = np.zeros((6, inputs))
     pushes = [push_of(link.part) for link in links.values()]
+    drawn_links = [as_drawn(mechanism, link) for link in links.values()]
     return Hinges(
         names=tuple(links),
         first=first,
@@ -266,6 +269,8 @@ def _hinges(assembly: Assembly, links: Mapping[str, PlacedLink], drawn: _Drawn) 
         stroke=np.array([strokes.get(name, none) for name in links]).reshape(count, 6, inputs),
         thrust=np.array([thrusts.get(name, none) for name in links]).reshape(count, 6, inputs),
         push=np.array([[0.0 if push is None else push, 0, 0, 0, 0, 0] for push in pushes], dtype=float).reshape(count, 6),
+        strut=np.array([strut_of(link.part) or 0.0 for link in links.values()], dtype=float),
+        bow=np.array([foreshortening(each.part, each.material) for each in drawn_links]).reshape(count, 6, 6, 6),
         locked=np.array([(place, freedom.index) for place, item in enumerate(laws) for freedom in item.locked], dtype=int).reshape(-1, 2),
     )
 

@@ -18,7 +18,7 @@ from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Contribution
 from flexstage.parts.condensation import Condensed, condense
 from flexstage.parts.given import Joint
-from flexstage.parts.part import Restricted
+from flexstage.parts.part import Restricted, strut_of
 from flexstage.parts.shape import Shaped
 from flexstage.parts.stated import Stated
 from flexstage.spatial.frame import Frame, spatial_rotation, twist_transform
@@ -70,7 +70,7 @@ def ends(assembly: Assembly) -> Iterator[End]:
     """
     for name, link in assembly.links.items():
         if stated_of(link) is not None:
-            half = 0.5 * float(np.real(link.part.strut or 0.0))  # pyright: ignore[reportAttributeAccessIssue]  (joints state nothing)
+            half = 0.5 * float(np.real(strut_of(link.part) or 0.0))
             for body, away in zip(link.joins, (-half, half), strict=True):
                 if body != GROUND:
                     yield End(f"{name}:{body}", body, link.frame.point(np.array([away, 0.0, 0.0])))
