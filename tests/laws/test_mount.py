@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+import flexstage as fs
+from flexstage.analysis.drift import drift
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
@@ -18,8 +20,10 @@ from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal
+from flexstage.models.lumped import lumped as drawn_lumped
 from flexstage.parts.body import Block, Body, Cylinder, Sphere
-from flexstage.spatial.frame import Frame
+from flexstage.parts.material import Material
+from flexstage.spatial.frame import Frame, axes
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import mechanisms, moved, turns
@@ -193,3 +197,65 @@ def test_outlines_of_every_kind_go_with_their_stage():
     centre = Frame(turn, shift).point(drawn.mass.centre)
     np.testing.assert_allclose(found.mass.centre, centre, atol=1e-12)
     np.testing.assert_allclose(found.mass.inertia, turn @ drawn.mass.inertia @ turn.T, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", ["z-stage", "voice-coil-stage", "double-triangle"])
+def test_a_mounted_stage_drifts_as_it_does_by_itself(name):
+    """Also where it is mounted twice: equal materials under two names are one."""
+    own = fs.case(name)
+    alone = drift(own, drawn_lumped(own)).motion
+    once = mount(Mechanism("top", gravity=own.gravity, damping=own.damping), "s", own)
+    twice = mount(once, "t", own, platform=False)
+    for stage in (once, twice):
+        found = drift(stage, drawn_lumped(stage)).motion
+        rates = [found.at(row, "uniform") for row in alone.rows]
+        np.testing.assert_allclose(rates, alone.values[:, 0], rtol=1e-9, atol=1e-15)
+
+
+GROUNDS = """
+format = "flexstage 1"
+name = "two guides that carry one platform"
+{0}
+[stages]
+s = {{ file = "s.toml" }}
+t = {{ file = "t.toml", on = "{1}" }}
+[bodies.platform]
+mass = "1 kg"
+[parts.weld]
+kind = "joint"
+[links]
+one = {{ joins = ["s/platform", "platform"], part = "weld", at = ["0 mm", "0 mm", "0 mm"], along = "x", bends = "z" }}
+two = {{ joins = ["t/platform", "platform"], part = "weld", at = ["0 mm", "0 mm", "0 mm"], along = "x", bends = "z" }}
+"""
+
+
+def test_grounds_of_mounted_stages_agree_or_are_stated(tmp_path):
+    stage = parallelogram()
+    dump(replace(stage, ground="steel", temperatures={"all": 2.0}), tmp_path / "s.toml")
+    dump(replace(stage, ground="aluminium", temperatures={"ground": 3.0}), tmp_path / "t.toml")
+
+    def read(ground="", on="ground"):
+        return loads(GROUNDS.format(ground, on), folder=tmp_path)
+
+    with pytest.raises(DesignError) as caught:
+        read()
+    assert 'its ground grows as "t/aluminium", that of what it is mounted beside as "s/steel"' in str(caught.value)
+    assert "its ground is warmer by 3 K, that of what it is mounted beside by 2 K" in str(caught.value)
+    stated = read('ground = "s/steel"\ntemperatures.ground = "3 K"')
+    assert stated.ground == "s/steel"
+    bodies = {"s/platform": 2.0, "s/B/base": 2.0, "s/B/tip": 2.0}
+    assert dict(stated.temperatures) == {"ground": 3.0, **bodies}
+    there = read(on="s/platform")
+    assert there.ground == "s/steel"
+    assert dict(there.temperatures) == {"ground": 2.0, **bodies}
+
+
+def test_a_crystal_turns_with_its_stage():
+    silicon = Material(None, None, 2329.0, c11=165.7e9, c12=63.9e9, c44=79.6e9, crystal=((1.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    stage = parallelogram()
+    stage = replace(stage, materials={**stage.materials, "aluminium": silicon})
+    turn = axes((1.0, 2.0, 2.0), (2.0, -2.0, 1.0))
+    there = mount(Mechanism("top"), "s", stage, pose=pose_of(turn, np.zeros(3)))
+    for name, link in expand(stage).links.items():
+        if link.material is not None:
+            np.testing.assert_allclose(expand(there).links[f"s/{name}"].material.modulus, link.material.modulus, rtol=1e-12)

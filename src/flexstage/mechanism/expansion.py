@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.digest import digest
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Number
 from flexstage.mechanism.drawn import as_drawn
@@ -97,7 +98,7 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     if given is not None:
         return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
     assembly = expand(mechanism)
-    solids = sorted({placed.solid.material for placed in assembly.ground.values()})
+    solids = _distinct(mechanism, (placed.solid.material for placed in assembly.ground.values()))
     links = _link_materials(mechanism, assembly, GROUND)
     if len(solids) == 1:
         return Ground(solids[0], "all its outlines are of it")
@@ -128,7 +129,7 @@ def _grows(link: PlacedLink) -> bool:
 def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
     """The material a body grows with and its source; an empty name where it is not known."""
     solids = {address.removeprefix(f"{name}."): placed.solid for address, placed in assembly.bodies[name].solids.items()}
-    if len({solid.material for solid in solids.values()}) == 1:
+    if len(_distinct(mechanism, (solid.material for solid in solids.values()))) == 1:
         return next(iter(solids.values())).material, "of its solids"
     if solids:
         heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
@@ -146,7 +147,13 @@ def _weight(mechanism: Mechanism, solid: Solid) -> float:
 
 def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list[str]:
     parts = [as_drawn(mechanism, link).part for link in assembly.links.values() if body in link.joins]
-    return sorted({name for part in parts if (name := material_of(part)) is not None and counter_of(part) is None})
+    return _distinct(mechanism, (name for part in parts if (name := material_of(part)) is not None and counter_of(part) is None))
+
+
+def _distinct(mechanism: Mechanism, names: Iterable[str]) -> list[str]:
+    """Names of materials, one of those that are the same material under several (of mounted stages)."""
+    known = {digest(mechanism.materials.get(name, name), physics=True): name for name in sorted(set(names), reverse=True)}
+    return sorted(known.values())
 
 
 def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:

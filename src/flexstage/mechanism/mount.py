@@ -8,17 +8,31 @@ from typing import Any, cast
 
 import numpy as np
 
-from flexstage.base.digest import Description
+from flexstage.base.digest import Description, digest
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
 from flexstage.mechanism.expand import copy_frames, placed_bodies
 from flexstage.mechanism.likeness import drawn_units
 from flexstage.mechanism.locate import canonical
-from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, Link, LinkProbe, Mechanism, Placement, Probe, Stop, Unit
+from flexstage.mechanism.mechanism import (
+    EVERYWHERE,
+    GROUND,
+    NOT_GROWING,
+    PLATFORM,
+    GaugePlace,
+    Link,
+    LinkProbe,
+    Mechanism,
+    Placement,
+    Probe,
+    Stop,
+    Unit,
+)
 from flexstage.mechanism.pattern import Normal, Pose, copy_names
 from flexstage.mechanism.sight import link_names
-from flexstage.parts.body import Body, Inertia, Solid
+from flexstage.parts.body import Body, Inertia, Solid, owner_of
 from flexstage.parts.mass import tensor
+from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.spatial.frame import Frame, identity, reflection
 
@@ -42,9 +56,10 @@ def mount(
     """Return the stage with another one `carried` on its body `on`: what was that one's ground is this body.
 
     Bodies, links, units, copies, parts, gauges and loads of the carried stage are called `name/...`, their numbers are as they are there;
-    its departures and tags come along. Its gravity, damping, requirements, envelope, formulas and what else is said of a stage as a whole
-    do not. `platform`: that of the carried stage is the platform of both (absent: where the stage itself has no body of this name).
-    Raises `DesignError` where names clash, the body is not there, or the pose is mirrored.
+    its departures and tags come along, its temperatures too, and, on the ground, what that grows with. Its gravity, damping, requirements,
+    envelope, formulas and what else is said of a stage as a whole do not. `platform`: that of the carried stage is the platform of both
+    (absent: where the stage itself has no body of this name). Raises `DesignError` where names clash, the body is not there, the pose is
+    mirrored, or both stages state another growth or temperature of one ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> both = mount(parallelogram(), "fine", parallelogram(), on="platform")
@@ -57,7 +72,7 @@ def mount(
     rename = _Names(name, on, frozenset(drawn for unit in drawn_units(carried).values() for drawn in unit.bodies), brings)
     frame = copy_frames(pose, 1)[0]
     own: dict[str, Mapping[str, Any]] = {
-        "materials": _under(name, carried.materials),
+        "materials": {f"{name}/{key}": item.turned(frame.rotation) for key, item in carried.materials.items()},
         "parts": {f"{name}/{key}": rename.part(part) for key, part in carried.parts.items()},
         "bodies": {rename.body(key): _moved_body(rename.solids(body), frame) for key, body in carried.bodies.items()},
         "links": {f"{name}/{key}": _moved_link(rename.link(link), frame) for key, link in carried.links.items()},
@@ -74,12 +89,18 @@ def mount(
             f"{name}/{key}": replace(item, body=rename.body(item.body), at=_point(frame, item.at), force=_direction(frame, item.force))
             for key, item in carried.forces.items()
         },
+        "temperatures": {
+            rename.body(key): value for key, value in _temperatures(carried).items() if key != GROUND or _is_on_ground(stage, on)
+        },
     }
+    own["temperatures"] = {**own["temperatures"], **stage.temperatures}
     merged = {section: Table({**getattr(stage, section), **entries}) for section, entries in own.items()}
     changes = {_departure(name, key): value for key, value in carried.changes.items()}
     tags, sources = _provenance(stage, rename, carried)
     packages = tuple(dict.fromkeys((*stage.packages, *carried.packages)))
-    return replace(stage, **merged, changes=Table({**changes, **stage.changes}), tags=tags, sources=sources, packages=packages)
+    ground = stage.ground or (_ground(name, carried) if _is_on_ground(stage, on) else None)
+    changes = Table({**changes, **stage.changes})
+    return replace(stage, **merged, ground=ground, changes=changes, tags=tags, sources=sources, packages=packages)
 
 
 def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, pose: Pose) -> Iterator[Finding]:
@@ -97,8 +118,42 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
     known = {GROUND, *placed_bodies(stage)}
     if on not in known:
         yield Finding(f"{where}.on", f'there is no body "{on}"', suggest_nearest(on, known))
+    if _is_on_ground(stage, on):
+        yield from _ground_findings(stage, name, carried)
     if on in {body for unit in drawn_units(carried).values() for body in unit.bodies}:
         yield Finding(f"{where}.on", f'a unit of the carried stage has a body "{on}" itself', "Give one of them another name")
+
+
+def _is_on_ground(stage: Mechanism, on: str) -> bool:
+    return owner_of(placed_bodies(stage), on) == GROUND
+
+
+def _ground(name: str, carried: Mechanism) -> str | None:
+    """What the carried stage states that its ground grows with, by its new name."""
+    return carried.ground if carried.ground in (None, NOT_GROWING) else f"{name}/{carried.ground}"
+
+
+def _temperatures(stage: Mechanism) -> dict[str, Number]:
+    """The temperature of every body, and of the ground, that the stage states."""
+    moving = [name for name, body in placed_bodies(stage).items() if body.of is None]
+    everywhere = dict.fromkeys((GROUND, *moving), stage.temperatures[EVERYWHERE]) if EVERYWHERE in stage.temperatures else {}
+    return everywhere | {name: value for name, value in stage.temperatures.items() if name != EVERYWHERE}
+
+
+def _ground_findings(stage: Mechanism, name: str, carried: Mechanism) -> Iterator[Finding]:
+    """What both state of the ground must agree."""
+    mine, other = stage.ground, _ground(name, carried)
+    if mine and other and not _agree(stage.materials.get(mine, mine), carried.materials.get(carried.ground or "", other)):
+        what = f'its ground grows as "{other}", that of what it is mounted beside as "{mine}"'
+        yield Finding(f"stages.{name}", what, f'State it in this design: ground = "{mine}", or "{NOT_GROWING}" if it does not grow')
+    warm, warmer = (_temperatures(each).get(GROUND) for each in (stage, carried))
+    if warm is not None and warmer is not None and not np.array_equal(warm, warmer):
+        what = f"its ground is warmer by {warmer:g} K, that of what it is mounted beside by {warm:g} K"
+        yield Finding(f"stages.{name}", what, f'State it in this design: temperatures.ground = "{warm:g} K"')
+
+
+def _agree(one: Material | str, other: Material | str) -> bool:
+    return digest(one, physics=True) == digest(other, physics=True)
 
 
 def _under(name: str, entries: Mapping[str, Any]) -> dict[str, Any]:
@@ -270,7 +325,7 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
 
 
 def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) -> Mechanism:
-    """Return the stage with all that it carries, each after the one that it stands on.
+    """Return the stage with all that it carries, each after the one that it stands on. What it states of the ground itself holds for all.
 
     Where the stage has no body `platform`, the stage that carries no other brings it. Raises `DesignError` where several do.
 
@@ -278,13 +333,21 @@ def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) 
     'bare'
     """
     top = _top(stage, {name: item for name, (item, _) in carried.items()})
-    waiting = dict(carried)
+    waiting = {name: (item, _under_ground_of(stage, inner)) for name, (item, inner) in carried.items()}
     while waiting:
         known = {GROUND, *placed_bodies(stage)}
         name = next((each for each, (item, _) in waiting.items() if item.on in known), next(iter(waiting)))
         item, inner = waiting.pop(name)
         stage = mount(stage, name, inner, on=item.on, pose=item.pose, platform=name == top)
     return stage
+
+
+def _under_ground_of(stage: Mechanism, carried: Mechanism) -> Mechanism:
+    """The carried stage without what the stage itself states of the ground."""
+    warm = _temperatures(carried)
+    if GROUND in _temperatures(stage):
+        warm.pop(GROUND, None)
+    return replace(carried, ground=None if stage.ground else carried.ground, temperatures=Table(warm))
 
 
 def _top(stage: Mechanism, carried: Mapping[str, Mount]) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import reduce
 from typing import Annotated
 
@@ -188,6 +188,19 @@ class Material(Description):
         pairs = lattice[..., :, _FIRST] * lattice[..., :, _SECOND]
         isotropic = c12 * _VOLUME + c44 * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
         return isotropic + (c11 - c12 - 2.0 * c44) * (np.swapaxes(pairs, -1, -2) @ pairs)
+
+    def turned(self, rotation: Array) -> Material:
+        """The material of a stage whose axes are columns of `rotation` (..., 3, 3) in another one: a crystal's directions along that one's.
+
+        >>> silicon = Material(None, None, 2329.0, c11=166e9, c12=64e9, c44=80e9)
+        >>> silicon.turned(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])).crystal
+        ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+        """
+        if not self.is_cubic or np.array_equal(rotation, np.eye(3)):
+            return self
+        lattice = self._lattice(np.swapaxes(rotation, -1, -2))
+        along, up = (tuple(np.moveaxis(lattice[..., :, axis], -1, 0).tolist()) for axis in (0, 2))
+        return replace(self, crystal=(along, up))
 
     def _lattice(self, rotation: Array) -> Array:
         """Axes (..., 3, 3), columns in the stage, as columns in the crystal."""
