@@ -105,6 +105,41 @@ def test_a_channel_that_comes_later_than_the_others_is_named(side: str, number: 
     assert told[0].startswith(f"{name} looks {word} by 1.2 ms")
 
 
+def beam(frequencies: tuple[float, ...], order: int, seconds: float = 0.0, channel: int | slice = slice(None)) -> Responses:
+    """Five points of a pinned beam, displacements or their derivatives; one of them, or all, late. The middle is a node of mode 2."""
+    known, points = np.array(frequencies), np.linspace(0.1, 0.9, 5)
+    shapes = np.sin(np.pi * np.outer(points, np.arange(1, len(known) + 1)))
+    lines = np.arange(2.0, 1.5 * np.max(known), 0.5)
+    exact = Truth(known, np.full(len(known), 0.005), shapes, shapes[1][:, None] / known[:, None] ** 2).response(lines)
+    exact = exact * ((2j * np.pi * lines) ** order)[:, None, None]
+    turn = np.exp(-2j * np.pi * lines * seconds)
+    exact[:, channel] = (exact[:, channel].T * turn).T
+    draw = np.random.default_rng(1).standard_normal((2, *exact.shape))
+    outputs = tuple(Channel(f"y{each}", ("m", "m/s", "m/s^2")[order], Role.OUTPUT) for each in range(5))
+    return Responses(lines, outputs, (Channel("u", "N", Role.INPUT),), exact * (1.0 + 1e-4 * (draw[0] + 1j * draw[1])))
+
+
+@pytest.mark.parametrize(("frequencies", "order"), [((48.0, 144.0, 240.0), 0), ((48.0, 144.0, 240.0), 2), ((50.0, 110.0, 250.0), 2)])
+def test_modes_in_whole_ratios_show_no_delay_where_there_is_none(frequencies: tuple[float, ...], order: int) -> None:
+    """Half-turns of all modes in which a channel moves are changes of sign: they make no shape more real."""
+    found = identify(beam(frequencies, order))
+    assert len(found.frequencies) == len(frequencies)
+    assert found.delay == 0.0
+    assert not any("looks" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize(("channel", "seconds", "text"), [(2, 2e-3, "y2 looks late by 2 ms"), (4, -1.5e-3, "y4 looks early by 1.5 ms")])
+def test_a_late_channel_is_named_where_modes_are_in_whole_ratios(channel: int, seconds: float, text: str) -> None:
+    found = [each for each in identify(beam((48.0, 144.0, 240.0), 2, seconds, channel)).warnings if "looks" in each]
+    assert len(found) == 1
+    assert found[0].startswith(text)
+
+
+def test_a_common_delay_of_accelerations_is_that_of_the_truth() -> None:
+    found = identify(beam((48.0, 144.0, 240.0), 2, LATE))
+    assert found.delay == pytest.approx(LATE, abs=3e-6)
+
+
 def test_a_channel_that_hardly_moves_in_a_mode_is_not_called_late_by_it() -> None:
     """The phase of little is noise: a whole period of another mode would have explained it."""
     assert not any("looks" in each for each in identify(record(truth(seed=1006), 6, seconds=7.2)).warnings)

@@ -16,7 +16,7 @@ from flexstage.experiment.record import Channel, Role
 from flexstage.experiment.unit import same_dimension, unit_problem
 
 _LEAST_REAL, _SURE = 0.9, 5.0
-_UNSURE = 0.01
+_UNSURE, _KNOWN = 0.01, 0.2
 _CLEAR, _NOTICED = 6.0, 0.1
 _ONE, _FEW, _ENOUGH = 0.45, 3.0, 3
 _FINE = 40.0
@@ -53,8 +53,9 @@ def common_delay(found: Identified) -> Delay | None:
 
     A mode's residue R in H = R/(s - p) + ... is imaginary then (real where a velocity is read; Heylen, Lammens & Sas, Modal Analysis
     Theory and Testing, 1997, A.1), and e^{-p tau} times that with a delay: the phase falls with frequency. Lags and filters that turn
-    phase alike count as delay. Signs of residues are unknown, so three modes tell delays up to 3 periods of the lowest, fewer up to
-    0.45. `None` where no delay makes the residues imaginary, or where it is not told from none.
+    phase alike count as delay. Signs of residues are unknown, so three modes determine delays up to 3 periods of the lowest, fewer up to
+    0.45; of delays that explain the phases equally well the shortest is returned. `None` where no delay makes the residues imaginary, or
+    where it does not differ from zero significantly.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -64,25 +65,27 @@ def common_delay(found: Identified) -> Delay | None:
     >>> round(identify(late).delay, 3)
     0.031
     """
-    return _told(found, None)
+    return _fit_delay(found, None)
 
 
 def late_channels(found: Identified) -> Iterator[str]:
     """Single channels that come later than the others of their side: what would make their part in the modes that of a real stage.
 
-    Each channel's residues tell a delay of their own, by three modes or more; it is named where it is 6 deviations from the others'
-    middle and turns the highest mode by a tenth of a turn or more, and the others agree.
+    Each channel's residues have a delay of their own, by three modes or more; it is named where it is 6 deviations from the others'
+    median and turns the highest mode by a tenth of a turn or more, and the others agree. Residues must be less real by as much at the
+    median: half-turns of all modes in which a channel moves are changes of sign, not delays.
     """
     if len(_groups(found)) < _ENOUGH:
         return
     for role, channels in ((Role.OUTPUT, found.outputs), (Role.INPUT, found.inputs)):
         if len(channels) < _ENOUGH:
             continue
-        own = [_told(found, _Single(role, number), least=-np.inf) for number in range(len(channels))]
-        known = [each.value for each in own if each is not None]
+        first = [_fit_delay(found, _Single(role, number), least=-np.inf) for number in range(len(channels))]
+        known = [each.value for each in first if each is not None]
         if len(known) < len(channels):
             continue
         usual = float(np.median(known))
+        own = [_fit_delay(found, _Single(role, number), usual, -np.inf) for number in range(len(channels))]
         apart = [(channel, each.value - usual, each.deviation) for channel, each in zip(channels, own, strict=True) if each is not None]
         turns = float(np.max(found.frequencies))
         late = [each for each in apart if abs(each[1]) > _CLEAR * each[2] and abs(each[1]) * turns > _NOTICED]
@@ -95,8 +98,11 @@ def late_channels(found: Identified) -> Iterator[str]:
                 )
 
 
-def _told(found: Identified, channel: _Single | None, least: float = _SURE) -> Delay | None:
-    """The delay that residues tell, all or those of one channel; `None` where it is not `least` deviations from none."""
+def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, least: float = _SURE) -> Delay | None:
+    """The delay of the residues, all or those of one channel; `None` where it is not `least` deviations from zero.
+
+    Of delays that explain the phases equally well, the one nearest to `near` [s]: signs are free, half-turns explain nothing.
+    """
     terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
     if not terms:
         return None
@@ -104,21 +110,28 @@ def _told(found: Identified, channel: _Single | None, least: float = _SURE) -> D
     spreads = np.array([each.spread for each in terms])
     turning = np.abs(np.imag(poles))
     weights = 1.0 / (spreads**2 + _UNSURE**2)
-    longest = (_FEW if len(terms) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
+    longest = (_FEW if np.sum(spreads < _KNOWN) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
     step = 2.0 * np.pi / (_FINE * np.max(turning))
     count = int(np.ceil(longest / step))
-    tried = step * np.arange(0 if channel is None else -count, count)  # none is among them
-    real = np.real(np.exp(2j * np.outer(tried, turning)) @ (weights * squares)) / np.sum(weights)
-    if np.max(real) < _LEAST_REAL:
-        return None
-    value = float(tried[int(np.argmax(real))])
+    first = near - (0.0 if channel is None else longest)
+    tried = first + step * np.arange(count if channel is None else 2 * count)
+
+    def phases(delays: Array) -> Array:
+        return -0.5 * np.angle(squares[:, None] * np.exp(2j * np.outer(turning, delays)))
+
+    curvature = float(np.sum(weights * turning**2))
     for _ in range(3):
-        left = -0.5 * np.angle(squares * np.exp(2j * turning * value))
-        value += float(np.sum(weights * turning * left) / np.sum(weights * turning**2))
-    left = -0.5 * np.angle(squares * np.exp(2j * turning * value))
-    scatter = float(np.sum(weights * left**2)) / max(1, len(terms) - 1)
-    deviation = float(np.sqrt(max(1.0, scatter) / np.sum(weights * turning**2)))
-    return Delay(value, deviation) if value > least * deviation else None
+        tried = tried + (weights * turning) @ phases(tried) / curvature
+    tried = tried[tried >= first - step]
+    if not len(tried):
+        return None
+    misfit = weights @ phases(tried) ** 2
+    scatter = max(1.0, float(np.min(misfit)) / max(1, len(terms) - 1))
+    equal = tried[misfit <= np.min(misfit) + _CLEAR**2 * scatter]
+    value = float(equal[np.argmin(np.abs(equal - near))])
+    real = float(np.real(np.exp(2j * turning * value) @ (weights * squares)) / np.sum(weights))
+    deviation = float(np.sqrt(scatter / curvature))
+    return Delay(value, deviation) if real >= _LEAST_REAL and value > least * deviation else None
 
 
 def bends_modes(found: Identified, delay: Delay) -> bool:
@@ -166,9 +179,13 @@ def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None)
 
 
 def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
-    """Velocities of a free decay over its motions, up to a positive factor: p/|p|; 1 for all else."""
-    return np.array([pole / abs(pole) if _is_rate(channel.unit) else 1.0 for channel in channels])
+    """Velocities or accelerations of a free decay over its motions, up to a positive factor: (p/|p|)^n; 1 for all else."""
+    return np.array([(pole / abs(pole)) ** _derivative(channel.unit) for channel in channels])
 
 
-def _is_rate(unit: str) -> bool:
-    return bool(unit) and unit_problem(unit) is None and any(same_dimension(unit, each) for each in ("m/s", "rad/s"))
+def _derivative(unit: str) -> int:
+    """Order of the derivative of a motion that is measured: 1 for velocities, 2 for accelerations, 0 for all else."""
+    if not unit or unit_problem(unit) is not None:
+        return 0
+    units = (("m/s", "rad/s"), ("m/s^2", "rad/s^2"))
+    return next((order for order, each in enumerate(units, 1) if any(same_dimension(unit, name) for name in each)), 0)
