@@ -18,9 +18,12 @@ from scipy.io import loadmat
 from flexstage.analysis import complete
 from flexstage.analysis.modes import modes
 from flexstage.apps.cli.commands import COMMANDS
+from flexstage.base import store
+from flexstage.base.finding import refuse
 from flexstage.mechanism.store import load
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
+from flexstage.show.command import output
 from tests.apps.command import Command, design_in
 
 BAD_TARGETS = {
@@ -306,3 +309,16 @@ def test_a_report_shows_what_was_set_and_what_that_did(flexstage: Command, tmp_p
     for text in ("parts.neck.thickness", "2 mm", "1.4 mm", "What the change does", "frequency.platform.1", "old", "new", "change"):
         assert text in section, text
     assert '<section id="changes">' not in plain
+
+
+def test_a_full_disk_leaves_no_folder_of_tables(flexstage: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def write_until_full(path: Path, content: bytes) -> store.PendingFile:
+        if path.name.startswith("modes.twists"):
+            raise refuse(str(path), "it cannot be written: No space left on device", "Free space")
+        return store.write_temporary(path, content)
+
+    monkeypatch.setattr(output, "write_temporary", write_until_full)
+    before = sorted(tmp_path.iterdir())
+    ended = flexstage("modes", "stage.toml", "--csv", "tables")
+    assert (ended.code, "No space left" in ended.err) == (2, True)
+    assert sorted(tmp_path.iterdir()) == before

@@ -344,7 +344,73 @@ def test_a_table_without_header_or_time_is_refused(tmp_path: Path) -> None:
     np.testing.assert_array_equal(kept(path, Options(rate=50.0)), VALUES)
 
 
+PREAMBLES = {
+    "keys and values": "Delta_X\t0.001\nX_Value\tForce\tNote",
+    "a key": "u1 [V]\tS1 [um]\nSamples:\t400",
+    "a sentence": "# Sample rate: 100 Hz",
+}
+
+
+@pytest.mark.parametrize("preamble", PREAMBLES)
+def test_a_preamble_never_names_columns(preamble: str, tmp_path: Path) -> None:
+    path, last = tmp_path / "a.csv", PREAMBLES[preamble].splitlines()[-1].lstrip("# ")
+    np.savetxt(path, VALUES, delimiter="\t", header=PREAMBLES[preamble], comments="")
+    said = refusal(path)
+    assert f'its 2 columns are not named by the line above them: "{last}"' in said
+    named = said.rpartition('such as "')[2].rpartition('"')[0]  # the hint works as typed
+    np.savetxt(path, np.column_stack([np.arange(400) / RATE, VALUES[:, 0]]), delimiter="\t", header=named, comments="")
+    assert read(path).names == ("u1",)
+
+
+def test_signs_of_comments_within_names_belong_to_them(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    np.savetxt(path, np.column_stack([np.arange(400) / RATE, VALUES]), header="time [s],a//b [V],50 % load #1 [um]", delimiter=",")
+    assert read(path).names == ("a//b", "50 % load #1")
+
+
+def test_names_that_are_formulas_head_no_column(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match="cannot head a column"):
+        write(tmp_path / "a.csv", in_memory((Channel("=1+1", "V"),), RATE, VALUES[:, :1]))
+
+
+def test_a_channel_without_samples_is_refused_whatever_is_allowed(tmp_path: Path) -> None:
+    path = plain(tmp_path / "a.uff", "uff")
+    whole = path.read_bytes()
+    size = 8 * len(VALUES)
+    first = whole.index(np.ascontiguousarray(VALUES[:, 0]).tobytes())
+    path.write_bytes(whole[:first] + whole[first + size :])
+    assert "it breaks off" in refusal(path)
+    assert "one of its channels has no samples" in refusal(path, allowing(Allow.TRUNCATED))
+
+
 # --- responses ---
+
+
+@pytest.mark.parametrize("unit", ["deg", "rad"])
+def test_magnitude_and_phase_are_the_responses(unit: str, tmp_path: Path) -> None:
+    path, lines = tmp_path / "a.csv", np.arange(1.0, 51.0)
+    exact = 2.0 / (1.0 - (lines / 30.2) ** 2 + 0.02j * lines / 30.2)
+    phase = np.angle(exact, deg=unit == "deg")
+    np.savetxt(path, np.column_stack([lines, abs(exact), phase]), header=f"frequency [Hz],magnitude [um/V],phase [{unit}]", delimiter=",")
+    found = read(path)
+    assert isinstance(found, Responses)
+    np.testing.assert_allclose(found.values[:, 0, 0], exact, rtol=1e-12)
+    assert found.units == (("um/V",),)
+    head = f"Frequency (Hz),A Magnitude (dB),B Magnitude (dB),B Phase ({unit})"
+    np.savetxt(path, np.column_stack([lines, 0.0 * lines, 20.0 * np.log10(abs(exact)), phase]), header=head, delimiter=",", comments="")
+    assert "or use only those that are whole (only): B" in refusal(path)
+    second = read(path, Options(only=("B",)))
+    assert isinstance(second, Responses)
+    np.testing.assert_allclose(second.values[:, 0, 0], exact, rtol=1e-12)
+    np.savetxt(path, np.column_stack([lines, abs(exact), phase]), header="frequency [Hz],gain [um/V],phase [um]", delimiter=",")
+    assert 'its unit is "um", where an angle is expected' in refusal(path)
+
+
+@pytest.mark.parametrize("name", ["TIME", "Time (s)"])
+def test_times_are_known_in_upper_and_lower_case(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    np.savetxt(path, np.column_stack([np.arange(400) / RATE, VALUES]), header=f"{name},CH1,Frequency", delimiter=",", comments="")
+    assert (kept(path, Options()).shape, read(path).names) == ((400, 2), ("CH1", "Frequency"))
 
 
 def test_responses_that_are_no_numbers_are_told(tmp_path: Path) -> None:

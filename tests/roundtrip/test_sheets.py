@@ -177,3 +177,11 @@ def test_results_stand_together_with_all_their_reasons() -> None:
     both = SideBySide(({"gain": 1.0, "reasons": {"a": "first"}}, {"loss": {"B1": 0.5}, "reasons": {"b": "second"}}))
     assert plain(both) == {"gain": 1.0, "loss": {"B1": 0.5}, "reasons": {"a": "first", "b": "second"}}
     assert to_csv(both) == {"": "gain\r\n1.0\r\n", "loss": "name,loss\r\nB1,0.5\r\n"}
+
+
+@pytest.mark.parametrize("name", ["=cmd|'/c calc'!A0", "+1+1", "-1+1", "@SUM(1)", "\t=1"])
+def test_no_text_of_a_csv_file_is_a_formula(name: str) -> None:
+    found = to_csv({"loss": {name: -0.5}, "labels": Matrix(np.ones((1, 1)), (name,), (name,), "m")})
+    cells = [cell for text in found.values() for row in csv.reader(io.StringIO(text)) for cell in row]
+    assert cells.count(f"'{name}") + cells.count(f"'{name} [m]") == 3
+    assert "-0.5" in cells

@@ -12,10 +12,13 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.sheet import Sheet, parts, plain_cell
 from flexstage.show.table import first_design
 
+_FORMULA = ("=", "+", "-", "@")
+
 
 def to_csv(result: Any) -> dict[str, str]:
     r"""Every part of a result as CSV (RFC 4180), by its path: names first, numbers as they are, SI units in the heads.
 
+    Texts that a spreadsheet would run as formulas (`=`, `+`, `-`, `@` first) begin with an apostrophe.
     A number that is not known is an empty cell. Where the columns of a matrix have no unit in common, each row has its unit beside it;
     where rows have none either, each entry is a row.
 
@@ -35,6 +38,8 @@ def _cell(value: Any) -> Any:
     value = plain_cell(value)
     if isinstance(value, float):
         return "" if math.isnan(value) else value + 0.0  # no -0.0
+    if isinstance(value, str) and value.lstrip().startswith(_FORMULA):
+        return f"'{value}"
     return str(value).lower() if isinstance(value, bool) else value
 
 

@@ -52,6 +52,8 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     if len(wanted) > 1:
         listed = " and ".join(_describe(each) for each in wanted)
         raise refuse(str(place), f"it holds {listed}", 'Say which is meant (kind): "record" or "responses"')
+    if isinstance(wanted[0], Record) and not wanted[0].length:
+        raise refuse(str(place), "one of its channels has no samples", "Export the file anew, or leave that channel out (only)")
     return wanted[0]
 
 

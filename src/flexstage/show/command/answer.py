@@ -17,7 +17,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
-from flexstage.show.command.output import STDOUT, announce, save, write
+from flexstage.show.command.output import STDOUT, announce, make_folder, save, write
 from flexstage.show.command.terminal import print_note, print_styled, print_warning
 from flexstage.show.document import envelope
 from flexstage.show.render import fold, to_rich
@@ -67,7 +67,7 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
     """Write the parts of a result into a folder, if one is named: `modes.csv` what is single, `modes.twists.csv` what is at `twists`."""
     if folder is None:
         return
-    folder.mkdir(exist_ok=True)
+    make_folder(folder)
     taken = set[str]()
     for path, text in to_csv(body()).items():
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", f"{kind}.{path}".rstrip("."))[:_LONGEST]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 
@@ -22,6 +22,7 @@ class _Pending:
 
     def __init__(self) -> None:
         self.files: list[PendingFile] = []
+        self.folders: list[Path] = []
         self.texts: list[str] = []
 
     def put(self) -> None:
@@ -32,6 +33,9 @@ class _Pending:
     def drop(self) -> None:
         for each in self.files:
             each.drop()
+        for folder in self.folders:
+            with suppress(OSError):  # it holds the files that were put
+                folder.rmdir()
 
 
 # The command that runs decides when its outputs appear, however deep in it they are written: one value for the time of one command.
@@ -145,6 +149,14 @@ def _folder_problem(folder: Path) -> str | None:
 
 def _is_device(path: Path) -> bool:
     return path.exists() and not path.is_file()
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder for outputs where there is none; a command that fails leaves no empty one."""
+    pending = _PENDING.get()
+    if pending is not None and not folder.exists():
+        pending.folders.append(folder)
+    folder.mkdir(exist_ok=True)
 
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:

@@ -19,15 +19,18 @@ from flexstage.experiment.options import number_names
 from flexstage.experiment.unit import plain_unit, unit_problem
 
 _HEAD = 1 << 18
+_QUOTED = 60
 _LOOKED_AT = 6
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?", re.ASCII)
 """A number as files print it."""
 MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"})
 """Fields that stand for a number that is missing, in small letters."""
-_COMMENT = re.compile(r"\s*(#|%|//|\*)+\s?")
+_COMMENT = re.compile(r"^\s*(#|%|//|\*)+\s?")
+_LETTER = re.compile(r"[^\W\d_]")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]]*)[\])]")
 _WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 _EXAMPLE = 'Write a header such as "time [s], u1 [V], S1 [um]" as its first line'
+_NAMES = ("time [s]", "u1 [V]", "S1 [um]")
 
 
 @dataclass(frozen=True)
@@ -165,15 +168,13 @@ def _fields(line: str, delimiter: str | None) -> list[str]:
 
 
 def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units from the nearest line above the numbers that has as many fields; a line of units alone belongs to the one above."""
+    """Names and units from the line next above the numbers; a line of units alone belongs to the one above. No preamble counts."""
     found = list(_candidates(head, delimiter, columns))
     if not found:
-        counts = (
-            f"its {columns} columns have no header"
-            if not head
-            else f"none of the {len(head)} lines above its {columns} columns names them all"
-        )
-        raise refuse(str(path), counts, _EXAMPLE)
+        last = next((line.strip() for line in reversed(head) if line.strip()), "")
+        what = "have no header" if not last else f'are not named by the line above them: "{last[:_QUOTED]}"'
+        example = (delimiter or " ").join((*_NAMES, *(f"S{number} [um]" for number in range(2, columns - 1)))[:columns])
+        raise refuse(str(path), f"its {columns} columns {what}", f'Name each column in the line above the numbers, such as "{example}"')
     if len(found) > 1 and all(unit_problem(plain_unit(text)) is None or not plain_unit(text) for text in found[0]):
         return number_names(_name_and_unit(text)[0] for text in found[1]), tuple(plain_unit(text) for text in found[0])
     pairs = [_name_and_unit(text) for text in found[0]]
@@ -181,13 +182,26 @@ def _header(head: list[str], delimiter: str | None, columns: int, path: Path) ->
 
 
 def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterator[list[str]]:
-    for line in reversed(head):
-        for each in dict.fromkeys((delimiter, ",", ";", "\t", None)):
-            fields = [found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each)
-            fields = fields[:-1] if len(fields) == columns + 1 and not fields[-1] else fields
-            if len(fields) == columns and any(re.search(r"[^\W\d]", field) for field in fields):
-                yield fields
-                break
+    """Fields of the lines next above the numbers, upwards, as long as they name all columns; lines without letters are passed over."""
+    for line in reversed([each for each in head if _LETTER.search(each)]):
+        divided = (
+            [found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each)
+            for each in dict.fromkeys((delimiter, ",", ";", "\t", *([None] if delimiter in (None, "\t") else [])))
+        )
+        named = next((each for fields in divided if _are_names(each := _without_last_empty(fields, columns), columns)), None)
+        if named is None:
+            return
+        yield named
+
+
+def _without_last_empty(fields: list[str], columns: int) -> list[str]:
+    return fields[:-1] if len(fields) == columns + 1 and not fields[-1] else fields
+
+
+def _are_names(fields: list[str], columns: int) -> bool:
+    """Whether fields may name so many columns: words, no numbers, and no keys that end in a colon."""
+    no_name = (NUMBER.fullmatch(field) or field.endswith(":") for field in fields)
+    return len(fields) == columns and not any(no_name) and any(_LETTER.search(field) for field in fields)
 
 
 def _name_and_unit(text: str) -> tuple[str, str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexstage.base.dimension import dimension_of
 from flexstage.base.files import Attribute
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
@@ -19,13 +20,16 @@ from flexstage.experiment.formats.table.layout import Layout, read_layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
 from flexstage.experiment.options import Allow, Arrays, Kind, Options, assign, matches, select_names
 from flexstage.experiment.record import Channel, Record, Responses, Role
+from flexstage.experiment.unit import same_dimension, unit_problem
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage record; rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s; samples (?P<count>\d+)")
 """The comment that heads records written here: what times of a column do not say to the bit."""
 OWN_RESPONSES = re.compile(r"flexstage responses; outputs \d+; inputs \d+; averages (?P<averages>\d+)")
 SAYING = {"name": "name: ", "roles": "roles: ", "window": "window: ", "inputs": "inputs: ", "outputs": "outputs: "}
-_PART = re.compile(r"(?P<name>.+?)[ _](?P<part>re|im|coherence)")
+_PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
+_MAGNITUDES = ("mag", "amplitude", "gain")
+_RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")
 _BLOCK = 65_536
 
 
@@ -52,7 +56,8 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     samples = _samples(path, layout, options)
     require(_unknown_names(path, layout, options.arrays))
     own = next(filter(None, map(OWN_RESPONSES.match, layout.comments)), None)
-    is_record = any(map(OWN.match, layout.comments))
+    is_stated = options.arrays.frequencies != Arrays().frequencies
+    is_record = any(map(OWN.match, layout.comments)) or (not is_stated and _column(layout, options.arrays.time) is not None)
     if own or (not is_record and _column(layout, options.arrays.frequencies) is not None):
         return _responses(path, layout, samples, options, own)
     return (_record(path, layout, samples, options),)
@@ -67,8 +72,9 @@ def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Findi
 
 
 def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
-    """The first column that has one of these names."""
-    return next((number for number, name in enumerate(layout.names) if matches(name, names)), None)
+    """The first column that has one of these names, else the first that has one but for upper and lower case."""
+    spelt = (*enumerate(layout.names), *enumerate(map(str.lower, layout.names)))
+    return next((number for number, name in spelt if matches(name, names)), None)
 
 
 def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
@@ -154,14 +160,15 @@ def _times(samples: TableSamples, scale: float) -> Iterator[Array]:
 def _responses(
     path: Path, layout: Layout, samples: TableSamples, options: Options, own: re.Match[str] | None
 ) -> tuple[Record | Responses, ...]:
-    """The columns in the form of named arrays: frequencies, then of each pair real and imaginary part, and coherence or not."""
+    """The columns in the form of named arrays: frequencies, then the parts of each response, and coherence or not."""
     at = 0 if own else _column(layout, options.arrays.frequencies)
     unit = layout.units[at or 0]
     if unit not in ("", "Hz", "kHz"):
         raise refuse(f"{path}: {layout.names[at or 0]}", f'its unit is "{unit}", where a frequency is expected', "Write Hz or kHz")
     values = samples.read(0, samples.length)
-    others = np.delete(values, at or 0, axis=1)
-    sides = {side: _side(layout, side) for side in ("outputs", "inputs")} if own else _pairs(path, layout, at or 0)
+    chosen = [number for number in range(len(layout.names)) if number != (at or 0) and (own or _is_chosen(layout.names[number], options))]
+    others = values[:, chosen] if own else _rectangular(path, layout, chosen, values)
+    sides = {side: _side(layout, side) for side in ("outputs", "inputs")} if own else _pairs(path, layout, chosen)
     outputs, inputs = len(sides["outputs"]), len(sides["inputs"])
     parts = others.shape[1] // max(1, outputs * inputs)
     if parts not in (2, 3) or parts * outputs * inputs != others.shape[1]:
@@ -181,18 +188,53 @@ def _responses(
     return read_arrays(Contents(str(path), tuple(held), said), whole)
 
 
-def _pairs(path: Path, layout: Layout, at: int) -> dict[str, list[tuple[str, str]]]:
-    """Outputs by the names of their columns, `S1 re`, `S1 im` and maybe `S1 coherence`; the one input is not named."""
-    names = [name for number, name in enumerate(layout.names) if number != at]
+def _is_chosen(name: str, options: Options) -> bool:
+    """Whether a column, or the response that it is a part of, is among the channels that count."""
+    part = _PART.fullmatch(name)
+    return not options.only or matches(name, options.only) or (part is not None and matches(part["name"] or "", options.only))
+
+
+def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ...], list[str]]:
+    """The parts that each response has in its columns, and the names of responses; raises `DesignError` for other columns."""
+    names = [layout.names[number] for number in chosen]
     found = [_PART.fullmatch(name) for name in names]
-    endings = tuple(each["part"] if each else "" for each in found)
-    order = ("re", "im", "coherence")[: 3 if "coherence" in endings else 2]
-    if not endings or endings != order * (len(endings) // len(order)):
-        advice = 'Give real and imaginary part of each: "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence"'
-        raise refuse(str(path), f"it has frequencies, and beside them {', '.join(names[:12])}", advice)
-    units = [unit for number, unit in enumerate(layout.units) if number != at][:: len(order)]
-    outputs = [each["name"] for each in found if each][:: len(order)]
+    words = tuple(each["part"].lower() if each else "" for each in found)
+    endings = tuple("magnitude" if each in _MAGNITUDES else each for each in words)
+    order = (*(_POLAR if "magnitude" in endings else _RECTANGULAR), *(["coherence"] if "coherence" in endings else []))
+    if endings and endings == order * (len(endings) // len(order)):
+        return order, [each["name"] or "output" for each in found if each][:: len(order)]
+    owners = [each["name"] or "" if each else name for each, name in zip(found, names, strict=True)]
+    partial = {name for name in owners if tuple(ending for own, ending in zip(owners, endings, strict=True) if own == name) != order}
+    whole = [name for name in dict.fromkeys(owners) if name not in partial]
+    advice = (
+        'Give real and imaginary part of each, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or magnitude '
+        'and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
+    )
+    named = f"; or use only those that are whole (only): {', '.join(whole[:12])}" if all(whole) and whole else ""
+    raise refuse(str(path), f"it has frequencies, and beside them {', '.join(names[:12])}", advice + named)
+
+
+def _pairs(path: Path, layout: Layout, chosen: list[int]) -> dict[str, list[tuple[str, str]]]:
+    """Outputs by the names of their columns; the one input is not named. A magnitude in dB is a number."""
+    order, outputs = _parts(path, layout, chosen)
+    units = ["1" if layout.units[number].lower() == "db" else layout.units[number] for number in chosen[:: len(order)]]
     return {"outputs": list(zip(outputs, units, strict=True)), "inputs": [("input", "1" if any(units) else "")]}
+
+
+def _rectangular(path: Path, layout: Layout, chosen: list[int], values: Array) -> Array:
+    """The columns of responses, magnitudes and phases turned into real and imaginary parts."""
+    order, _ = _parts(path, layout, chosen)
+    found = values[:, chosen]
+    if order[:2] != _POLAR:
+        return found
+    for first in range(0, len(chosen), len(order)):
+        unit, where = layout.units[chosen[first + 1]], f"{path}: {layout.names[chosen[first + 1]]}"
+        if unit_problem(unit) is not None or not same_dimension(unit, "rad"):
+            raise refuse(where, f'its unit is "{unit}", where an angle is expected', 'Write deg or rad, such as "phase [deg]"')
+        size = 10.0 ** (found[:, first] / 20.0) if layout.units[chosen[first]].lower() == "db" else found[:, first]
+        turn = np.exp(1j * found[:, first + 1] * float(dimension_of(unit).size))
+        found[:, first], found[:, first + 1] = size * np.real(turn), size * np.imag(turn)
+    return found
 
 
 def _side(layout: Layout, side: str) -> list[tuple[str, str]]:

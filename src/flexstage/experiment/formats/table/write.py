@@ -24,8 +24,8 @@ _BLOCK = 16_384
 def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write a CSV file: a header that names channels and units, under comments that say rate, roles and name.
 
-    Numbers are written with as many digits as bring them back to the bit. Raises `DesignError` for names that are no single line or mean
-    time, and where the file cannot be written.
+    Numbers are written with as many digits as bring them back to the bit. Raises `DesignError` for names that are no single line, mean
+    time or are formulas, and where the file cannot be written.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -46,7 +46,9 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 def _name_findings(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
     for channel in channels:
-        if not channel.name.isprintable() or channel.name != channel.name.strip() or matches(channel.name, Arrays().time):
+        is_formula = channel.name.startswith(("=", "+", "-", "@"))  # spreadsheets would run it
+        is_line = channel.name.isprintable() and channel.name == channel.name.strip()
+        if is_formula or not is_line or matches(channel.name, Arrays().time):
             yield Finding(f"{where}: {channel.name}", "its name cannot head a column of a CSV file", "Rename the channel")
 
 
