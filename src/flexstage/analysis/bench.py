@@ -33,7 +33,6 @@ from flexstage.mechanism.design import design
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.outline import outlines
-from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 
@@ -189,20 +188,8 @@ class Bench:
 
     @cached_property
     def modes(self) -> Modes:
-        """Modes, the platform's among them below the description's limit."""
-        limit = self.mechanism.mode_limit
-        return modes(self.model, limit=np.inf if limit is None else float(np.max(limit)))
-
-    @cached_property
-    def platform_frequencies(self) -> Array:
-        """Frequencies of the platform's modes (..., k) [Hz], of a batch chosen design by design; NaN where one has fewer than others."""
-        found = self.modes
-        if found.frequencies.ndim == 1:
-            return found.platform_frequencies
-        flat = found.frequencies.reshape(-1, found.frequencies.shape[-1])
-        mask = choose((2.0 * np.pi * flat) ** 2, found.share.reshape(flat.shape), Choice(limit=found.limit)).mask
-        ordered = np.sort(np.where(mask, flat, np.nan), axis=-1)[:, : int(np.max(np.sum(mask, axis=-1), initial=0))]
-        return ordered.reshape(*found.frequencies.shape[:-1], -1)
+        """Modes, the platform's among them."""
+        return modes(self.model)
 
     @cached_property
     def stress(self) -> HingeStress:

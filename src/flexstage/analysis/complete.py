@@ -213,11 +213,11 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Modes with the description's frequency limit for the platform's modes; without one, the largest shares of all modes.
+    """Modes, listed up to the description's frequency limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit
     1000.0
     """
     limit = mechanism.mode_limit
-    return modes(model, limit=np.inf if limit is None else float(np.max(limit)), count=min(6, len(model.coordinates)))
+    return modes(model, limit=np.inf if limit is None else float(np.max(limit)))

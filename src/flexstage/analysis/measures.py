@@ -166,7 +166,7 @@ def frequency(bench: Bench, asked: Measure) -> Array:
 @partial(MeasureKind, "frequency.platform.<n>", FREQUENCY, softening=0.5)
 def platform_frequency(bench: Bench, asked: Measure) -> Array:
     """N-th natural frequency of the platform."""
-    return _nth(bench.platform_frequencies, asked)
+    return _nth(bench.modes.platform_frequencies, asked)
 
 
 def _nth(frequencies: Array, asked: Measure) -> Array:

@@ -14,7 +14,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
-from flexstage.models.batch.choice import NEGLIGIBLE
+from flexstage.models.batch.choice import Choice, choose, compliance_root, participation, platform_rows
 from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
 from flexstage.models.linear.model import LinearModel
@@ -33,15 +33,17 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: its share of kinetic energy in the platform, whether it is the `platform`'s own or a `local` one beside these.
+    """One mode: its share of kinetic energy in the platform, and whether it is the `platform`'s own or a `local` one among these.
 
-    `energy_share` is that of every body and link from one per cent, largest first.
+    `compliance_share` is its share of the platform's static compliance along its own motion of the platform, `energy_share` the share of
+    kinetic energy of every body and link from one per cent, largest first.
     """
 
     number: int
     frequency: Annotated[float, FREQUENCY]
     name: str
     platform_share: float
+    compliance_share: float
     in_plane: bool
     platform: bool
     local: bool
@@ -53,9 +55,10 @@ class Modes(InNotebook):
     """Undamped modes of a stage, ascending.
 
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
-    kinetic energy of the platform body over the total; `bodies` names the rows of `energies` (..., b, k), the share of every body and
-    link. `names`, `in_plane` and `platform` (indices of the platform's modes) are those of the first design. A mode in which several bodies
-    have equal shares is named after all of them, and so is each of the modes that repeat. `margin` is the largest share not chosen.
+    kinetic energy of the platform body over the total, `compliance_share` (..., k) that of the platform's static compliance; `bodies` names
+    the rows of `energies` (..., b, k), the share of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
+    `names`, `in_plane` and `platform` (indices of the chosen modes) are those of the first design. A mode in which several bodies
+    have equal shares is named after all of them, and so is each of the modes that repeat. `limit` only says how many are listed.
     Of a large stage only the lowest modes are worked out, `partial`; the platform's are those among them.
     """
 
@@ -63,12 +66,13 @@ class Modes(InNotebook):
     shapes: Array
     platform_shapes: Array
     share: Array
+    compliance_share: Array
+    chosen: Array
     bodies: Annotated[tuple[str, ...], INNER]
     energies: Array
     names: Annotated[tuple[str, ...], INNER]
     in_plane: Annotated[tuple[bool, ...], INNER]
     platform: tuple[int, ...]
-    margin: float
     limit: Annotated[float, FREQUENCY]
     coordinates: Annotated[tuple[str, ...], INNER]
     provenance: str
@@ -80,11 +84,12 @@ class Modes(InNotebook):
         return tuple(self._mode(index) for index in range(self.listed))
 
     def _mode(self, index: int) -> Mode:
-        frequency, share = (float(first_design(each, 1)[index]) for each in (self.frequencies, self.share))
+        told = (self.frequencies, self.share, self.compliance_share)
+        frequency, share, compliance = (float(first_design(each, 1)[index]) for each in told)
         energies = first_design(self.energies, 2)[:, index]
         bodies = {self.bodies[place]: float(energies[place]) for place in argsort_descending(energies, 1e-6) if energies[place] >= 0.01}
         platform, local = index in self.platform, index in self.local
-        return Mode(index + 1, frequency, self.names[index], share, self.in_plane[index], platform, local, bodies)
+        return Mode(index + 1, frequency, self.names[index], share, compliance, self.in_plane[index], platform, local, bodies)
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
@@ -98,6 +103,12 @@ class Modes(InNotebook):
         """How many modes were worked out: all, but of a large stage."""
         return len(self.names)
 
+    def dominant_bodies(self, index: int) -> tuple[str, float]:
+        """The body or link with the most kinetic energy in a mode of the first design, or all that have as much, and their share."""
+        shares = first_design(self.energies, 2)[:, index]
+        most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
+        return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
+
     @property
     def twists(self) -> Annotated[Matrix, VIEW]:
         """The platform's twist in each listed mode, mass-normalised."""
@@ -107,8 +118,9 @@ class Modes(InNotebook):
 
     @property
     def platform_frequencies(self) -> Array:
-        """Frequencies of the platform's modes (..., 6) [Hz]."""
-        return self.frequencies[..., list(self.platform)]
+        """Platform frequencies (..., 6) [Hz], ascending, design by design; NaN where a design has fewer than others."""
+        ordered = np.sort(np.where(self.chosen, self.frequencies, np.nan), axis=-1)
+        return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
 
     @property
     def local(self) -> Annotated[tuple[int, ...], VIEW]:
@@ -123,20 +135,20 @@ class Modes(InNotebook):
 
 
 @takes_models
-def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster: float = _REPEATED) -> Modes:
+def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 
-    The platform's modes are the `count` largest platform shares below `limit` [Hz] (absent: of all modes); modes closer than `cluster`
-    (relative) are kept together, and within such a cluster the basis is turned so that shapes follow the platform's axes, and those that
-    leave the platform at rest the coordinates that move most. Small motions. Of a large stage (`LinearModel.is_sparse`, above 900 freedoms)
-    only some 30 modes, the lowest, are worked out.
+    The platform's modes are those at which one more direction of the platform has a tenth of its static compliance
+    (`models.batch.choice`). Modes closer than `cluster` (relative) are one cluster, within which the basis is turned so that shapes follow
+    the platform's axes, and those that leave the platform at rest the coordinates that move most. Modes below `limit` [Hz] are listed.
+    Small motions. Of a large stage (`LinearModel.is_sparse`, above 900 freedoms) only some 30 modes, the lowest, are worked out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> modes(mapped(double_triangle())).names[:4]
     ('tilt', 'tilt', 'z', 'yaw')
     """
-    platform = model.output[..., model.output_index(tuple(f"{_PLATFORM}.{name}" for name in COMPONENTS)), :]
+    platform = platform_rows(model)
     solved = lowest_modes(model)
     partial = model.is_sparse and len(model.coordinates) > ALL_MODES
     groups = repeated_groups(first_design(solved.values, 1), cluster)
@@ -144,19 +156,25 @@ def modes(model: LinearModel, *, limit: float = np.inf, count: int = 6, cluster:
     frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
-    chosen, margin = _choose(first_design(share, 1), first_design(frequencies, 1), limit, count, groups)
-    names, in_plane = _name_modes(bodies, *_together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True))))
+    platform_shapes = platform @ solved.shapes
+    parts = participation(compliance_root(model, platform), platform_shapes, solved.values)
+    flat = (solved.values.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
+    chosen = choose(*flat, Choice(cluster=cluster)).mask.reshape(frequencies.shape)
+    own = first_design(chosen, 1)
+    together = _together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True)), own)
+    names, in_plane = _name_modes(bodies, *together, own)
     return Modes(
         frequencies=frequencies,
         shapes=solved.shapes,
-        platform_shapes=platform @ solved.shapes,
+        platform_shapes=platform_shapes,
         share=share,
+        compliance_share=np.sum(parts**2, axis=-2),
+        chosen=chosen,
         bodies=bodies,
         energies=energies,
         names=names,
         in_plane=in_plane,
-        platform=chosen,
-        margin=margin,
+        platform=tuple(np.flatnonzero(own).tolist()),
         limit=limit,
         coordinates=model.coordinates,
         provenance=model.provenance + (f", the lowest {len(names)} modes of {len(model.coordinates):,} freedoms" if partial else ""),
@@ -266,17 +284,20 @@ def _by_component(products: Array) -> Array:
     return products.reshape(-1, 6, count).sum(axis=0) if rows in {6, 12} else np.zeros((6, count))
 
 
-def _together(bodies: tuple[str, ...], energies: Array, components: Array, groups: list[tuple[list[int], int]]) -> tuple[Array, Array]:
+def _together(
+    bodies: tuple[str, ...], energies: Array, components: Array, groups: list[tuple[list[int], int]], chosen: Array
+) -> tuple[Array, Array]:
     """Energy shares (b, k) and their components (b, 6, k) as means over modes that repeat, which no choice of their basis changes.
 
     Of each group, so many of its first modes move the platform: where they are the platform's own, their components stay apart.
     """
     energies, components = energies.copy(), components.copy()
     for group, count in (each for each in groups if len(each[0]) > 1):
-        main = _main(bodies, np.mean(energies[:, group[:count]], axis=1, keepdims=True))[0] if count else -1
+        moving = group[:count]
+        main = _main(bodies, np.mean(energies[:, moving], axis=1, keepdims=True), np.any(chosen[moving]))[0] if count else -1
         own = main >= 0 and bodies[main] == _PLATFORM
         if own:
-            energies[:, group[:count]] = np.mean(energies[:, group[:count]], axis=1, keepdims=True)
+            energies[:, moving] = np.mean(energies[:, moving], axis=1, keepdims=True)
         rest = group[count:] if own else group
         if rest:
             energies[:, rest] = np.mean(energies[:, rest], axis=1, keepdims=True)
@@ -284,31 +305,19 @@ def _together(bodies: tuple[str, ...], energies: Array, components: Array, group
     return energies, components
 
 
-def _main(bodies: tuple[str, ...], energies: Array) -> Array:
-    """Which body modes (k) are named after: the platform where it has half of the largest share (b, k) and more."""
+def _main(bodies: tuple[str, ...], energies: Array, chosen: Array | np.bool_) -> Array:
+    """Which body modes (k) are named after: the platform in its `chosen` ones, and where it has half of the largest share (b, k)."""
     main = index_of_largest(energies.T, _EQUAL)
     if _PLATFORM not in bodies:
         return main
     platform = bodies.index(_PLATFORM)
-    return np.where(energies[platform] >= 0.5 * np.max(energies, axis=0) - _EQUAL, platform, main)
+    least = np.where(chosen, 0.0, 0.5 * np.max(energies, axis=0) - _EQUAL)
+    return np.where((energies[platform] > 0.0) & (energies[platform] >= least), platform, main)
 
 
-def _choose(share: Array, frequencies: Array, limit: float, count: int, groups: list[list[int]]) -> tuple[tuple[int, ...], float]:
-    """Indices of the largest shares below the limit that are no rounding, clusters whole; and the largest share left out."""
-    groups = [group for group in groups if frequencies[group[0]] < limit and np.mean(share[group]) >= NEGLIGIBLE]
-    means = np.array([np.mean(share[group]) for group in groups])
-    chosen: list[int] = []
-    for place in argsort_descending(means):
-        if len(chosen) >= count:
-            break
-        chosen += groups[place]
-    left = [share[index] for group in groups for index in group if index not in chosen]
-    return tuple(sorted(chosen)), float(max(left, default=0.0))
-
-
-def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
+def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array, chosen: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
     """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
-    main = _main(bodies, energies)
+    main = _main(bodies, energies, chosen)
     parts = components[main, :, np.arange(len(main))]
     in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > (0.5 + _EQUAL) * np.sum(parts, axis=1)
     names = (

@@ -7,10 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from flexstage.apps.studio.reading import design
-from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.engine import Plan, plan, platform_modes
-
-_MODES = 6
 
 
 def fit(text: str, file: str, address: str, low: float, high: float) -> bool:
@@ -28,14 +25,9 @@ def drag(text: str, file: str, address: str, value: float, ends: tuple[float, fl
 
 @lru_cache(maxsize=4)
 def _fitted(text: str, file: str, address: str, low: float, high: float) -> Plan:
-    return plan(design(text, file), (address,), _choice(text, file), (np.array([low]), np.array([high])))
+    return plan(design(text, file), (address,), ranges=(np.array([low]), np.array([high])))
 
 
 @lru_cache(maxsize=4)
 def _plain(text: str, file: str, address: str) -> Plan:
-    return plan(design(text, file), (address,), _choice(text, file))
-
-
-def _choice(text: str, file: str) -> Choice:
-    limit = design(text, file).mode_limit
-    return Choice(_MODES, np.inf if limit is None else float(np.max(limit)))
+    return plan(design(text, file), (address,))

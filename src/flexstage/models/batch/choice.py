@@ -1,4 +1,9 @@
-"""Which modes are the platform's, design by design: those of the largest platform share below a limit, clusters whole."""
+"""Platform frequencies: the lowest at which modes have made up a tenth of the platform's static compliance, direction by direction.
+
+With phi the platform's twist in a mass-normalised mode and C = sum phi phi^T / omega^2 its static compliance, H(f) is the sum over the
+modes up to f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
+Eigenvalues of H depend on no unit, no reference point and no basis of repeated modes, and no mode above f changes them.
+"""
 
 from __future__ import annotations
 
@@ -8,49 +13,108 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.eigen import cholesky
+from flexstage.models.linear.model import LinearModel
+from flexstage.spatial.frame import COMPONENTS
 
-NEGLIGIBLE = 1e-3
-"""A platform share below which a mode is not the platform's: rounding, or links that swing beside a platform at rest."""
+THRESHOLD = 0.1
+"""The share of the compliance in some direction that modes must exceed. From 0.1 to 0.7 most stages have the same platform frequencies."""
+
+MARGIN = 5e-3
+"""How far eigenvalues of H are from the threshold where iteration decides: its modes change H by 2e-3 at most."""
+
+_LOCKED = 1e-12
+"""A compliance's square root below which, relative to the largest, a direction is locked, rotations taken over 0.1 m."""
+_LENGTHS = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 
 @dataclass(frozen=True)
 class Choice:
-    """How many platform modes are wanted, below which frequency [Hz], and which relative gap of frequencies joins modes to a cluster."""
+    """How many platform frequencies are wanted, and which relative gap of frequencies joins modes to a cluster."""
 
     count: int = 6
-    limit: float = np.inf
     cluster: float = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """`mask` (b, k) of the platform's modes; `least` (b,) smallest mean share of a cluster among them; `exact` (b,): as many as asked."""
+    """`mask` (b, k) of the platform's modes; `exact` (b,): as many as asked; `sure` (b,): no rounding to `MARGIN` changes the mask.
+
+    Where only some modes of a cluster are the platform's, those of the largest participation stand for them, and nothing is sure.
+    """
 
     mask: Array
-    least: Array
     exact: Array
+    sure: Array
 
 
-def choose(values: Array, share: Array, choice: Choice) -> Chosen:
-    """Choose from ascending eigenvalues (b, k) and platform shares (b, k), as `analysis.modes` does for one design.
+def platform_rows(model: LinearModel) -> Array:
+    """The platform's twist (..., 6, n) by the model's coordinates.
 
-    >>> found = choose(np.array([[1.0, 2.0, 3.0]]), np.array([[0.2, 0.1, 0.9]]), Choice(count=2))
-    >>> found.mask.tolist(), found.least.tolist()
-    ([[True, False, True]], [0.2])
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> platform_rows(mapped(double_triangle())).shape
+    (6, 6)
     """
-    frequencies = np.sqrt(values) / (2.0 * np.pi)
-    group = groups(frequencies, choice.cluster)
-    first = np.take_along_axis(frequencies, _first_members(group), axis=1)
-    mean = means(share, group)
-    key = np.where((first < choice.limit) & (mean >= NEGLIGIBLE), mean, -np.inf)
-    order = np.argsort(-key, axis=1, kind="stable")
-    rank = np.empty_like(order)
-    np.put_along_axis(rank, order, np.arange(order.shape[1])[None], axis=1)
-    last = order[:, min(choice.count, order.shape[1]) - 1 :][:, :1]
-    allowed = np.isfinite(key)
-    mask = ((rank < choice.count) | (group == np.take_along_axis(group, last, axis=1))) & allowed
-    least = np.min(np.where(mask, mean, np.inf), axis=1)
-    return Chosen(mask, least, mask.sum(axis=1) == choice.count)
+    return model.output[..., model.output_index(tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)), :]
+
+
+def compliance_root(model: LinearModel, rows: Array) -> Array:
+    """A root R (..., r, 6) of the static compliance C = R^T R of motions given by `rows` (..., 6, n); NaN where K is not positive definite.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> model = mapped(double_triangle())
+    >>> root = compliance_root(model, platform_rows(model))
+    >>> round(1e-6 / float(root[:, 2] @ root[:, 2]), 3)  # K_z, N/um
+    10.093
+    """
+    turned = np.swapaxes(rows, -1, -2)
+    if model.is_sparse:
+        return np.swapaxes(cholesky(rows @ model.solve(turned)), -1, -2)
+    return np.linalg.solve(cholesky(model.stiffness_matrix), turned)
+
+
+def participation(root: Array, motions: Array, values: Array) -> Array:
+    """Participation C^-1/2 phi / omega (..., 6, k) of modes in the compliance C = R^T R, with the `root` R (..., r, 6).
+
+    `motions` (..., 6, k) are the platform's twists phi, `values` (..., k) lambda = omega^2. The square of a column's length is the share
+    of the compliance that the mode has in its own direction; over all modes, columns times themselves add up to the unit matrix. Directions
+    without compliance have no part.
+
+    >>> participation(np.diag([0.5] * 6), np.eye(6), np.full(6, 4.0)).diagonal().tolist()  # springs of 4 N/m, masses of 1 kg
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    root = np.where(np.all(np.isfinite(root), axis=(-2, -1), keepdims=True), root, 0.0)
+    size = np.sqrt(np.sum(root**2, axis=-2)) * _LENGTHS
+    scale = np.where(size > _LOCKED * np.max(size, axis=-1, keepdims=True), size, np.inf) / _LENGTHS
+    turn, lengths, axes = np.linalg.svd(root / scale[..., None, :], full_matrices=False)
+    del turn
+    inverse = np.divide(1.0, lengths, out=np.zeros_like(lengths), where=lengths > _LOCKED * np.max(lengths, axis=-1, keepdims=True))
+    parts = inverse[..., None] * (axes @ (motions / scale[..., None] / np.sqrt(values)[..., None, :]))
+    return np.nan_to_num(parts, posinf=0.0, neginf=0.0)
+
+
+def choose(values: Array, parts: Array, choice: Choice) -> Chosen:
+    """Choose the modes of the platform frequencies from ascending eigenvalues (b, k) and their `participation` (b, 6, k).
+
+    >>> parts = np.array([[[0.2, 0.0, 0.9], [0.0, 0.6, 0.3]]])
+    >>> choose(np.array([[1.0, 2.0, 3.0]]), parts, Choice(count=2)).mask.tolist()
+    [[False, True, True]]
+    """
+    shares = np.linalg.eigvalsh(np.cumsum(np.moveaxis(parts[:, :, None] * parts[:, None], -1, 1), axis=1))
+    first, last = _ends(groups(np.sqrt(values), choice.cluster))
+    least, count, most = (np.take_along_axis(np.sum(shares > THRESHOLD + step, axis=-1), last, axis=1) for step in (MARGIN, 0.0, -MARGIN))
+    before, after = (
+        np.minimum(each, choice.count) for each in (np.where(first > 0, np.take_along_axis(count, first - 1, axis=1), 0), count)
+    )
+    order, rank = np.lexsort((-np.sum(parts**2, axis=1), first)), np.empty_like(first)
+    np.put_along_axis(rank, order, np.broadcast_to(np.arange(rank.shape[1]), rank.shape), axis=1)
+    mask = before + rank - first < after
+    decided = (least == most) & ((before == after) | (after - before == last + 1 - first))
+    needed = np.cumsum(mask[:, ::-1], axis=1)[:, ::-1] > 0
+    return Chosen(mask, mask.sum(axis=1) == choice.count, np.all(decided | ~needed, axis=1))
 
 
 def groups(values: Array, gap: float) -> Array:
@@ -81,7 +145,9 @@ def means(values: Array, group: Array) -> Array:
     return (total[place] / size[place, None]).reshape(values.shape)
 
 
-def _first_members(group: Array) -> Array:
-    position = np.broadcast_to(np.arange(group.shape[1]), group.shape)
-    new = np.concatenate([np.ones((len(group), 1), dtype=bool), group[:, 1:] != group[:, :-1]], axis=1)
-    return np.maximum.accumulate(np.where(new, position, 0), axis=1)
+def _ends(group: Array) -> tuple[Array, Array]:
+    """The first and the last member (b, k) of each value's group."""
+    return (
+        np.sum(group[:, None] < group[..., None], axis=-1),
+        np.sum(group[:, None] <= group[..., None], axis=-1) - 1,
+    )

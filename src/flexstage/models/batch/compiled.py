@@ -12,11 +12,12 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme
+from flexstage.models.batch.choice import MARGIN, THRESHOLD
 from flexstage.models.batch.features import GROUNDED, PORTION, Feature, Rows
 from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.models.batch.planes import SKEW, Planes, no_planes
 from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
-from flexstage.models.batch.subspace import MARGIN, SHARES, TOGETHER, Start
+from flexstage.models.batch.subspace import TOGETHER, Start
 
 MODES = 12
 """Platform modes that the kernel finds at most."""
@@ -51,7 +52,7 @@ _OWN = ("gate", "through", "normal", "model", "row", "copies", "nth")
 _PLANES = (*_OWN, "tree", "member")
 _TABLES = (*_GRAPH, "slot", "reach", "about", "run", "entry", "alike", *_PLANES)
 _ARRAYS = ("force", "numbers_", "still", "changes")
-_SETTINGS = ("shift", "value", "angle", "limit", "cluster", "together", "shares", "margin", "pivot", "skew", "span")
+_SETTINGS = ("shift", "value", "angle", "cluster", "together", "threshold", "margin", "pivot", "skew", "span")
 _RESULTS = ("values", "share", "good", "slopes", "between", "crossed")
 
 
@@ -185,8 +186,8 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
         "crossed": np.zeros(vectors, dtype=np.int64),
     }
     sizes = _sizes(stage, start, tables, (count, *_strides(number), *_strides(change), stride))
-    bounds = (start.shift, start.value, start.angle, start.choice.limit, start.choice.cluster)
-    settings = (*bounds, TOGETHER, SHARES, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
+    bounds = (start.shift, start.value, start.angle, start.choice.cluster)
+    settings = (*bounds, TOGETHER, THRESHOLD, MARGIN, LEAST_PIVOT, SKEW, tables.planes.span)
     task = _Task(**sizes, **tables.places, **_places(held | results), **dict(zip(_SETTINGS, settings, strict=True)))
     return Job(task, {**tables.arrays, **held}, results)
 

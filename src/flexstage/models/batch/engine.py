@@ -26,7 +26,7 @@ from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
 from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of, rows_of
 from flexstage.models.batch.planes import Planes, no_planes, planes
-from flexstage.models.batch.solution import Solution, Stage, by_iteration, every_mode, keep, wholly
+from flexstage.models.batch.solution import Solution, Stage, by_iteration, cluster_slopes, every_mode, wholly
 from flexstage.models.batch.subspace import Start
 from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
@@ -63,10 +63,8 @@ class Status(IntEnum):
     NOT_FINITE = 3
     """Some number of it is not finite: no frequencies."""
     FEW = 4
-    """It has fewer platform modes below the limit than asked for: no frequencies."""
-    CUT = 5
-    """By dense matrices, and the last of the wanted modes is one of a cluster that has more: some of them are left out."""
-    REFUSED = 6
+    """It has fewer platform frequencies than asked for: none are given."""
+    REFUSED = 5
     """It cannot be described, as where outlines overlap that cannot be weighed: no frequencies. Reading it by itself tells why."""
 
 
@@ -168,9 +166,9 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: tuple[Arr
 
 def _starts(scheme_: Scheme, inertia: Array, modes: Whole, choice: Choice) -> tuple[Start | None, Start | None]:
     """The modes to begin with, as many as make the fewest operations, and the most there is room for; none if that is not less than all."""
-    picked = choose(modes.values[None], modes.share[None], choice)
+    picked = choose(modes.values[None], modes.parts[None], choice)
     values = modes.values
-    if not picked.mask.any():
+    if not picked.exact[0]:
         return None, None
     needed = int(np.flatnonzero(picked.mask[0])[-1]) + 1
     counts = np.arange(needed + 2, min(_MOST + 1, len(values) // 2))
@@ -357,9 +355,8 @@ def _write(plan_: Plan, result: PlatformModes, designs: Array, found: Solution) 
     if found.values.shape[1] < plan_.choice.count:
         result.status[designs] = Status.FEW if found.good.all() else Status.SINGULAR
         return
-    result.status[designs] = Status.WHOLE if found.values.shape[1] == plan_.choice.count else Status.CUT
-    found, gradient = keep(found, plan_.choice)
+    result.status[designs] = Status.WHOLE
     frequencies = np.sqrt(found.values) / (2.0 * np.pi)
     scale = (1.0 / (8.0 * np.pi**2 * frequencies))[:, None]
     result.frequencies[designs], result.share[designs] = frequencies, found.share
-    result.slopes[designs], result.gradient[designs] = found.matrices * scale[..., None], gradient * scale
+    result.slopes[designs], result.gradient[designs] = found.matrices * scale[..., None], cluster_slopes(found, plan_.choice) * scale

@@ -61,7 +61,7 @@ typedef struct {
     const int64_t *still;   /* numbers: whether it is known that one is the same in all designs */
     const double *changes;  /* entries, in the same way */
     /* settings */
-    double shift, value, angle, limit, cluster, together, shares, margin, pivot, skew, span;
+    double shift, value, angle, cluster, together, threshold, margin, pivot, skew, span;
     /* results */
     double *values, *share; /* count x stride, whole vectors of designs */
     int64_t *good;          /* designs: 1, 0 for what is not proved, -1 where legs have not these planes */
@@ -293,6 +293,7 @@ typedef struct {
     lanes *other, *other_edge;       /* K - shift M factored */
     lanes *now, *next, *force, *ahead, *start; /* blocks of vectors; those to begin with are the same in all lanes */
     lanes *found, *shapes, *placed;  /* modes (count, rows), where they are kept, and of each body in the stage's axes (6 bodies, count) */
+    lanes root[OWN];                 /* L D L^T of one over the platform's compliance, as `invert` leaves it */
     View *view;                      /* of every gate */
     Side *side;                      /* of every link of a leg with a plane */
     lanes *sum, *slope;              /* slots of a group x pairs, variables x pairs */
@@ -644,7 +645,7 @@ static INLINE void eliminate_rest(const Task *t, Room *w, lanes shift, Count *to
 }
 
 /* w->other, w->other_edge = K - shift M = L D L^T: own blocks as `invert` leaves them, edges L^-1 times themselves; what is told of pivots. */
-static INLINE void eliminate(const Task *t, Room *w, lanes shift, Count *told)
+static void eliminate(const Task *t, Room *w, lanes shift, Count *told)
 {
     for (int64_t i = 0; i < t->tree[t->ports]; i++) eliminate_tree(t, w, t->member[i], shift, told);
     eliminate_rest(t, w, shift, told);
@@ -1038,8 +1039,8 @@ static INLINE void small(const int m, lanes *stiff, lanes *mass, lanes *values, 
 }
 
 /* Of single modes: the shift of each, the Rayleigh quotient of (K - shift M)^-1 M, the sine of the angle between a vector and what that makes of it,
- * and how much of each is in each of the modes. */
-typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST], mix[MOST * MOST]; } Ritz;
+ * how much of each is in each of the modes, and the modes' participation in the platform's compliance. */
+typedef struct { lanes values[MOST], share[MOST], shift[MOST], quotient[MOST], sine[MOST], part[MOST * MOST], mix[MOST * MOST], gain[MOST * 6]; } Ritz;
 
 /* Whether mode c takes one step, of modes told by bits. */
 #define ONCE(once, c) ((once) >> (c) & 1)
@@ -1091,6 +1092,11 @@ static INLINE void combine(const Task *t, Room *w, Ritz *known, const int m)
         lanes one = all(1.0), seen[6];
         for (int i = 0; i < 6; i++) seen[i] = w->now[c * t->rows + n - 6 + i];
         known->share[c] = share_of(t, w, seen, &one, 1, 0);
+        for (int i = 0; i < 6; i++) {
+            lanes sum = seen[i];
+            for (int k = i + 1; k < 6; k++) sum += w->root[LOWER(k, i)] * seen[k];
+            known->gain[6 * c + i] = sum / root(w->root[LOWER(i, i)] * known->values[c]);
+        }
     }
 }
 
@@ -1124,77 +1130,63 @@ static int apart(const double *values, int m, int needed, double together)
     return needed;
 }
 
-static double left_over(const Task *t, const double *share, int count)
+/* Whether one more eigenvalue of H exceeds a threshold with a mode of participation g: whether det(H - threshold I) changes its sign. `inverse` is that of
+ * H - threshold I, and will be with the mode. */
+static int exceeds(double *inverse, const double *g)
 {
-    double sum = 0.0;
-    for (int i = 0; i < count; i++) sum += share[i];
-    return t->shares - sum;
+    double moved[6], ratio = 1.0;
+    for (int i = 0; i < 6; i++) {
+        moved[i] = 0.0;
+        for (int k = 0; k < 6; k++) moved[i] += inverse[6 * i + k] * g[k];
+        ratio += g[i] * moved[i];
+    }
+    for (int i = 0; i < 36; i++) inverse[i] -= moved[i / 6] * moved[i % 6] / ratio;
+    return ratio < 0.0;
 }
 
 static void judge(const Task *t, const Ritz *known, int lane, Verdict *out)
 {
     const int m = (int)t->m, count = (int)t->count, single = (int)t->single;
-    double value[MOST + 1], share[MOST], mean[MOST], frequency[MOST], least = INFINITY;
-    int group[MOST], order[MOST], taken = 0, needed = 0;
+    double value[MOST + 1], frequency[MOST], less[36], more[36];
+    int taken = 0, needed = 0;
     memset(out, 0, sizeof *out);
     for (int i = 0; i < m; i++) {
-        value[i] = known->values[i][lane], share[i] = known->share[i][lane];
+        value[i] = known->values[i][lane];
         if (!isfinite(value[i]) || value[i] <= 0.0) return;
         frequency[i] = sqrt(value[i]) / (2.0 * 3.14159265358979323846);
-        group[i] = i && frequency[i] - frequency[i - 1] <= t->cluster * frequency[i] ? group[i - 1] : i;
     }
-    for (int i = 0; i < m;) {
-        int end = i;
-        double sum = 0.0;
-        while (end < m && group[end] == i) sum += share[end++];
-        for (int k = i; k < end; k++) mean[k] = frequency[i] < t->limit ? sum / (end - i) : -INFINITY;
-        i = end;
+    for (int i = 0; i < 36; i++) {
+        less[i] = i % 7 ? 0.0 : -1.0 / (t->threshold - t->margin);
+        more[i] = i % 7 ? 0.0 : -1.0 / (t->threshold + t->margin);
     }
-    for (int i = 0; i < m; i++) {
-        int place = i;
-        for (; place > 0 && mean[order[place - 1]] < mean[i]; place--) order[place] = order[place - 1];
-        order[place] = i;
+    for (int i = 0, end; i < single && taken < count; i = end) { /* cluster by cluster */
+        int gained = 0, sure = 0;
+        for (end = i; end < single && (end == i || frequency[end] - frequency[end - 1] <= t->cluster * frequency[end]); end++) {
+            double g[6];
+            for (int k = 0; k < 6; k++) g[k] = known->gain[6 * end + k][lane];
+            gained += exceeds(less, g), sure += exceeds(more, g);
+        }
+        if (gained != sure || (gained && gained != end - i)) return;
+        for (int k = i; k < end; k++) out->mask[k] = gained > 0;
+        if (gained) taken += gained, needed = end;
     }
-    for (int i = 0; i < m; i++)
-        if (mean[order[i]] > -INFINITY && (i < count || group[order[i]] == group[order[count - 1]])) out->mask[order[i]] = 1;
-    for (int i = 0; i < m; i++)
-        if (out->mask[i]) taken++, needed = i + 1, least = mean[i] < least ? mean[i] : least;
     int first = single;
     while (first > needed && apart(value, m, first, t->together) != first) first--;
     if (taken != count || needed > first || apart(value, m, first, t->together) != first) return;
-    const double ceiling = 4.0 * 9.86960440108935861883 * t->limit * t->limit;
-    int below = first;
-    if (first == m) { /* no value beyond is at hand: that there is none up to a little above these is counted */
-        if (!(left_over(t, share, first) < least)) return;
-        value[m] = value[m - 1] * (1.0 + 10.0 * ABOVE);
-    }
-    while (below < m && !(left_over(t, share, below) < (below == first ? least : least - t->margin)))
-        below = apart(value, m, below + 1, t->together);
-    const int wide = below >= m && first < m;
-    if (wide) {
-        int reach = needed;
-        while (reach < m && value[reach] < ceiling) reach++;
-        below = apart(value, m, reach, t->together);
-    }
-    if (below >= m && first < m) return;
-    out->below = below, out->shift = value[below - 1] + 0.1 * (value[below] - value[below - 1]);
-    if (wide) {
-        if (!(ceiling <= value[below])) return;
-        if (ceiling > out->shift) out->shift = ceiling;
-    }
+    if (first == m) value[m] = value[m - 1] * (1.0 + 10.0 * ABOVE); /* no value beyond is at hand: that there is none up to a little above these is counted */
+    out->below = first, out->shift = value[first - 1] + 0.1 * (value[first] - value[first - 1]);
     /* What of a single vector is of modes beyond: it has gone through (K - shift M)^-1 M, whose values there are 1 / (outer - shift) at most. */
-    const double outer = below == first ? out->shift : value[first];
+    const double outer = out->shift;
     double beyond[MOST];
     for (int k = 0; k < single; k++) {
         const double far = (outer - known->shift[k][lane]) * fabs(known->quotient[k][lane]) - 1.0;
         beyond[k] = k < first && far > known->sine[k][lane] ? known->sine[k][lane] / far : 1.0;
     }
-    for (int i = 0; i < first; i++)
-        if (out->mask[i]) {
-            double angle = 0.0;
-            for (int k = 0; k < single; k++) angle += known->part[i * single + k][lane] * beyond[k];
-            if (!(angle * angle * outer / value[i] <= t->value) || !(angle <= t->angle)) return;
-        }
+    for (int i = 0; i < needed; i++) {
+        double angle = 0.0;
+        for (int k = 0; k < single; k++) angle += known->part[i * single + k][lane] * beyond[k];
+        if (!(angle * angle * outer / value[i] <= t->value) || (out->mask[i] && !(angle <= t->angle))) return;
+    }
     out->done = value[0] > BESIDE * value[first - 1];
 }
 
@@ -1515,6 +1507,8 @@ static void designs(const Task *t, Room *w)
         for (int lane = 0; lane < WIDTH; lane++) t->good[design + lane] = -1;
         return;
     }
+    eliminate(t, w, all(0.0), 0);
+    memcpy(w->root, w->other + OWN * (t->bodies - 1), sizeof w->root);
     if (t->m == USUAL && t->single == USUAL) begin(t, w, &known, USUAL, USUAL);
     else begin(t, w, &known, (int)t->m, (int)t->single);
     for (int64_t round = 0; round < t->rounds && left; round++) {

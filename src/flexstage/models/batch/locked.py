@@ -7,7 +7,7 @@ import numpy as np
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.models.batch.choice import Choice, groups, means
+from flexstage.models.batch.choice import Choice, groups, means, platform_rows
 from flexstage.models.batch.dense import Whole, whole
 from flexstage.models.batch.numbers import Family, describe, step_numbers, width
 from flexstage.models.batch.solution import Solution, platform_indices
@@ -28,7 +28,7 @@ def locked_solution(family: Family, values: Array, choice: Choice, *, slopes: bo
     try:
         mechanism = describe(family, values[None])
         model = lumped(mechanism)
-        modes = _modes(model)
+        modes = _modes(model, choice)
     except DesignError:
         return _none(variables)
     if not len(modes.values):
@@ -51,13 +51,14 @@ def _none(variables: int) -> Solution:
     return Solution(np.zeros((1, 0)), np.zeros((1, 0)), np.array([False]), *2 * (np.zeros((1, variables, 0)),))
 
 
-def _modes(model: LinearModel) -> Whole:
+def _modes(model: LinearModel, choice: Choice) -> Whole:
     size = len(model.coordinates)
     own = {name: item for name, item in model.inertia.items() if name == PLATFORM}
     stiffness, inertia, platform = (
         np.broadcast_to(item, (1, size, size))[0] for item in (model.stiffness_matrix, model.inertia_matrix, assemble(own, size))
     )
-    return whole(stiffness, inertia, platform)
+    rows = platform_rows(model)
+    return whole(stiffness, inertia, platform, np.broadcast_to(rows, (1, *rows.shape[-2:]))[0], choice.cluster)
 
 
 def _project(items: Contributions, shapes: Array) -> Array:

@@ -15,6 +15,7 @@ from flexstage.models.batch.features import Rows
 from flexstage.models.batch.numbers import Slopes
 from flexstage.models.batch.slopes import motion, slope
 from flexstage.models.batch.subspace import Found, Problem, Start, iterate
+from flexstage.models.linear.eigen import cholesky
 
 LEAST_PIVOT = 1e-9
 """Least pivot of K over its own diagonal entry: below it another method decides whether K is singular."""
@@ -126,7 +127,8 @@ def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array
     parts = factor(scheme.graph, stiffness)
     diagonal = np.diagonal(stiffness.own, axis1=-2, axis2=-1).reshape(parts.pivots.shape)
     firm = (parts.pivots > LEAST_PIVOT * diagonal).all(axis=1)
-    found = iterate(Problem(scheme.graph, parts, inertia, platform), stiffness, start)
+    root = np.swapaxes(cholesky(parts.inverse[:, -1]), -1, -2)
+    found = iterate(Problem(scheme.graph, parts, inertia, platform, root), stiffness, start)
     return Found(found.ritz, found.mask, found.proved & firm)
 
 
@@ -154,7 +156,7 @@ def _no_slopes(stage: Stage, values: Array) -> tuple[Array, Array]:
 
 
 def wholly(stage: Stage, choice: Choice) -> list[Solution]:
-    """Designs by dense matrices, one solution each; with clusters whole there may be more modes than asked for. None at all: K is singular.
+    """Designs by dense matrices, one solution each; where K is singular without modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
@@ -192,36 +194,25 @@ def every_mode(scheme: Scheme, numbers: Array) -> Whole:
     stiffness, inertia = blocks(scheme, numbers)
     platform = np.zeros((scheme.topology.size,) * 2)
     platform[:6, :6] = of_kind(scheme, numbers, "inertia")[0, 0]
-    return whole(dense(scheme, stiffness)[0], dense(scheme, inertia)[0], platform)
+    return whole(dense(scheme, stiffness)[0], dense(scheme, inertia)[0], platform, np.eye(6, len(platform)), Choice.cluster)
 
 
 def platform_indices(modes: Whole, choice: Choice) -> Array:
     """Which modes of one design are the platform's.
 
-    >>> platform_indices(Whole(np.array([1.0, 2.0]), np.eye(2), np.array([0.1, 0.9])), Choice(count=1)).tolist()
+    >>> platform_indices(Whole(np.array([1.0, 2.0]), np.eye(2), np.array([0.1, 0.9]), np.diag([0.1, 0.9])), Choice(count=1)).tolist()
     [1]
     """
     if not len(modes.values):
         return np.zeros(0, dtype=int)
-    return np.flatnonzero(choose(modes.values[None], modes.share[None], choice).mask[0])
+    return np.flatnonzero(choose(modes.values[None], modes.parts[None], choice).mask[0])
 
 
-def keep(solution: Solution, choice: Choice) -> tuple[Solution, Array]:
-    """As many modes as asked for, and the derivatives (b, P, k) of their clusters' means; the cluster of least share is cut if need be.
+def cluster_slopes(solution: Solution, choice: Choice) -> Array:
+    """Derivatives (b, P, k) of the means of clusters, for each of their modes.
 
     >>> both = Solution(np.array([[1.0, 4.0, 4.0]]), np.array([[0.9, 0.5, 0.5]]), np.array([True]), np.array([[[1.0, 2.0, 4.0]]]), None)
-    >>> left, mean = keep(both, Choice(count=2))
-    >>> left.values.tolist(), mean.tolist()
-    ([[1.0, 4.0]], [[[1.0, 3.0]]])
+    >>> cluster_slopes(both, Choice()).tolist()
+    [[[1.0, 3.0, 3.0]]]
     """
-    group = groups(solution.values, choice.cluster)
-    mean = np.swapaxes(means(np.swapaxes(solution.slopes, 1, 2), group), 1, 2)
-    if solution.values.shape[1] <= choice.count:
-        return solution, mean
-    whole_share = means(solution.share, groups(np.sqrt(solution.values), choice.cluster))
-    best = np.sort(np.argsort(-whole_share, axis=1, kind="stable")[:, : choice.count], axis=1)
-    values, share = (np.take_along_axis(item, best, axis=1) for item in (solution.values, solution.share))
-    slopes = np.take_along_axis(np.take_along_axis(solution.matrices, best[:, None, None, :], 3), best[:, None, :, None], 2)
-    own, (rows, columns) = range(choice.count), np.triu_indices(choice.count, 1)
-    left = Solution(values, share, solution.good, slopes[..., own, own], slopes[..., rows, columns])
-    return left, np.take_along_axis(mean, best[:, None, :], axis=2)
+    return np.swapaxes(means(np.swapaxes(solution.slopes, 1, 2), groups(solution.values, choice.cluster)), 1, 2)

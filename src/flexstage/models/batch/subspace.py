@@ -10,8 +10,8 @@ With T = K^-1 M, self-adjoint in the inner product of M, and mu = 1 / lambda:
 3. If that is not enough: a Chebyshev polynomial of T that is small on [0, mu_m], then again 1. The same number of products as plain
    iteration, but the error falls like exp(d arccosh(2 mu / mu_m - 1)) and not like (mu / mu_m)^d.
 
-Which modes can have been missed: none below sigma if K - sigma M has as many negative pivots as Ritz values lie below; and none of those
-above can be the platform's if what is left of its share, six in all, is less than every chosen one.
+Which modes can have been missed: none below sigma if K - sigma M has as many negative pivots as Ritz values lie below. Those above do not
+decide which of the lower ones are the platform's.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Blocks
-from flexstage.models.batch.choice import Choice, Chosen, choose
+from flexstage.models.batch.choice import Choice, Chosen, choose, participation
 from flexstage.models.batch.factor import Factor, factor, product, solve
 from flexstage.models.batch.order import Elimination
 
@@ -31,12 +31,6 @@ TOGETHER = 1e-4
 """Relative gap of eigenvalues below which one side of it is not counted without the other."""
 
 _Any = TypeVar("_Any", bound=Any)
-
-MARGIN = 0.02
-"""How far shares of modes that are only counted, and so not as good, must be from deciding anything."""
-
-SHARES = 6.0
-"""The platform's shares of all modes add up to six at most: M - M_platform is not negative."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +58,21 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Ritz:
-    """Ascending `values` lambda (b, m), M-normalised `shapes` and M times them (b, bodies, 6, m), `residual` rho and `share` (b, m)."""
+    """Ascending `values` lambda (b, m), M-normalised `shapes` and M times them (b, bodies, 6, m), `residual` rho, `share` (b, m).
+
+    `parts` (b, 6, m) is the participation in the platform's compliance.
+    """
 
     values: Array
     shapes: Array
     heavy: Array
     residual: Array
     share: Array
+    parts: Array
 
     def take(self, designs: Array) -> Ritz:
         """Those of some designs."""
-        return Ritz(self.values[designs], self.shapes[designs], self.heavy[designs], self.residual[designs], self.share[designs])
+        return Ritz(*(getattr(self, each.name)[designs] for each in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,16 +87,17 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """K factored and M of many designs, and the platform's own inertia (b, 6, 6)."""
+    """K factored and M of many designs, the platform's own inertia (b, 6, 6) and a root R of its compliance C = R^T R (b, 6, 6)."""
 
     graph: Elimination
     parts: Factor
     inertia: Blocks
     platform: Array
+    root: Array
 
     def take(self, designs: Array) -> Problem:
         """Those of some designs."""
-        return Problem(self.graph, self.parts.take(designs), self.inertia.take(designs), self.platform[designs])
+        return Problem(self.graph, self.parts.take(designs), self.inertia.take(designs), self.platform[designs], self.root[designs])
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +116,7 @@ def iterate(problem: Problem, stiffness: Blocks, start: Start) -> Found:
     >>> graph, none = elimination(2, [(0, 1)], keep=0), np.zeros((1, 1, 6, 6))
     >>> stiff = Blocks(np.stack([100.0 * np.eye(6), np.diag(np.arange(1.0, 7.0))])[None], none)
     >>> heavy = Blocks(np.stack([0.1 * np.eye(6), np.eye(6)])[None], none)
-    >>> problem = Problem(graph, factor(graph, stiff), heavy, np.eye(6)[None])
+    >>> problem = Problem(graph, factor(graph, stiff), heavy, np.eye(6)[None], np.diag(np.arange(1.0, 7.0) ** -0.5)[None])
     >>> block = np.eye(12)[:, [6, 7, 8, 9, 10, 11, 0]].reshape(2, 6, 7)
     >>> iterate(problem, stiff, Start(block, Choice())).ritz.values[0, :6].round(9).tolist()  # the body kept last is the platform
     [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
@@ -152,7 +151,8 @@ def _ritz(problem: Problem, block: Array) -> Ritz:
         residual = np.sqrt(np.maximum(1.0 - values * values / norm, 0.0))
     shapes, heavy = (item @ vectors for item in (ahead, heavy))
     seen = shapes[:, -6:]
-    return Ritz(values, _as_block(shapes), _as_block(heavy), residual, np.sum(seen * (problem.platform @ seen), axis=-2))
+    share, parts = np.sum(seen * (problem.platform @ seen), axis=-2), participation(problem.root, seen, values)
+    return Ritz(values, _as_block(shapes), _as_block(heavy), residual, share, parts)
 
 
 def _small(stiff: Array, mass: Array) -> tuple[Array, Array]:
@@ -199,27 +199,21 @@ def _filter(problem: Problem, ritz: Ritz, start: Start) -> Array:
 
 
 def _verdict(ritz: Ritz, start: Start) -> Verdict:
-    """Judge every design: platform modes by share, their bounds, and the shift that counts eigenvalues."""
+    """Judge every design: platform modes, the bounds of all up to the last of them, and the shift that counts eigenvalues."""
     values, count = ritz.values, ritz.values.shape[1]
-    ceiling = (2.0 * np.pi * start.choice.limit) ** 2
     with np.errstate(invalid="ignore", divide="ignore"):
-        picked = choose(values, ritz.share, start.choice)
+        picked = choose(values, ritz.parts, start.choice)
         needed = count - np.argmax(picked.mask[:, ::-1], axis=1)
-        first = _apart(values, needed)
-        below, wide = _count(ritz, picked, first)
-        # Some mode not found might have a larger share: then all below the limit are needed.
-        below = np.where(wide, _apart(values, np.maximum(needed, np.sum(values < ceiling, axis=1))), below)
+        below = _apart(values, needed)
         edge = np.minimum(below, count - 1)[:, None]
         inner, outer = (np.take_along_axis(values, item, axis=1)[:, 0] for item in (edge - 1, edge))
-        shift = inner + 0.1 * (outer - inner)
-        shift = np.where(wide & np.isfinite(ceiling), np.maximum(shift, ceiling), shift)
-        good = _within(ritz, start, picked, first)
-        done = good & (~wide | (ceiling <= outer)) & picked.exact & (np.maximum(first, below) < count) & np.isfinite(values).all(axis=1)
-    return Verdict(done, picked, shift, below)
+        good = _within(ritz, start, picked, needed, below)
+        done = good & picked.exact & picked.sure & (below < count) & np.isfinite(values).all(axis=1)
+    return Verdict(done, picked, inner + 0.1 * (outer - inner), below)
 
 
-def _within(ritz: Ritz, start: Start, picked: Chosen, below: Array) -> Array:
-    """Whether the chosen modes are within the bounds asked for, if the first `below` of all stand together against the rest."""
+def _within(ritz: Ritz, start: Start, picked: Chosen, needed: Array, below: Array) -> Array:
+    """Whether the first `needed` values and the chosen vectors are within their bounds, the first `below` together against the others."""
     values, count = ritz.values, ritz.values.shape[1]
     edge = np.minimum(below, count - 1)[:, None]
     inner, outer = (np.take_along_axis(values, item, axis=1) for item in (edge - 1, edge))
@@ -228,7 +222,7 @@ def _within(ritz: Ritz, start: Start, picked: Chosen, below: Array) -> Array:
     spread = spread * inner / outer  # of Z, which is one product further than the residual's Y
     gap = 1.0 / values - 1.0 / outer
     error = np.minimum(ritz.residual, spread * spread * values / gap)
-    return (~picked.mask | ((error <= start.value) & (spread / gap <= start.angle))).all(axis=1)
+    return ((np.arange(count) >= needed[:, None]) | ((error <= start.value) & (~picked.mask | (spread / gap <= start.angle)))).all(axis=1)
 
 
 def _apart(values: Array, needed: Array) -> Array:
@@ -236,17 +230,6 @@ def _apart(values: Array, needed: Array) -> Array:
     near = values[:, 1:] - values[:, :-1] <= TOGETHER * values[:, 1:]
     near = np.concatenate([near, np.zeros((len(values), 1), dtype=bool)], axis=1)
     return np.argmax(~near & (np.arange(values.shape[1]) >= needed[:, None] - 1), axis=1) + 1
-
-
-def _count(ritz: Ritz, picked: Chosen, first: Array) -> tuple[Array, Array]:
-    """The fewest Ritz values, `first` at least, with whose shares too little is left for any other mode; and where there are none such."""
-    values, count = ritz.values, ritz.values.shape[1]
-    left = SHARES - np.cumsum(ritz.share, axis=1)
-    number = np.arange(1, count + 1)
-    apart = np.concatenate([values[:, 1:] - values[:, :-1] > TOGETHER * values[:, 1:], np.zeros((len(values), 1), dtype=bool)], axis=1)
-    allowed = np.where(number == first[:, None], picked.least[:, None], picked.least[:, None] - MARGIN)
-    enough = apart & (number >= first[:, None]) & (left < allowed)
-    return np.argmax(enough, axis=1) + 1, ~enough.any(axis=1)
 
 
 def _negative(problem: Problem, stiffness: Blocks, shift: Array) -> Array:

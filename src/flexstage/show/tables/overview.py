@@ -76,6 +76,7 @@ def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
     yield small_line(analysis)
     yield _without_notes(axis_table(analysis))
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
+    yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
 
@@ -165,10 +166,15 @@ def _shown(value: float, name: str, units: tuple[str, ...]) -> str:
 def _platform_modes(modes: Modes) -> Table | None:
     if not modes.platform:
         return None
-    frequencies, shares = first_design(modes.frequencies, 1), first_design(modes.share, 1)
+    frequencies, *shares = (first_design(each, 1) for each in (modes.frequencies, modes.share, modes.compliance_share))
     texts = [f"{each} Hz" for each in align_numbers([float(frequencies[index]) for index in modes.platform], _DIGITS)]
     rows = [
-        (Cell(str(index + 1), Mark.STRONG), Cell(text), Cell(modes.names[index]), Cell(percent(float(shares[index]), 3)))
+        (
+            Cell(str(index + 1), Mark.STRONG),
+            Cell(text),
+            Cell(modes.names[index]),
+            *(Cell(percent(float(share[index]), 3)) for share in shares),
+        )
         for index, text in zip(modes.platform, texts, strict=True)
     ]
     beside = [number(float(frequencies[index]), _DIGITS) for index in sorted(modes.local)[:1]]
@@ -176,8 +182,23 @@ def _platform_modes(modes: Modes) -> Table | None:
         f"{_count(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {each} Hz."
         for each in beside
     ]
-    heads = [Column("mode"), Column("frequency"), "name", Column("platform's share")]
+    heads = [Column("mode"), Column("frequency"), "name", Column("platform's share"), Column("compliance share")]
     return make_table("Platform modes", heads, _merge(rows, slice(1, None), ", ".join), notes=notes)
+
+
+def lowest_mode(modes: Modes) -> str | None:
+    """The lowest mode of the whole stage, and the body that moves most in it; `None` where there is no mode.
+
+    >>> import flexstage as fs
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> lowest_mode(fs.modes(fs.lumped(double_triangle())))
+    'Lowest mode of the whole stage: 106 Hz, mainly platform (91.5 % of its kinetic energy).'
+    """
+    if not modes.names:
+        return None
+    bodies, share = modes.dominant_bodies(0)
+    frequency = number(float(first_design(modes.frequencies, 1)[0]), _DIGITS)
+    return f"Lowest mode of the whole stage: {frequency} Hz, mainly {bodies} ({percent(share, 3)} of its kinetic energy)."
 
 
 def _first_rows(table: Table) -> Table:

@@ -8,9 +8,8 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.batch.choice import Choice, choose
-from flexstage.models.linear.eigen import solve
+from flexstage.models.batch.choice import Choice, choose, participation, platform_rows
+from flexstage.models.linear.eigen import cholesky, solve
 from flexstage.models.linear.model import Contribution, LinearModel, assemble
 
 _STEP = 1e-20
@@ -41,15 +40,14 @@ class Modes:
     platform: bool
 
 
-def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
+def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
     """Spectra of s designs from the model of a batch (s n,): design after design, each with a tiny imaginary step in one variable.
 
     `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no slopes. Raises `DesignError` where there are fewer modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
-    >>> stage = double_triangle()
-    >>> spectra(stage, lumped(stage), (Modes(1, platform=True),), (1, 0))[0][0].frequencies.round(1).tolist()
+    >>> spectra(lumped(double_triangle()), (Modes(1, platform=True),), (1, 0))[0][0].frequencies.round(1).tolist()
     [106.0, 106.0, 126.2, 144.2, 173.1, 173.1]
     """
     designs, variables = shape
@@ -61,10 +59,11 @@ def spectra(mechanism: Mechanism, model: LinearModel, asked: tuple[Modes, ...], 
         for matrix in (model.stiffness, model.inertia)
     )
     solved = solve(stiffness, inertia, np.ones(stiffness.shape[-1]))
-    picked = [
-        [_select_modes(mechanism, model, wanted, solved.values[design], solved.shapes[design], row=design * each) for wanted in asked]
-        for design in range(designs)
-    ]
+    rows = np.real(platform_rows(model))
+    rows = rows[first] if rows.ndim > 2 and len(rows) > 1 else rows
+    root = np.linalg.solve(cholesky(stiffness), np.swapaxes(rows, -1, -2))
+    parts = participation(root, rows @ solved.shapes, solved.values)
+    picked = [[_select_modes(wanted, solved.values[design], parts[design]) for wanted in asked] for design in range(designs)]
     result = []
     for design in range(designs):
         own = picked[design]
@@ -82,29 +81,17 @@ def _real(item: Contribution) -> Contribution:
     return Contribution(np.real(item.operator), np.real(item.law))
 
 
-def _select_modes(mechanism: Mechanism, model: LinearModel, wanted: Modes, values: Array, shapes: Array, *, row: int) -> Array:
-    """Indices of the modes asked for and of some above them."""
+def _select_modes(wanted: Modes, values: Array, parts: Array) -> Array:
+    """Indices of the modes asked for and of some above them, from their `participation` (6, k)."""
     if not np.all(np.isfinite(values)):
         raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
-    if not wanted.platform:
-        found = np.arange(min(wanted.count + _ROOM, len(values)))
+    if wanted.platform:
+        found = np.flatnonzero(choose(values[None], parts[None], Choice()).mask[0])
     else:
-        limit = np.inf if mechanism.mode_limit is None else float(np.max(np.real(mechanism.mode_limit)))
-        share = _share(model, shapes, row)
-        found = np.flatnonzero(choose(values[None], share[None], Choice(limit=limit)).mask[0])
+        found = np.arange(min(wanted.count + _ROOM, len(values)))
     if len(found) < wanted.count:
         raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
     return found
-
-
-def _share(model: LinearModel, shapes: Array, row: int) -> Array:
-    """The platform's share of each mode's kinetic energy."""
-    if PLATFORM not in model.inertia:
-        return np.zeros(shapes.shape[-1])
-    item = model.inertia[PLATFORM]
-    operator, law = (np.real(part if part.ndim == 2 else part[min(row, len(part) - 1)]) for part in (item.operator, item.law))
-    seen = operator @ shapes
-    return np.sum(seen * (law @ seen), axis=0)
 
 
 def _slopes(model: LinearModel, values: Array, shapes: Array, rows: slice, variables: int) -> Array:

@@ -145,7 +145,7 @@ class Values:
         with np.errstate(all="ignore"):
             stepped = self._design(rows)
             bench = Bench(stepped, self._command)
-            modes = spectra(stepped, bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
+            modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: list[Sequence[Scalars | Numbered]] = []
             for asked in self.measures:
                 if asked.kind in _SPECTRAL:

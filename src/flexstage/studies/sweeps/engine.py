@@ -17,8 +17,6 @@ from flexstage import __version__
 from flexstage.analysis.measures import platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
-from flexstage.mechanism.locate import canonical
-from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.engine import Plan, Status, plan_family, platform_modes
 from flexstage.models.batch.kernel import kernel_name
 from flexstage.models.batch.numbers import Family, drawn_family, family
@@ -87,8 +85,7 @@ def engine_covers(study: Study) -> bool:
 def engine_of(study: Study) -> Engine:
     """The engine for a study: its plan, over the variables' ranges where the study has designs enough for that to pay.
 
-    What it does not cover is left to dense matrices: designs described in a way of the study's own, a limit of modes that varies. Raises
-    nothing.
+    What it does not cover is left to dense matrices: designs described in a way of the study's own. Raises nothing.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> dict(engine_of(neck_study()).modes)
@@ -100,12 +97,11 @@ def engine_of(study: Study) -> Engine:
 def _engine_of(study: Study) -> Engine:
     wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.kind is platform_frequency}
     modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
-    if not modes or not engine_covers(study) or _limit_varies(study):
+    if not modes or not engine_covers(study):
         return Engine(Table({}))
-    limit, numbers = study.design.mode_limit, study.numbers
-    choice = Choice(_MODES, np.inf if limit is None else float(np.max(limit)))
+    numbers = study.numbers
     try:
-        return Engine(modes, plan_family(_family(study, numbers), choice, _ranges(study, numbers)), numbers)
+        return Engine(modes, plan_family(_family(study, numbers), ranges=_ranges(study, numbers)), numbers)
     except DesignError:
         return Engine(Table({}))
 
@@ -114,13 +110,6 @@ def _family(study: Study, numbers: Numbers | None) -> Family:
     if numbers is not None:
         return family(study.design, numbers.addresses)
     return drawn_family(study.mechanism_at, tuple(each.name for each in study.variables), _nominal(study))
-
-
-def _limit_varies(study: Study) -> bool:
-    if study.numbers is not None:
-        return any(canonical(study.design, each) == "mode_limit" for each in study.numbers.addresses)
-    limit = study.mechanism_at(tuple(_ends(study).T)).mode_limit
-    return limit is not None and np.ndim(limit) > 0
 
 
 def _ends(study: Study) -> Array:
