@@ -123,6 +123,12 @@ class Modes(InNotebook):
         return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
 
     @property
+    def highest(self) -> float:
+        """The highest platform frequency of the first design below the limit, or its first one [Hz]."""
+        frequencies = first_design(self.platform_frequencies, 1)
+        return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
+
+    @property
     def local(self) -> Annotated[tuple[int, ...], VIEW]:
         """Modes that are not the platform's, below 1.5 times its highest one."""
         if not self.platform:

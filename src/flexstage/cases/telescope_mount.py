@@ -83,7 +83,7 @@ def telescope_mount(parameters: TelescopeMount | None = None) -> Mechanism:
         damping=ModalDamping(0.01),
         envelope=(400 * mm, 400 * mm, 540 * mm),
         mode_limit=1 * kHz,
-        requirements={"frequency.platform.1": "at least 300 Hz"},
+        requirements={"frequency.platform.1": "at least 150 Hz"},
         tags={f"parts.blade.{key}": "stated project" for key in ("length", "thickness", "width")},
         sources={"project": PROJECT},
     )

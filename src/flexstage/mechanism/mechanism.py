@@ -236,7 +236,7 @@ class Mechanism(InNotebook, Description):
 
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
     implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
-    (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which the platform's modes are looked for.
+    (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which modes are listed.
     `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
     with (`none`: it does not grow). `temperatures` are changes since it was made, by body (`ground` too), and of `all` that has none of its
     own; a part has the mean of the bodies that it joins. `packages` are those that its kinds of parts, gauges and measures come from, each

@@ -223,7 +223,7 @@ def modes(  # noqa: PLR0913 (its options)
 ) -> None:
     """Natural frequencies, names and shapes.
 
-    Which modes are the platform's, which are local, and by what margin. --view shows them, no finite elements needed. With --at, --load,
+    Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite elements needed. With --at, --load,
     --hold or --temperature they are those of the stage where it then is, at large displacements and under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])

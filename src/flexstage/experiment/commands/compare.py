@@ -70,7 +70,7 @@ def compare(  # noqa: PLR0913 (its options)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
     linear = elastic_model(mechanism, model)
-    highest = float(platform_modes(mechanism, linear).platform_frequencies[-1])
+    highest = platform_modes(mechanism, linear).highest
     seen = identify_records(record, texts, linear, highest)
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=fea)

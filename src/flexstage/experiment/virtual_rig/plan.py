@@ -114,14 +114,14 @@ def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, .
 
 
 def highest_mode(mechanism: Mechanism, model: LinearModel) -> float:
-    """Frequency of the highest platform mode [Hz].
+    """Frequency of the highest platform mode [Hz], below the limit that the stage states for listed modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> round(highest_mode(double_triangle(), mapped(double_triangle())), 1)
     176.7
     """
-    return float(np.max(platform_modes(mechanism, model).platform_frequencies))
+    return platform_modes(mechanism, model).highest
 
 
 def volts_per_metre(piezo: ChargedActuator) -> float:
