@@ -15,12 +15,11 @@ from flexstage.base.number import Array
 from flexstage.base.quantity import ANGLE, FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.control.closed import Loop
-from flexstage.control.controllers.decentralised import channels
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.coordinates import Coordinates
 from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System
+from flexstage.control.response_margins import LoopLines, ResponseMargins, feedback_response
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.local_responses import LocalResponses, local_responses
 from flexstage.experiment.pipeline import Identification
@@ -118,16 +117,16 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     scale = outer[:, None] / inner
     response = known.values[chosen] * scale
     late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
-    control = _control(closed.controller, loop, lines)
-    whole = _Lines(lines, loop.scale, control)
-    values = whole.read((loop.pose @ response) * late[:, None, None])
+    control = feedback_response(closed.controller, loop, lines)
+    whole = LoopLines(lines, loop.scale, control)
+    values = whole.margins((loop.pose @ response) * late[:, None, None])
     sure = bool(np.all(np.isfinite(known.deviations)))
     drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
-    models = [whole.read(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
+    models = [whole.margins(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
     names = loop.names
     low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
 
-    def reading(of: Callable[[_Read], float]) -> Reading:
+    def reading(of: Callable[[ResponseMargins], float]) -> Reading:
         low, high = (None, None) if drawn is None else _ends(of(values), np.array([of(each) for each in drawn]))
         return Reading(of(values), low, high, of(models[0]), of(models[1]))
 
@@ -168,43 +167,6 @@ def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterat
             yield Finding(f"--record: {channel.name}", what, "Drive more there, record longer, or ask for another bandwidth")
 
 
-@dataclass(frozen=True, eq=False)
-class _Read:
-    """What is read off one set of responses; `sizes` (f, n) are |S_ii|."""
-
-    sizes: Array
-    peak: float
-    peak_frequency: float
-    gains: tuple[float, ...]
-    phases: tuple[float, ...]
-    rejections: tuple[float, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class _Lines:
-    """Lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
-
-    lines: Array
-    scale: Array
-    control: Array
-
-    def read(self, plant: Array) -> _Read:
-        """Peak and margins of the responses (f, c, n) from commands to pose."""
-        count = plant.shape[1]
-        sensitivity = np.linalg.inv(np.eye(count) + plant @ self.control)
-        peaks = np.linalg.norm(sensitivity * self.scale[:, None] / self.scale, 2, axis=(1, 2))
-        place = int(np.argmax(peaks))
-        own = np.diagonal(sensitivity, axis1=1, axis2=2)
-        return _Read(
-            np.abs(own),
-            float(peaks[place]),
-            float(self.lines[place]),
-            tuple(_gain_high(1.0 / each - 1.0) for each in own.T),
-            tuple(_phase(1.0 / each - 1.0) for each in own.T),
-            tuple(_rises(self.lines, np.abs(each)) for each in own.T),
-        )
-
-
 def _ends(value: float, drawn: Array) -> tuple[float, float]:
     """Quantiles of the draws about their median, set about the value, and as much further as draws show the value to be biased.
 
@@ -216,20 +178,6 @@ def _ends(value: float, drawn: Array) -> tuple[float, float]:
         return float("nan"), float("nan")
     further = 2.0 * value - high if np.isfinite(high) else np.inf
     return float(min(value + low - middle, further)), float(max(value + high - middle, 2.0 * value - low))
-
-
-def _control(controller: System, loop: Coordinates, lines: Array) -> Array:
-    """From the error of each coordinate to all commands; what the controller takes of the pose is what the error leaves."""
-    names = [channel.name for channel in channels("error", loop)]
-    poses = [channel.name for channel in channels("pose", loop)]
-    whole = resolvent(controller).at(lines)
-    found = np.zeros((len(lines), len(loop.actuators), len(names)), dtype=complex)
-    order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
-    for sign, group in ((1.0, names), (-1.0, poses)):
-        for column, name in enumerate(group):
-            if name in controller.input_names:
-                found[:, :, column] += sign * whole[:, order, controller.input_names.index(name)]
-    return found
 
 
 def _responses(seen: Identification) -> LocalResponses:
@@ -250,38 +198,11 @@ def _few_lines(lines: Array, found: Identified) -> Iterator[Finding]:
         yield Finding("--record", what, "Record longer, or drive with noise over all of the band")
 
 
-def _draws(whole: _Lines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[_Read]:
+def _draws(whole: LoopLines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[ResponseMargins]:
     random = np.random.default_rng(_SEED)
     found = []
     for _ in range(_DRAWS):
         noise = random.standard_normal((2, *response.shape)) * np.sqrt(0.5)
         moved = response + spread * (noise[0] + 1j * noise[1])
-        found.append(whole.read((loop.pose @ moved) * late[:, None, None]))
+        found.append(whole.margins((loop.pose @ moved) * late[:, None, None]))
     return found
-
-
-def _gain_high(own: Array) -> float:
-    """The least factor above 1 at which L crosses -1/k, between lines straight in the plane."""
-    places = np.flatnonzero(np.imag(own[:-1]) * np.imag(own[1:]) < 0.0)
-    share = np.imag(own[places]) / (np.imag(own[places]) - np.imag(own[places + 1]))
-    real = np.real(own[places]) * (1.0 - share) + np.real(own[places + 1]) * share
-    factors = -1.0 / real[(real < 0.0) & (real > -1.0)]
-    return float(np.min(factors, initial=np.inf))
-
-
-def _phase(own: Array) -> float:
-    """The least turn at which |L| = 1 comes to -1."""
-    sizes = np.log(np.abs(own))
-    places = np.flatnonzero(sizes[:-1] * sizes[1:] < 0.0)
-    share = sizes[places] / (sizes[places] - sizes[places + 1])
-    between = own[places] * (1.0 - share) + own[places + 1] * share
-    return float(np.min(np.abs(np.angle(-between)), initial=np.inf))
-
-
-def _rises(lines: Array, sizes: Array) -> float:
-    """Where |S_ii| first passes 1 from below; NaN where it does not."""
-    places = np.flatnonzero((sizes[:-1] < 1.0) & (sizes[1:] >= 1.0))
-    if not len(places):
-        return float("nan")
-    ends = slice(int(places[0]), int(places[0]) + 2)
-    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(lines[ends]))))

@@ -107,7 +107,12 @@ def plant(
     grounds = tuple(f"{GROUND}.{name}" for name in COMPONENTS)
     wrenches = tuple(f"{PLATFORM}.{name}" for name in FORCES)
     forces = tuple(f"{name}.fx" for name in links)
-    space = state_space(model, ports(model, (*loop.gauges, *twists, *forces), (*loop.actuators, *grounds, *wrenches)), law, kept)
+    space = state_space(
+        model,
+        ports(model, (*loop.gauges, *twists, *forces), (*loop.actuators, *grounds, *wrenches)),
+        law,
+        None if kept == len(solved.values) else kept,
+    )
     stage = _with_relative(from_state_space(space), model, twists)
     system, states = _with_hardware(stage, space.states, loop, given)
     return Plant(

@@ -1,4 +1,4 @@
-"""A plant with the modes that its loop feels; what the others yield under static load is kept."""
+"""A plant with some of its modes; the static compliance of the others is kept."""
 
 from __future__ import annotations
 
@@ -13,38 +13,39 @@ from flexstage.control.system import System, select
 _REPEATED = 1e-3
 
 
-def reduce_modes(given: Plant, least: float) -> Plant:
-    """The plant without modes whose resonance stands for less than `least` in the loop, on the scale where a stroke moves the pose by 1.
+def reduce_modes(given: Plant, wanted: Array) -> Plant:
+    """Residualise a plant to the modes `wanted` (k,), and as many of the strongest as its loop has coordinates.
 
-    A mode's resonance between strokes and pose, both as motions of the platform in lengths, is |c| |b| / (2 zeta omega^2). Of repeated
-    modes all are kept or none. States left out follow at once, x = -A^-1 B u, so that every static gain stays as it is
+    Of repeated modes all are kept or none. States left out follow at once, x = -A^-1 B u, so that every static gain stays as it is
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
-    >>> found = reduce_modes(plant, 0.5)
+    >>> found = reduce_modes(plant, resonances(plant) >= 0.5)
     >>> len(plant.frequencies), len(found.frequencies), len(found.system.A)
     (3, 1, 3)
     """
-    kept = _kept_modes(given, resonances(given) >= least)
+    kept = _kept_modes(given, wanted)
     if np.all(kept):
         return given
-    known = _modes(given)
+    known = mode_names(given)
     slow = np.array([not name.startswith("mode") or bool(kept[known.index(name.rstrip("'"))]) for name in given.states])
     count = int(np.sum(kept))
     return replace(
         given,
-        system=_rename_states(given.system, slow),
+        system=_residualise(given.system, slow),
         states=tuple(name for name, each in zip(given.states, slow, strict=True) if each),
         frequencies=given.frequencies[kept],
         ratios=given.ratios[kept],
         left_out=given.left_out + len(kept) - count,
-        note=f"{given.note}; {count} {'mode' if count == 1 else 'modes'} that the loop feels, the others as a static term",
+        note=f"{given.note}; {count} {'mode' if count == 1 else 'modes'} retained, the others as a static term",
     )
 
 
 def resonances(given: Plant) -> Array:
-    """Size (k,) of every mode's resonance between strokes and pose, as `reduce_modes` counts it.
+    """Size (k,) of every mode's resonance between strokes and pose, on the scale where a stroke at rest moves the pose by 1.
+
+    Both as motions of the platform in lengths it is |c| |b| / (2 zeta omega^2).
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
@@ -52,10 +53,10 @@ def resonances(given: Plant) -> Array:
     """
     loop = given.coordinates
     modal = np.array([name.startswith("mode") for name in given.states])
-    stage = _rename_states(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
+    stage = _residualise(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
     names = [name for name, each in zip(given.states, modal, strict=True) if each]
     sizes = np.zeros(len(given.frequencies))
-    for index, (name, frequency, ratio) in enumerate(zip(_modes(given), given.frequencies, given.ratios, strict=True)):
+    for index, (name, frequency, ratio) in enumerate(zip(mode_names(given), given.frequencies, given.ratios, strict=True)):
         place, rate = names.index(name), names.index(f"{name}'")
         shape = loop.scale * (loop.pose @ stage.C[:, place])
         force = (stage.B[rate] @ loop.strokes) / loop.scale
@@ -75,12 +76,12 @@ def _kept_modes(given: Plant, wanted: Array) -> Array:
     return kept
 
 
-def _modes(given: Plant) -> list[str]:
-    """Names of the modes' displacements, in order."""
+def mode_names(given: Plant) -> list[str]:
+    """Names of the modes' displacements among the states, in order."""
     return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
 
 
-def _rename_states(system: System, slow: Array) -> System:
+def _residualise(system: System, slow: Array) -> System:
     """The system whose other states follow at once."""
     fast = ~slow
     if not np.any(fast):

@@ -31,7 +31,7 @@ def discretise(system: System, step: float, delay: float = 0.0) -> System:
     4
     """
     require(_findings(system, step, delay))
-    whole, part = _split(delay / step)
+    whole, part = split_delay(delay / step)
     early, start = _hold_matrices(system, (1.0 - part) * step)
     late, before = _hold_matrices(system, part * step)
     direct = system.D if part == 0.0 else np.zeros_like(system.D)
@@ -69,7 +69,7 @@ def first_order_hold(system: System, step: float) -> System:
     return replace(system, A=whole, B=entry, D=system.D + system.C @ late, step=step)
 
 
-def _split(samples: float) -> tuple[int, float]:
+def split_delay(samples: float) -> tuple[int, float]:
     """Whole samples and the rest; what is within rounding of a whole sample is one."""
     nearest_whole = round(samples)
     if abs(samples - nearest_whole) < 1e-9:

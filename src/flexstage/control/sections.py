@@ -46,7 +46,7 @@ _NOISELESS = 1e-16
 def loop_section(found: LoopStudy) -> Section | None:
     """The loop at a glance: facts, block diagram, what it is made of."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
-    caption = "The loop of Fig. 9 of Shin & Moon. Shaded: what the computer does, sample by sample."
+    caption = "Block diagram of the loop. Shaded: what the computer does, sample by sample."
     blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found)]
     blocks += [charge_table(found), damping_table(found), law_table(found)]
     return section("The loop", blocks)
@@ -69,7 +69,9 @@ def _facts(found: LoopStudy) -> Iterator[Fact]:
     if found.controller.tuning is not None:
         yield Fact("loop gains pass 1 at", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all of them")
     if found.peaks is not None:
-        yield Fact("peak of S", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB and less is calm")
+        yield Fact(
+            "peak of S, modes as modelled", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual"
+        )
     settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
     if settled:
         slowest = float(np.max(settled))

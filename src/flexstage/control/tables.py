@@ -11,6 +11,7 @@ from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.disk import DiskMargin
 from flexstage.control.measured_margins import Reading
+from flexstage.control.retention import Retention
 from flexstage.control.simulation.result import Excursion
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.compare import Comparison, Rival
@@ -53,9 +54,23 @@ def loop_table(found: LoopStudy) -> Table:
     notes = [f"{found.stability.sentence[0].upper()}{found.stability.sentence[1:]}.", f"{plant.note[0].upper()}{plant.note[1:]}."]
     if found.peaks is not None:
         notes.append("S: what the loop leaves of a disturbance, above 1 it adds to it. T: what it follows of a reference.")
+        notes.append("Highest peaks: of modes as modelled.")
+    if not found.retention.complete or found.retention.frequency is not None:
+        notes.append(_retained(found.retention))
     if found.controller.tuning is not None:
         notes.insert(0, f"Tuned: {found.controller.tuning.reason}.")
     return make_table("Loop", ["what", "value"], [(Cell(name, Mark.STRONG), value) for name, value in rows], notes=notes)
+
+
+def _retained(found: Retention) -> str:
+    """How many modes are retained, and why no more."""
+    count = f"Of the model's {count_modes(found.total)} {found.retained} are retained"
+    if not found.complete:
+        return f"{count}, as stated; {int(np.sum(found.wanted)) - found.retained} more matter to the loop with this controller."
+    largest = f"a loop gain of {number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
+    change = "a margin appear or vanish" if np.isinf(found.change) else f"{percent(found.change)} of a margin"
+    why = "by loop gain with this controller; of the others the static compliance"
+    return f"{count}, {why}. Left out is {largest} at most; all that is left out changes {change} at most."
 
 
 def count_modes(count: int) -> str:

@@ -14,8 +14,8 @@ from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.stability import require_stable
-from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
+from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.runs import command_ends, driven_machine, rest_time
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import stacks_of
@@ -48,13 +48,13 @@ class Generator:
 class StageController:
     """A stage under its loop, in micrometres and microradians; `advance` runs it on.
 
-    Raises `DesignError` as `resolve` and `make_controller` do, and for a loop that is unstable.
+    Raises `DesignError` as `resolve` and `control_and_modes` do, and for a loop that is unstable.
     """
 
     def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:
         given = resolve(mechanism, setup or LoopSetup())
         gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
-        control = make_controller(given, gains)
+        given, control, _ = control_and_modes(given, gains)
         closed = loop(given.plant, control.system)
         require_stable(closed, "a loop that runs")
         stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)

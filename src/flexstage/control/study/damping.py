@@ -31,7 +31,7 @@ _WHOLE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Damped:
-    """The plant that the loop feels and the whole one, with the inner loops closed, and what these do."""
+    """The plant with the modes retained and the whole one, with the inner loops closed, and what these do."""
 
     plant: Plant
     whole: Plant
@@ -41,13 +41,12 @@ class Damped:
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> Damped:
     """Close the inner loops of a set-up around both plants, which have the links' forces.
 
-    Raises `DesignError` where they are unstable, with all modes below half the sampling rate or with those that the loop feels, and for a
-    rate that is no multiple of the loop's.
+    Raises `DesignError` where they are unstable, with all modes or with those retained, and for a rate that is no multiple of the loop's.
     """
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)
     sensed = tuple(replace(each, noise=asked.noise) for each in legs) if asked.noise is not None else legs
-    felt = as_felt(reduce_modes(plant, np.inf), sensed)
+    felt = as_felt(reduce_modes(plant, np.zeros(len(plant.frequencies), bool)), sensed)
     lags = [each for each in (asked.lag, *(leg.lag for leg in sensed)) if each is not None]
     corner = asked.corner if asked.corner is not None else _CORNER * _lowest_zero(plant, pairs)
     law = ForceFeedback(asked.gain or 1.0, corner, asked.order, min(lags, default=np.inf), _delay(asked))

@@ -13,14 +13,14 @@ from flexstage.analysis.load_effect import LoadEffect, load_effect
 from flexstage.analysis.random_response import Spectrum
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.number import Table
+from flexstage.base.number import Array, Table
 from flexstage.control.damping.charge import ChargedStacks, at_constant_charge, describe_charge, leak_charge
 from flexstage.control.damping.damped_plant import ActiveDamping
 from flexstage.control.damping.legs import Leg, legs
 from flexstage.control.electronics import ChargeDrive, GaugeSettings, Hardware, hardware
 from flexstage.control.measured_plant import measured_plant
 from flexstage.control.plants import Plant, plant
-from flexstage.control.reduction import reduce_modes
+from flexstage.control.reduction import reduce_modes, resonances
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.damping import damp
@@ -41,15 +41,15 @@ _USUAL = 10e3
 _OVER_HIGHEST = 10.0
 _LEAST_OVER_HIGHEST = 4.0
 _MOST_LATE = 50
-_FELT = 0.01
-"""Resonances below this share of a static stroke are left out: what they do to the open loop is below it at any frequency."""
+_RESONANCE = 0.01
+"""Modes whose resonance is this share of a static stroke are retained from the start; others if the controller's loop gain asks for it."""
 
 
 @dataclass(frozen=True, eq=False)
 class ResolvedSetup:
     """What a set-up means for a stage: its kinematics, its linear model by the set-up's model, the plant, the floor's spectra by input.
 
-    `plant` has the modes that its loop feels, or as many as the set-up says; `whole` all below half the sampling rate.
+    `plant` has the modes that its loop retains, or as many as the set-up says; `whole` all of the model, `stage` too, without inner loops.
     `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
     brought somewhere, where it has already sagged; `loaded` what its dead load changes as drawn, whose model it is where that is felt.
     Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have;
@@ -71,6 +71,7 @@ class ResolvedSetup:
     loaded: LoadEffect | None = None
     charge: ChargedStacks | None = None
     solid: FeaModes | None = None
+    stage: StagePlant | None = None
 
     @property
     def model_name(self) -> str:
@@ -117,29 +118,73 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None,
     require([*_rate_findings(rate, highest), *_delay_findings(delay * rate)])
     given = _hardware(mechanism, setup, rate, delay)
     sensed = () if setup.damping is None else legs(mechanism, moving, setup.damping.gauges)
-    kept = tuple(each.sensed for each in sensed)
-    links = tuple(dict.fromkeys((*kept, *(each.link for each in (() if held is None else held.legs)))))
-    whole = plant(moving, kinematics, given, links=links)
-    found = reduce_modes(whole, _FELT) if setup.modes is None else plant(moving, kinematics, given, modes=setup.modes, links=links)
-    charge = None if held is None else describe_charge(found, model, moving, held.drives)
-    if held is not None:
-        found, whole = (leak_charge(each, held.legs, held.drives, kept) for each in (found, whole))
-    damped = None if setup.damping is None else damp(found, whole, moving, sensed, setup.damping)
-    return ResolvedSetup(
+    links = tuple(dict.fromkeys((*(each.sensed for each in sensed), *(each.link for each in (() if held is None else held.legs)))))
+    stage = StagePlant(plant(moving, kinematics, given, modes=len(moving.stiffness_matrix), links=links), model, moving, held, sensed)
+    if setup.modes is None:
+        slow = stage.plant.frequencies < 0.5 * rate
+        found = reduce_modes(stage.plant, slow & (resonances(stage.plant) >= _RESONANCE))
+    else:
+        found = plant(moving, kinematics, given, modes=setup.modes, links=links)
+    base = ResolvedSetup(
         mechanism=mechanism,
         setup=setup,
         kinematics=kinematics,
         model=model,
-        plant=found if damped is None else damped.plant,
-        whole=whole if damped is None else damped.whole,
+        plant=found,
+        whole=stage.plant,
         floor=Table(floor_spectra(setup.floor)),
         highest=highest,
         displaced=there is not None,
-        damping=None if damped is None else damped.found,
         loaded=loaded,
-        charge=charge,
         solid=solid,
+        stage=stage,
     )
+    return _with_inner_loops(base, found, stage)
+
+
+def retain_modes(given: ResolvedSetup, wanted: Array) -> ResolvedSetup:
+    """The same set-up with the `wanted` modes (k,) of the whole plant; inner loops are designed on these.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = resolve(parallelogram(), LoopSetup())
+    >>> more = retain_modes(found, found.whole.frequencies < 5e3)
+    >>> len(found.plant.frequencies), len(more.plant.frequencies)
+    (1, 7)
+    """
+    if given.stage is None:
+        return given
+    return _with_inner_loops(given, reduce_modes(given.stage.plant, wanted), given.stage)
+
+
+def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> ResolvedSetup:
+    """The set-up with this plant of the stage, behind amplifiers of charge and force feedback where it has them."""
+    setup, held, whole = given.setup, stage.held, stage.plant
+    charge = None if held is None else describe_charge(found, stage.model, stage.moving, held.drives)
+    if held is not None:
+        kept = tuple(each.sensed for each in stage.sensed)
+        found, whole = (leak_charge(each, held.legs, held.drives, kept) for each in (found, whole))
+    damped = None if setup.damping is None else damp(found, whole, stage.moving, stage.sensed, setup.damping)
+    return replace(
+        given,
+        plant=found if damped is None else damped.plant,
+        whole=whole if damped is None else damped.whole,
+        damping=None if damped is None else damped.found,
+        charge=charge,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class StagePlant:
+    """The stage with all modes of its model, before inner loops are closed: what plants with some of them are made from.
+
+    `moving` is the `model` at constant charge where amplifiers hold it (`held`); `sensed` are the legs with force feedback.
+    """
+
+    plant: Plant
+    model: LinearModel
+    moving: LinearModel
+    held: _Charges | None
+    sensed: tuple[Leg, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +223,7 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
             "damping", "the plant is that of a test, which tells no forces in the legs", "Record the stage with its inner loops closed"
         )
     seen = measured_plant(given.plant, given.model, found)
-    return replace(given, plant=seen, whole=seen, predicted=given.plant)
+    return replace(given, plant=seen, whole=seen, predicted=given.plant, stage=None)
 
 
 def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:

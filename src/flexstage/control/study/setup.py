@@ -331,7 +331,7 @@ class LoopSetup:
     """A loop: by which `model` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
 
     Without a rate it is 10 kHz, or for faster stages ten times the highest platform mode; without a delay it is one sample. `modes` is
-    how many are kept, lowest first (absent: those that the loop feels), the others' compliance stays. The simulation lasts `seconds`
+    how many are retained, lowest first (absent: those that matter), the others' compliance stays. The simulation lasts `seconds`
     (absent: as long as the trajectory, and until the loop has settled), its random numbers are those of `seed`.
 
     >>> LoopSetup().controller.law.value

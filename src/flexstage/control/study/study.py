@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import numpy as np
@@ -27,13 +27,15 @@ from flexstage.control.disk import DiskMargin, disk_margins
 from flexstage.control.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.noise import NoiseBudget, noise_budget
 from flexstage.control.plants import Plant
+from flexstage.control.retention import Retention
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.stability import Verdict, require_stable, verdict
 from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
 from flexstage.control.study.choices import Compensation, ControllerKind
-from flexstage.control.study.control import Control, make_controller
+from flexstage.control.study.control import Control
 from flexstage.control.study.resolve import ResolvedSetup, on_test, resolve
 from flexstage.control.study.rest import RestErrors, rest_errors
+from flexstage.control.study.retained import control_and_modes, stated_modes_cautions
 from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
@@ -56,7 +58,8 @@ _NO_STROKES = "forces drive the stage: no stroke is lost, and it stands where it
 class LoopStudy(InNotebook):
     """A loop and everything that follows from it.
 
-    `closed` is the loop with the modes it feels, `growth_all_modes` [1/s] that of the slowest motion with all below half the rate.
+    `closed` is the loop with the modes that its plant retains, which `retention` tells of, `growth_all_modes` [1/s] that of the slowest
+    motion with all modes of the model.
     `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent, as `reasons` say, of a stage
     in open loop. `static_errors` are those at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is
     any noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks`
@@ -70,6 +73,7 @@ class LoopStudy(InNotebook):
     closed: Annotated[Loop, INNER]
     stability: Verdict
     growth_all_modes: Annotated[float, RATE]
+    retention: Retention
     margins: Margins | None
     peaks: Peaks | None
     bandwidths: Bandwidths | None
@@ -99,7 +103,7 @@ class LoopStudy(InNotebook):
 
     @property
     def plant(self) -> Annotated[Plant, VIEW]:
-        """The plant with the modes that the loop feels."""
+        """The plant with the modes that are retained."""
         return self.settled.plant
 
     @property
@@ -171,10 +175,7 @@ def loop_study(
     given = said.of(0.0, "reading the stage", lambda: resolve(mechanism, setup or LoopSetup(), there, solid))
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
-    control = said.of(0.05, "tuning", lambda: make_controller(given, pose_gains(given, lost)))
-    if given.setup.modes is None and loop(given.whole, control.system).system.growth >= 0.0:  # modes that the loop was said not to feel
-        given = replace(given, plant=given.whole)
-        control = said.of(0.3, "tuning with all modes", lambda: make_controller(given, pose_gains(given, lost)))
+    given, control, retained = control_and_modes(given, pose_gains(given, lost), lambda text: said.of(0.05, text, lambda: None))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
@@ -209,7 +210,13 @@ def loop_study(
         stacks=stacks,
         hysteresis=None if stacks is None else sweep_stacks(stacks),
         runs=tested,
-        cautions=(*_cautions(given), *_slow_rounding(noise), *(each for run in tested for each in run.cautions)),
+        retention=retained,
+        cautions=(
+            *stated_modes_cautions(given, control, closed, retained),
+            *_cautions(given),
+            *_slow_rounding(noise),
+            *(each for run in tested for each in run.cautions),
+        ),
         reasons=Table(_reasons(is_closed=is_closed, forced=lost is None, tested=test is not None)),
         measured=measured,
     )
@@ -251,7 +258,7 @@ def _whole_growth(given: ResolvedSetup, control: Control) -> float:
     whole = loop(given.whole, control.system)
     if whole.system.growth >= 0.0:
         what = verdict(whole).sentence
-        raise refuse("modes", f"with all modes below half the sampling rate {what}", "Keep more of them (modes), or lower the bandwidth")
+        raise refuse("modes", f"with all modes {what}", "Keep more of them (modes), or lower the bandwidth")
     return float(whole.system.growth)
 
 

@@ -257,7 +257,7 @@ def _sentence(seen: View, within: Field, found: Found, kind: Kind, judged: Judge
 def _said(seen: View, wish: Wish, far: Array, judged: Judgement, kind: Kind = Kind.LQG) -> str:
     reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(seen.loops.names, far, strict=True))
     peak = (
-        f"the peak of S is {judged.peak:.3g}, modes up to {100.0 * wish.spread:g} % off included"
+        f"the peak of S with modes up to {100.0 * wish.spread:g} % off is {judged.peak:.3g}"
         if wish.spread
         else f"the peak of S is {judged.peak:.3g}"
     )

@@ -51,7 +51,7 @@ def tune(plant: Plant, loops: Loops, task: Task) -> Tuning:
     >>> plant = integral_loop().plant
     >>> found = tune(plant, platform_loops(plant.coordinates), Task(Kind.PI, Goal(bandwidth=5.0)))
     >>> print(found.reason)
-    PI: all gains pass 1 at 5 Hz; the peak of S is 0.5 dB, 6.02 dB allowed, modes up to 2 % off included
+    PI: all gains pass 1 at 5 Hz; the peak of S with modes up to 2 % off is 0.5 dB, 6.02 dB allowed
     """
     loops = platform_loops(loops.coordinates) if task.kind is Kind.LQG else loops
     require(_findings(plant, task))
@@ -181,9 +181,9 @@ def _help(seen: View, task: Task, wanted: float) -> str:
 
 
 def _sentence(task: Task, best: Attempt, bandwidth: float) -> str:
-    peak = f"the peak of S is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.goal.sensitivity):.3g} dB allowed"
-    spread = f", modes up to {100.0 * task.goal.spread:g} % off included" if task.goal.spread else ""
-    return f"{_controller_name(task, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}{spread}"
+    spread = f" with modes up to {100.0 * task.goal.spread:g} % off" if task.goal.spread else ""
+    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(task.goal.sensitivity):.3g} dB allowed"
+    return f"{_controller_name(task, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}"
 
 
 def _controller_name(task: Task, best: Attempt) -> str:

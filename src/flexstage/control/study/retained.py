@@ -1,0 +1,72 @@
+"""Controller and retained modes of a set-up: each depends on the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import Array
+from flexstage.control.closed import Cut, Loop, loop
+from flexstage.control.retention import MARGIN_CHANGE, Retention, retention
+from flexstage.control.stability_margins import margins, peaks
+from flexstage.control.study.control import Control, make_controller
+from flexstage.control.study.resolve import ResolvedSetup, retain_modes
+
+
+def control_and_modes(
+    given: ResolvedSetup, gains: Array, tell: Callable[[str], None] = lambda _: None
+) -> tuple[ResolvedSetup, Control, Retention]:
+    """Make the controller on the modes retained, retain what matters with it, and tune again until no mode is added.
+
+    Modes are added only: to drop them again would cycle. Modes that the set-up states are left as they are. `gains` (n, f) are the strokes
+    by which poses are commanded. Raises `DesignError` as `make_controller` does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.control.study.resolve import resolve
+    >>> from flexstage.control.study.setup import LoopSetup
+    >>> given = resolve(parallelogram(), LoopSetup())
+    >>> given, control, found = control_and_modes(given, given.plant.coordinates.strokes)
+    >>> found.retained, found.total, found.complete
+    (1, 18, True)
+    """
+    asked = given.setup.controller
+    if asked.goal is not None and given.plant.coordinates.forced:  # a search takes long: it begins with the modes of the plain tuning
+        plain = replace(given, setup=replace(given.setup, controller=replace(asked, goal=None)))
+        with suppress(DesignError):
+            given = replace(control_and_modes(plain, gains, tell)[0], setup=given.setup)
+    tell("tuning")
+    control = make_controller(given, gains)
+    while True:
+        found = retention(given.whole, loop(given.plant, control.system))
+        if found.complete or given.setup.modes is not None:
+            return given, control, found
+        given = retain_modes(given, found.wanted)
+        if found.retune:
+            tell(f"tuning with {len(given.plant.frequencies)} modes")
+            control = make_controller(given, gains)
+
+
+def stated_modes_cautions(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
+    """Margins with the modes that matter, where the set-up states fewer and a margin is another with more."""
+    if given.setup.modes is None or found.complete:
+        return []
+    more = loop(retain_modes(given, found.wanted).plant, control.system)
+    own, rest = _worst(closed), _worst(more)
+    if np.allclose(own, rest, rtol=MARGIN_CHANGE, atol=0.0):
+        return []
+    texts = (f"the peak of S is {peak:.4g} and the least phase margin {phase:.4g} deg" for peak, phase in (own, rest))
+    few, many = (len(each.plant.frequencies) for each in (closed, more))
+    what = f"with the {few} modes stated {next(texts)}, with {many} of the model's {found.total} {next(texts)}"
+    return [Finding("modes", what, "Leave modes out: those that matter to the loop are then retained")]
+
+
+def _worst(closed: Loop) -> tuple[float, float]:
+    """Peak of S and least phase margin [deg]; infinite and none of an unstable loop."""
+    if closed.system.growth >= 0.0:
+        return np.inf, 0.0
+    least = min(each.phase.value for each in margins(closed, Cut.POSE).channels)
+    return peaks(closed, Cut.POSE).sensitivity.value, float(np.degrees(least))
