@@ -125,7 +125,7 @@ def _rate(tried, highest: float) -> float:
 
 def test_an_unstable_attempt_is_called_so(sampled):
     """Beyond the edge of stability the growth is said; where hold and delay take part, faster samples are advised."""
-    with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest reachable with PI") as error:
+    with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest found with PI") as error:
         tune(sampled, platform_loops(sampled.coordinates), Task(Kind.PI, Goal(900.0, spread=0.0), automatic=False))
     assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
 

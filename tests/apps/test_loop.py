@@ -284,7 +284,7 @@ def test_noise_is_that_of_its_simulation(guide: Command) -> None:
 BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--rate", "300 Hz"), ("rate: sampling at 300 Hz", "875.4 Hz", "Sample at")),
     (("--rate", "5"), ("--rate", "without a unit")),
-    (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest reachable with PI", "Ask for")),
+    (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
     (("--command", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
     (("--command", "z=1um"), ("trajectory z: the stage has no motion z", "x")),

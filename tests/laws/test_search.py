@@ -10,7 +10,7 @@ import pytest
 import scipy
 
 from flexstage.analysis.lost_motion import lost_motion
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import first_design
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
@@ -180,7 +180,17 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(DesignError, match="no loop that rejects so far bears it"):
         found(Wish(rejection=500.0, delay_margin=1e-3))
     monkeypatch.setattr("flexstage.control.tuning.find.search", lambda *_: None)
-    with pytest.raises(DesignError, match=r"no PI within .* that settles within 0.2 ms was found"):
+    monkeypatch.setattr("flexstage.control.tuning.find.advance", lambda *_: None)
+    with pytest.raises(DesignError, match=r"settling: the nearest comes to .* ms, and 0.2 ms is asked for"):  # the tuner's own loop
+        found(Wish(settling=2e-4))
+
+    def refuse(*_):
+        raise DesignError([Finding("tuning", "no bandwidth is reached, 27 tried", "Try PID")])
+
+    monkeypatch.setattr("flexstage.control.tuning.find.tune", refuse)
+    with pytest.raises(
+        DesignError, match=r"no PI within .* that settles within 0.2 ms was found; without a search no bandwidth is reached"
+    ):
         found(Wish(settling=2e-4))
 
 

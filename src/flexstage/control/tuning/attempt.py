@@ -233,7 +233,7 @@ def _known(
 def _candidates(
     seen: View, kind: Kind | Family, notches: tuple[Notch, ...], *, loop: int, frequency: float, gain: complex
 ) -> Iterator[_Chosen]:
-    static = float(seen.static[loop] @ seen.loops.drive[:, loop])
+    static = float(seen.static[loop])
     first = next((each.frequency for each in seen.resonances[loop]), None)
     filtered = np.prod([_sampled_notch(seen, notch)[1] for notch in notches], axis=0) if notches else 1.0
     notched = gain * complex(np.prod([_sampled_notch(seen, notch)[0].transfer(np.array([frequency]))[0, 0, 0] for notch in notches]))
@@ -280,14 +280,12 @@ def _score(frequencies: Array, gains: Array, frequency: float) -> float:
     """Peak of S of a single loop (v, f), the worst wherever its modes lie; where it crosses is asked of the first alone."""
     if _crosses_elsewhere(frequencies, np.abs(gains[0]), frequency):
         return 2.0 * _WRONG
-    returned = 1.0 + gains
-    return _WRONG * bool(np.any(_encircles(returned))) + float(1.0 / np.min(np.abs(returned)))
+    return _WRONG * bool(np.any(_encircles(frequencies, gains))) + float(1.0 / np.min(np.abs(1.0 + gains)))
 
 
 def _scores(frequencies: Array, gains: Array, frequency: float) -> Array:
     """Peaks of S (l,) of single loops (l, f), far above any for those that encircle -1 or pass 1 elsewhere first."""
-    returned = 1.0 + gains
-    peaks = _WRONG * _encircles(returned) + 1.0 / np.min(np.abs(returned), axis=-1)
+    peaks = _WRONG * _encircles(frequencies, gains) + 1.0 / np.min(np.abs(1.0 + gains), axis=-1)
     return np.where([_crosses_elsewhere(frequencies, each, frequency) for each in np.abs(gains)], 2.0 * _WRONG, peaks)
 
 
@@ -295,12 +293,18 @@ def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bo
     return abs(crossing_frequency(frequencies, gains) / frequency - 1.0) > _AGREES
 
 
-def _encircles(returned: Array) -> Array:
-    """Whether curves (..., f) of 1 + L turn about 0: their last angle and how often they pass the cut at half a turn, either way."""
-    angles = np.angle(returned)
+def _encircles(frequencies: Array, gains: Array) -> Array:
+    """Whether curves (..., f) of L encircle -1: the last angle of 1 + L and how often it passes the cut at half a turn, either way.
+
+    L of n poles at 0 begins -n quarters of a turn: 3 of a free body under a law that integrates, 1 of any other.
+    """
+    angles = np.angle(1.0 + gains)
     jumps = angles[..., 1:] - angles[..., :-1]
     turns = np.count_nonzero(jumps < -np.pi, axis=-1) - np.count_nonzero(jumps > np.pi, axis=-1)
-    return np.abs(angles[..., -1] + 2.0 * np.pi * turns) > 1.0
+    sizes = np.log(np.abs(gains[..., :2]))
+    poles = np.round((sizes[..., 0] - sizes[..., 1]) / np.log(frequencies[1] / frequencies[0]))
+    begun = np.round(-0.25 * poles - angles[..., 0] / (2.0 * np.pi))
+    return np.abs(angles[..., -1] + 2.0 * np.pi * (turns + begun)) > 1.0
 
 
 def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:

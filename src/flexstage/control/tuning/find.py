@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,11 +18,24 @@ from flexstage.control.plants import Plant
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Judgement, Kind, Tuning
 from flexstage.control.tuning.judge import closed_growth, judge_loop
-from flexstage.control.tuning.outcome import Outcome, bench, outcome
-from flexstage.control.tuning.search import Field, Found, coupled_sensitivities, excess, field, rejects_to, search, tighten, variants
+from flexstage.control.tuning.outcome import Bench, Outcome, bench, outcome
+from flexstage.control.tuning.search import (
+    Field,
+    Found,
+    advance,
+    coupled_sensitivities,
+    excess,
+    field,
+    known_loops,
+    last_mode,
+    rejects_to,
+    search,
+    tighten,
+    variants,
+)
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import View, view
-from flexstage.control.tuning.weigh import Regulated, weigh
+from flexstage.control.tuning.weigh import Regulated, merit, weigh, worth
 from flexstage.control.tuning.wish import STABLE, Wish, wish_findings
 
 _KINDS = (Kind.PI, Kind.PID, Kind.LQG)
@@ -56,9 +69,11 @@ class Asked:
 def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     """The controller that a search finds for a wish.
 
-    Law and notches of every loop are free, width and depth too, and a loop may pass 1 beyond a mode where margins hold with it moved. What
-    was found is judged by eigenvalues and by the coupled peak of S of the sampled loop, with all modes off by the spread. Raises
-    `DesignError` for a plant that is unstable by itself, wishes that contradict one another, and what is not reached, with what is.
+    Law and notches of every loop are free, width and depth too, and a loop may pass 1 beyond a mode where margins hold with it moved.
+    Starts are a grid around the modes, and the controller of highest bandwidth (`tune`): alone where it passes 1 beyond the modes, and
+    where it is better than what the grid leads to. What is found serves the aim no worse than it (`merit`). It is judged by eigenvalues
+    and by the coupled peak of S of the sampled loop, with all modes off by the spread. Raises `DesignError` for a plant that is unstable
+    by itself, wishes that contradict one another, and what is not reached, with what is.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -75,33 +90,117 @@ def find(plant: Plant, loops: Loops, asked: Asked) -> Tuning:
     require(_growth_findings(seen))
     if asked.kind is Kind.LQG:
         return _find_weights(seen, asked)
+    begun, refused = _highest(seen, asked)
+    tried = bench(seen, field(seen, wish, asked.floor, fast=0.0 if begun is None else begun.bandwidth))
+    plain = None if begun is None else _begun(tried, asked, begun)
+    beyond = begun is not None and begun.bandwidth > last_mode(seen)
+    sought = None if beyond else _sought(tried, asked, lambda within: search(seen, within, asked.kind))
+    advanced = None
+    if begun is not None and isinstance(known := begun.controller, Decentralised) and not _is_beaten(tried, known, sought):
+        advanced = _sought(tried, asked, lambda within: advance(seen, within, known))
+    best = _best_of(wish, plain, [each for each in (plain, sought, advanced) if each is not None])
+    if best is None:
+        raise DesignError([_none_found(asked, refused)])
+    require(best.unmet)
+    return best.tuning
+
+
+def _is_beaten(tried: Bench, known: Decentralised, sought: _Candidate | None) -> bool:
+    """Whether a candidate serves the aim better than a known controller."""
+    return sought is not None and sought.merit > merit(tried.field.wish, outcome(tried, known.system(tried.seen.step)))
+
+
+def _best_of(wish: Wish, plain: _Candidate | None, candidates: list[_Candidate]) -> _Candidate | None:
+    """The candidate of most worth, of those that reach what is asked for; none that the aim is served worse by than by the plain one.
+
+    That it overshoots more than is usual does not rule the plain one out; that it does so more than is stated does.
+    """
+    is_bound = plain is not None and not plain.unmet and (plain.overshoot <= wish.overshoot or wish.overshoot == Wish.overshoot)
+    least = plain.merit if plain is not None and is_bound else -np.inf
+    return max((each for each in candidates if each.merit >= least), key=lambda each: (not each.unmet, each.worth), default=None)
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    """A controller that keeps the peak of S, how good it is, and what was asked for and it does not reach."""
+
+    tuning: Tuning
+    merit: float
+    worth: float
+    overshoot: float
+    unmet: tuple[Finding, ...]
+
+
+def _highest(seen: View, asked: Asked) -> tuple[Tuning | None, tuple[Finding, ...]]:
+    """The controller of highest bandwidth, from which a search begins; or why there is none."""
+    task = Task(asked.kind, _goal(asked.wish), expected=asked.expected, feedforward=asked.feedforward)
+    try:
+        return tune(seen.plant, seen.loops, task), ()
+    except DesignError as error:
+        return None, error.findings
+
+
+def _goal(wish: Wish) -> Goal:
+    return Goal(None, wish.sensitivity, wish.spread)
+
+
+def _begun(tried: Bench, asked: Asked, begun: Tuning) -> _Candidate | None:
+    """The controller that the search begins from; `None` where it does not keep the peak of S, or stable with modes farther off."""
+    seen, wish = tried.seen, asked.wish
+    controller = begun.controller
+    if wish.prefilter and isinstance(controller, Decentralised):
+        controller = replace(controller, prefilters=prefilters(tried.field, known_loops(seen, tried.field, controller)))
+    judged = _judge(seen, wish, controller)
+    if not judged.stable or judged.peak > wish.sensitivity:
+        return None
+    reason = "the one of highest bandwidth, as no better one was found"
+    found = outcome(tried, controller.system(seen.step))
+    said = f"{_said(seen, wish, found.rejection[0], judged, asked.kind)}; {reason}"
+    tuning = Tuning(asked.kind, _goal(wish), controller, judged, begun.notches, said)
+    return _candidate(tried, tuning, found, tuple(_unmet_of(wish, found)))
+
+
+def _candidate(tried: Bench, tuning: Tuning, found: Outcome, unmet: tuple[Finding, ...]) -> _Candidate:
+    wish, overshoot = tried.field.wish, float(np.max(found.overshoot))
+    high = f"; steps go {100.0 * overshoot:.0f} % too far, {100.0 * wish.overshoot:g} % allowed"
+    said = f"{tuning.reason}{high}" if overshoot > wish.overshoot + _UNMET else tuning.reason
+    return _Candidate(replace(tuning, reason=said), merit(wish, found), worth(tried, found), overshoot, unmet)
+
+
+def _sought(tried: Bench, asked: Asked, seek: Callable[[Field], Found | None]) -> _Candidate | None:
+    """What is found that keeps the peak of S between frequencies too."""
+    seen, wish = tried.seen, asked.wish
     begun: Found | None = None
     places: tuple[float, ...] = ()
     for _ in range(_LOOKS):
-        for within, found in _rounds(seen, asked, places, begun):
-            controller = _controller(loops, within, found, asked)
+        for within, found in _rounds(tried, asked, places, begun, seek):
+            controller = _controller(seen.loops, within, found, asked)
             judged = _judge(seen, wish, controller)
             if judged.stable and judged.peak <= wish.sensitivity and np.isfinite(far := excess(within, found)):
-                require(_unmet(seen, within, found, far))
-                goal = Goal(None, wish.sensitivity, wish.spread)
-                return Tuning(asked.kind, goal, controller, judged, found.notches, _sentence(seen, within, found, asked.kind, judged))
+                reason = _sentence(seen, within, found, asked.kind, judged)
+                tuning = Tuning(asked.kind, _goal(wish), controller, judged, found.notches, reason)
+                reached = outcome(tried, controller.system(seen.step))
+                return _candidate(tried, tuning, reached, tuple(_unmet(seen, within, found, far)) or tuple(_unmet_of(wish, reached)))
             begun, places = found, (*places, judged.frequency / (1.0 + judged.offset))
         if begun is None:
             break
-    raise DesignError([_none_found(asked)])
+    return None
 
 
-def _rounds(seen: View, asked: Asked, places: tuple[float, ...], begun: Found | None) -> Iterator[tuple[Field, Found]]:
+def _rounds(
+    tried: Bench, asked: Asked, places: tuple[float, ...], begun: Found | None, seek: Callable[[Field], Found | None]
+) -> Iterator[tuple[Field, Found]]:
     """What is found within the peak of S, then within lower ones: on from the last, and where that does not do, anew.
 
     Frequencies lie dense around `places` [Hz], where what was found before, `begun`, passed the peak between those looked at.
     """
     found = begun
     for tighter in _TIGHTER:
-        within = field(seen, replace(asked.wish, sensitivity=1.0 + tighter * (asked.wish.sensitivity - 1.0)), asked.floor, places)
+        wish = replace(asked.wish, sensitivity=1.0 + tighter * (asked.wish.sensitivity - 1.0))
+        within = field(tried.seen, wish, asked.floor, places, tried.field.fast)
         if found is not None:
             yield within, tighten(within, found)
-        found = search(seen, within, asked.kind)
+        found = seek(within)
         if found is None:
             return
         yield within, found
@@ -113,7 +212,9 @@ def _find_weights(seen: View, asked: Asked) -> Tuning:
     within = field(seen, wish, asked.floor)
     tried, goal = bench(seen, within), Goal(None, wish.sensitivity, wish.spread)
     searched = Regulated(tried, asked.expected or Disturbances(_EXPECTED, {}), asked.feedforward)
-    begun = tune(seen.plant, seen.loops, Task(asked.kind, goal, expected=asked.expected, feedforward=asked.feedforward))
+    begun, refused = _highest(seen, asked)
+    if begun is None:
+        raise DesignError([_none_found(asked, refused)])
     against = outcome(tried, begun.controller.system(seen.step))
     for controller in _weighed(searched, wish, against, begun.controller):
         judged = _judge(seen, wish, controller)
@@ -122,7 +223,7 @@ def _find_weights(seen: View, asked: Asked) -> Tuning:
             require(_unmet_of(wish, found))
             reason = _said(seen, wish, found.rejection[0], judged)
             return Tuning(asked.kind, goal, controller, judged, ((),) * len(seen.loops.names), reason)
-    raise DesignError([_none_found(asked)])
+    raise DesignError([_none_found(asked, ())])
 
 
 def _weighed(searched: Regulated, wish: Wish, against: Outcome, begun: Decentralised | LQG) -> Iterator[Decentralised | LQG]:
@@ -139,7 +240,8 @@ def _limited(within: Field, wish: Wish) -> Field:
     return replace(within, wish=wish, variants=variants(wish))
 
 
-def _none_found(asked: Asked) -> Finding:
+def _none_found(asked: Asked, refused: tuple[Finding, ...]) -> Finding:
+    """What was tried: a search, and before it the highest bandwidth, with why that was refused."""
     wish = asked.wish
     wanted = [
         *([] if wish.rejection is None else [f"rejects up to {wish.rejection:g} Hz"]),
@@ -149,7 +251,8 @@ def _none_found(asked: Asked) -> Finding:
     advice = "allow a higher peak of S or a smaller spread of the modes, or take another kind"
     beyond = f", stable with modes up to {100.0 * STABLE * wish.spread:g} % off," if wish.spread else ""
     that = f" that {' and '.join(wanted)}" if wanted else ""
-    what = f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g}{beyond}{that} was found"
+    before = "".join(f"; without a search {each.what}" for each in refused)
+    what = f"no {asked.kind.value} within a peak of S of {wish.sensitivity:g}{beyond}{that} was found{before}"
     return Finding("controller.goal", what, f"Ask for less of it, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
 
 

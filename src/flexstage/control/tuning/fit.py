@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.tuning.shape import Shape
 
-_BAND, _BAND_OFF = 0.0172, 0.0185
+BAND, _BAND_OFF = 0.0172, 0.0185
 """Within which steps are settled, of the model and of modes that are off: less than the 2 % that are shown, for rounding of gauges."""
 STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
 """Weights: a bound passed by 3 % counts as much as all noise; a step outside its band by a tenth of the band as a bound passed by 1 %."""
@@ -87,7 +87,7 @@ def encircles_nothing(returned: Array) -> Array:
 
 def _bands(steps: Array) -> Array:
     """Bands of steps (w, n), the model's first."""
-    return np.where(np.arange(len(steps)) == 0, _BAND, _BAND_OFF)[:, None] * np.ones(steps.shape)
+    return np.where(np.arange(len(steps)) == 0, BAND, _BAND_OFF)[:, None] * np.ones(steps.shape)
 
 
 def _following(loops: Array, at_rest: float) -> Array:

@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import cast
 
 import numpy as np
 import scipy
 
 from flexstage.analysis.random_response import Spectrum
 from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import select
 from flexstage.control.tuning.aim import Aim
-from flexstage.control.tuning.fit import STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.fit import BAND, STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
 from flexstage.control.tuning.goal import Kind
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.view import View, resonances
@@ -32,7 +34,7 @@ Both are finite so that the descent sees an edge before it is passed: at 8, L is
 """
 _TURNS = 0.25 * np.pi * np.arange(1, 8)
 """Turns at which delays are tried: a mode of gain 1.08 encircles -1 over 44 deg of them, one of less gain comes nearer to it than 1/8."""
-_SETTLED = 6.0
+SETTLED = 6.0
 """Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced.
 
 A loop that crosses at f with one time constant, 1/(2 pi f), is within 2 % after ln(50)/(2 pi f) = 0.62/f; notched modes that lie elsewhere
@@ -63,10 +65,15 @@ _NEARLY = 0.03
 """Excess of bounds within which a start counts as calm: noise is bounded by such starts alone."""
 _LEFT = 0.015
 """Of the overshoot, what is left to rounding of gauges and to samples of steps that lie beside the top."""
+_LEAST = 0.02
+"""Least k_p omega/k_i, where loops are known to pass 1, with which a known controller is begun from."""
 _FIRST_DERIVATIVE = 0.01
 """k_d k_i / k_p^2 where PID begins, from PI: its zeros are then PI's and one a hundred times as fast, so that all bounds are still kept."""
-_SLOWEST = 0.1
-"""Least k_i/k_p over the first mode's omega: slower integrators leave a tail that the band of 2 % does not see and statics do."""
+_SLOWEST, _SLOWEST_OF_FAST = 0.1, 0.01
+"""Least k_i/k_p over the first mode's omega, and over where loops are known to pass 1.
+
+Slower integrators leave a tail that the band of 2 % does not see and statics do.
+"""
 _COUPLED = 0.5
 """|g_ij g_ji / (g_ii g_jj)| above which loops are searched for together: the interaction at which a loop's own plant changes by half."""
 _NOISIER = 1.65
@@ -81,13 +88,19 @@ _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
 _SAME = 1e-6
 """Relative difference of plants below which loops are the same: models of symmetric stages are symmetric to some 1e-9."""
 _CORNER, _OF_RATE = 10.0, 0.4
-"""Corner of a PID's filter: ten times the platform's highest mode, at most 0.4 of the sampling rate, where Tustin's rule keeps it."""
+"""Corner of a PID's filter: ten times the platform's highest mode, or where loops are known to pass 1, the higher of them.
+
+It is at most 0.4 of the sampling rate, where Tustin's rule keeps it.
+"""
 _RATE = 20.0
-"""Samples of steps in a period of the loops' highest mode."""
+"""Samples of steps in a period of the loops' highest mode, or of where they are known to pass 1."""
 _PERIODS, _LEAST_LINES, _MOST_LINES = 12.0, 9, 12
 """Steps last so many periods of the lowest mode, 0.1 s at 100 Hz, as powers of two between 512 and 4096 samples."""
-_PLAIN, _AROUND = 90, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
-"""Frequencies: so many evenly in the logarithm, and around each mode by so many half widths: between, |S| of a pole is straight to 3 %."""
+_PLAIN, _PER_DECADE, _AROUND = 90, 20, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
+"""Frequencies: so many evenly in the logarithm, in a decade at least, and around each mode by so many half widths.
+
+Between, |S| of a pole is straight to 3 %.
+"""
 
 _CLOSE = np.linspace(-0.06, 0.06, 25)
 """Around a peak that was passed between frequencies, so far either side: it moves as the search goes on; half a per cent apart."""
@@ -151,7 +164,7 @@ class Field:
 
     `disturbed` (f, k, d) is the amplitude of each loop's pose by each motion of the floor, `heard` (f, k) that of the gauges' noise,
     weighted for sums of squares over the frequencies. `alike` gives each loop the first one that is the same, `allowed` the rms at rest
-    that each may have; none: any.
+    that each may have; none: any. `fast` [Hz] is where loops are known to pass 1: steps are as fine, and filters as fast, as that takes.
     """
 
     wish: Wish
@@ -164,12 +177,13 @@ class Field:
     heard: Array
     alike: tuple[int, ...]
     allowed: tuple[float, ...] = ()
+    fast: float = 0.0
 
 
-def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[float, ...] = ()) -> Field:
+def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
     """What a view, taken at the offsets of `variants`, gives a search; `floor` by input of the plant.
 
-    Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher.
+    Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher. `fast` is that of `Field`.
     """
     drive, cases, sense = seen.loops.drive, variants(wish), seen.loops.sense
     systems = {offset: resolvent(system) for offset, system in zip(seen.offsets, seen.systems, strict=True)}
@@ -178,7 +192,7 @@ def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[f
     plants = np.stack(
         [sense @ systems[each.offset].at(at) @ drive * each.factor(at)[:, None, None] for each, at in zip(cases, frequencies, strict=True)]
     )
-    lines = _lines(seen)
+    lines = _lines(seen, fast)
     slow = np.stack([sense @ systems[offset].at(lines) @ drive for offset in ((0.0, -wish.spread, wish.spread) if wish.spread else (0.0,))])
     weights = np.sqrt(np.gradient(own))[:, None]
     return Field(
@@ -191,12 +205,26 @@ def field(seen: View, wish: Wish, floor: Mapping[str, Spectrum], places: tuple[f
         disturbed=_disturbed(seen, own, floor) * weights[:, :, None],
         heard=_heard(seen) * weights,
         alike=tuple(_first_alike(plants, loop) for loop in range(len(seen.loops.names))),
+        fast=fast,
     )
 
 
-def _lines(seen: View) -> Array:
+def last_mode(seen: View) -> float:
+    """The highest mode [Hz] of the lowest, as many as there are loops.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> plant = integral_loop().plant
+    >>> round(last_mode(view(plant, platform_loops(plant.coordinates), 0.0)), 1) == round(float(plant.frequencies[0]), 1)
+    True
+    """
+    return float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+
+
+def _lines(seen: View, fast: float) -> Array:
     """Even frequencies [Hz] from 0 to half the rate, so many that a step lasts some periods of the lowest mode."""
-    rate = _RATE * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1]) * (2.0 if seen.loops.coordinates.forced else 1.0)
+    rate = _RATE * max(last_mode(seen) * (2.0 if seen.loops.coordinates.forced else 1.0), fast)
     rate = rate if seen.step is None else min(rate, 1.0 / seen.step)
     power = int(np.clip(np.ceil(np.log2(_PERIODS * rate / float(seen.modes[0]))), _LEAST_LINES, _MOST_LINES))
     return np.linspace(0.0, 0.5 * rate, 2 ** (power - 1) + 1)
@@ -206,7 +234,8 @@ def _frequencies(seen: View, highest: float, places: tuple[float, ...]) -> Array
     """Evenly in the logarithm, and densely around the modes and `places`; up to where all plants' own end below half the rate."""
     top = 20.0 * float(seen.modes[-1]) if seen.step is None else 0.5 / seen.step
     top *= 0.999 / (1.0 + highest)
-    plain = np.geomspace(0.01 * float(seen.modes[0]), top, _PLAIN)
+    lowest = 0.01 * float(seen.modes[0])
+    plain = np.geomspace(lowest, top, max(_PLAIN, int(_PER_DECADE * np.log10(top / lowest))))
     single = np.append(True, np.diff(seen.modes) > 0.1 * seen.ratios[1:] * seen.modes[1:])
     around = seen.modes[single, None] * (1.0 + seen.ratios[single, None] * _AROUND)
     near = np.array(places)[:, None] * (1.0 + _CLOSE)
@@ -280,6 +309,46 @@ def search(seen: View, within: Field, kind: Kind) -> Found | None:
     return None if found is None else tighten(within, found)
 
 
+def advance(seen: View, within: Field, known: Decentralised) -> Found:
+    """Loops brought on from a known controller, those that are coupled together, then all at once."""
+    begun = known_loops(seen, within, known)
+    points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
+    for block in _blocks(within):
+        own = Found(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
+        part = _part(within, block)
+        if within.wish.aim is Aim.BALANCE:
+            part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
+        starts = [own, *_calmed(part, [own], _BACK)]
+        if within.wish.aim is Aim.SETTLING:  # what rejects far too settles soon
+            balanced = replace(part, wish=replace(part.wish, aim=Aim.BALANCE))
+            starts.insert(0, _climb(balanced, starts, _frequencies_of_aim(balanced, own)))
+        found = _climb(part, starts, _frequencies_of_aim(part, starts[0]))
+        for place, loop in enumerate(block):
+            points[loop], reached[loop], noises[loop] = found.points[place], found.reached[place], _noises(part, found)[place]
+    points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
+    return tighten(within, Found(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
+
+
+def known_loops(seen: View, within: Field, known: Decentralised) -> Found:
+    """The loops of a controller as points, of those that are the same the first."""
+    count = len(within.alike)
+    notches = known.notches or ((),) * count
+    every = [_known_loop(seen, within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
+    return Found(tuple(shape for shape, _ in every), _shared(within, tuple(point for _, point in every)), (0.0,) * count, (np.inf,) * count)
+
+
+def _known_loop(seen: View, within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tuple[Shape, Array]:
+    """Gains that are 0 get next to nothing: their logarithms are searched."""
+    fast = 2.0 * np.pi * within.fast
+    plain = PI(max(law.proportional, _LEAST * law.integral / fast), law.integral)
+    corner = law.filter if isinstance(law, PID) else None
+    shape = Shape(len(notches), seen.step, corner, min(_SLOWEST_OF_FAST * fast, plain.integral / plain.proportional))
+    if not isinstance(law, PID):
+        return shape, shape.point(plain, notches)
+    derivative = max(law.derivative, _FIRST_DERIVATIVE * plain.proportional**2 / plain.integral)
+    return shape, shape.point(PID(plain.proportional, plain.integral, derivative, law.filter), notches)
+
+
 def tighten(within: Field, found: Found) -> Found:
     """All loops at once, from what was found in a field, or in one that is less strict."""
     return _together(replace(within, allowed=found.noises), found)
@@ -287,7 +356,7 @@ def tighten(within: Field, found: Found) -> Found:
 
 def _by_blocks(seen: View, within: Field, kind: Kind, begun: Found | None) -> Found | None:
     """The best loops, those that are coupled together, the others open: from a grid of starts, or on from where another kind came to."""
-    shapes = tuple(_shape(seen, kind, loop) for loop in range(len(within.alike)))
+    shapes = tuple(_shape(seen, kind, loop, within.fast) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
     reached, noises = [0.0] * len(shapes), [np.inf] * len(shapes)
     for block in _blocks(within):
@@ -380,6 +449,19 @@ def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
 def _rejections(within: Field, found: Found) -> list[float]:
     """How far each loop rejects [Hz]."""
     return [rejection(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+
+
+def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
+    """By loop the frequency [Hz] by which the aim is reached already: of rejection, or of which it settles in six periods."""
+    far, aim = _rejections(within, found), within.wish.aim
+    soon = [SETTLED / _settling(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
+    return soon if aim is Aim.SETTLING else list(map(min, far, soon)) if aim is Aim.BALANCE else far
+
+
+def _settling(one: OneLoop, point: Array) -> float:
+    """When a step of the model stays within the band [s], one sample at least."""
+    outside = np.flatnonzero(np.abs(one.steps(point)[0] - 1.0) > BAND)
+    return one.interval * (1.0 + (float(outside[-1]) if len(outside) else 0.0))
 
 
 def _is_calm(within: Field, found: Found) -> bool:
@@ -628,17 +710,18 @@ def _one_loop(within: Field, shape: Shape, loop: int, left: _Left, share: float)
     )
 
 
-def _shape(seen: View, kind: Kind, loop: int) -> Shape:
+def _shape(seen: View, kind: Kind, loop: int, fast: float) -> Shape:
     corner = None
     if kind is Kind.PID:
-        corner = _CORNER * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+        corner = _CORNER * max(last_mode(seen), fast)
         corner = corner if seen.step is None else min(corner, _OF_RATE / seen.step)
-    return Shape(len(_places(seen, loop)), seen.step, corner, _SLOWEST * 2.0 * np.pi * _first_place(seen, loop))
+    slowest = max(_SLOWEST * _first_place(seen, loop), _SLOWEST_OF_FAST * fast)
+    return Shape(len(_places(seen, loop)), seen.step, corner, 2.0 * np.pi * slowest)
 
 
 def _places(seen: View, loop: int) -> list[float]:
     """Frequencies [Hz] where notches begin: the first modes that stand out of a loop; of one mode alone also a place above it."""
-    highest = _NEAR * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
+    highest = _NEAR * last_mode(seen)
     found = [each.frequency for each in resonances(seen, loop) if each.frequency < highest]
     near = [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
     return [*near, _ABOVE * near[0]] if len(near) == 1 and (seen.step is None or _ABOVE * near[0] < _OF_RATE / seen.step) else near
@@ -691,7 +774,7 @@ def rejection(one: OneLoop, point: Array) -> float:
 def _bounds(wish: Wish, frequency: float) -> Bounds:
     """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
     far = frequency if wish.aim in (Aim.BALANCE, Aim.REJECTION) else 0.0
-    soon = _SETTLED / frequency if wish.aim in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
+    soon = SETTLED / frequency if wish.aim in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
     return Bounds(
         max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT, plants=2 if wish.spread else 1
     )

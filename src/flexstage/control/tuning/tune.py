@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -16,18 +17,16 @@ from flexstage.control.tuning.attempt import Attempt, Task, attempt, reach
 from flexstage.control.tuning.goal import Judgement, Kind, Tuning, goal_findings
 from flexstage.control.tuning.view import View, view
 
-_SLOWEST = 0.002
-"""Least bandwidth that is tried, over the first mode: slower ones serve nobody."""
-_FASTEST = 5.0
-"""Highest bandwidth that is tried, over the last mode that loops move: a stage of stacks has 1/24 of its gain there."""
-_FASTEST_BY_FORCE = 100.0
-"""A force moves a mass above its resonance as if nothing held it: a low resonance bounds nothing."""
-_OF_RATE = 0.2
-"""The same over the sampling rate: hold and one sample of delay turn by 360 * 0.2 * 1.5 = 108 deg there, more than laws make up for."""
+_SLOW = 0.1
+"""Lowest bandwidth that is tried, over that of integral control alone with a gain of 1 at the highest resonance: stable by small gain."""
 _FINE = 0.05
-_STEPS, _STEPS_OF_LQG = (1.3, 2.0), (1.6, 4.0)
-"""Ratios of bandwidths tried in turn, above 0.05 of the first mode and below, where less depends on them; LQG takes longer."""
-_WITHIN = 1.01
+_STEPS = (1.3, 2.0)
+_STEPS_OF: Mapping[Kind | Family, tuple[float, float]] = MappingProxyType({Kind.PID: (1.14, 2.0), Kind.LQG: (1.6, 4.0)})
+"""Ratios of bandwidths tried in turn, above 0.05 of the first mode and below, where less depends on them.
+
+A loop with lead may pass 1 between modes, in ranges that are narrow; LQG takes longer.
+"""
+_WITHIN = 1.003
 """Within which the highest bandwidth is found."""
 _NOTICED = 20.0
 """Lag of hold and delay [deg] from which on faster samples are advised."""
@@ -80,8 +79,29 @@ def _weakest(found: Attempt) -> float:
     return float(np.min(np.abs(np.diag(found.gains[0, 0]))))
 
 
+def trial_bandwidths(seen: View, kind: Kind | Family) -> list[float]:
+    """Bandwidths [Hz] that are tried in turn, descending: from what hold and delay allow to what roll-off and resonances allow any loop.
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> places = trial_bandwidths(view(plant, platform_loops(plant.coordinates), 0.02), Kind.PI)
+    >>> round(places[0]), len(places)
+    (3000, 24)
+    """
+    calmest = _SLOW * float(np.min(seen.frequencies[:, None] / np.max(np.abs(seen.own), axis=0)))
+    slowest = min(max(calmest, float(seen.frequencies[0])), 0.5 * seen.fastest)
+    finer, coarser = _STEPS_OF.get(kind, _STEPS)
+    places = [seen.fastest]
+    while places[-1] > slowest:
+        places.append(places[-1] / (finer if places[-1] > _FINE * seen.modes[0] else coarser))
+    return places
+
+
 def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
-    """The highest bandwidth [Hz] at which the goal's margins are kept, within 1 %, and the controller; 0 and None where there is none.
+    """The highest bandwidth [Hz] found at which the goal's margins are kept, within 0.3 %, and the controller; 0 and None: none is.
+
+    It is the highest of `trial_bandwidths`, halved up to the next: no proof that no other controller reaches more.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -91,14 +111,7 @@ def highest_bandwidth(seen: View, task: Task) -> tuple[float, Attempt | None]:
     >>> round(highest_bandwidth(seen, Task(Kind.PI, Goal(), automatic=False))[0])
     56
     """
-    fastest = _FASTEST_BY_FORCE if seen.loops.coordinates.forced else _FASTEST
-    top: float = fastest * float(seen.modes[min(len(seen.loops.names), len(seen.modes)) - 1])
-    top = top if seen.step is None else min(top, _OF_RATE / seen.step)
-    slowest = min(_SLOWEST * float(seen.modes[0]), 0.5 * top)
-    finer, coarser = _STEPS_OF_LQG if task.kind is Kind.LQG else _STEPS
-    places = [top]
-    while places[-1] > slowest:
-        places.append(places[-1] / (finer if places[-1] > _FINE * seen.modes[0] else coarser))
+    places = trial_bandwidths(seen, task.kind)
     for number, place in enumerate(places):
         found = reach(seen, task, place)
         if found is not None:
@@ -128,23 +141,28 @@ def _findings(plant: Plant, task: Task) -> Iterator[Finding]:
 
 
 def _no_bandwidth(seen: View, task: Task) -> Finding:
-    slowest = _SLOWEST * float(seen.modes[0])
-    best, advice = attempt(seen, task, slowest), _help(seen, task, slowest)
-    what = f"no bandwidth from {slowest:.3g} Hz up is reached: {_reason(task, best, slowest)}"
+    places = trial_bandwidths(seen, task.kind)
+    best, advice = attempt(seen, task, places[-1]), _help(seen, task, places[-1])
+    what = f"no bandwidth is reached, {_tried(places)}; at the last {_reason(task, best, places[-1])}"
     return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
 
 def _unreached(seen: View, task: Task, best: Attempt | None, wanted: float) -> Finding:
     top, reached = highest_bandwidth(seen, task)
+    tried = _tried(trial_bandwidths(seen, task.kind))
     rest = (
-        f"{_three_digits(top)} Hz is the highest reachable with {_controller_name(task, reached)}"
+        f"{_three_digits(top)} Hz is the highest found with {_controller_name(task, reached)}, {tried}"
         if reached
-        else "no other is reached either"
+        else f"no other is reached either, {tried}"
     )
     what = f"at {_three_digits(wanted)} Hz {_reason(task, best, wanted)}; {rest}"
     more = f"Ask for more, up to {_three_digits(top)} Hz" if wanted < top else f"Ask for {_three_digits(top)} Hz or less"
     ask = more if reached else "Allow a higher peak of S"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, task, wanted)}")
+
+
+def _tried(places: list[float]) -> str:
+    return f"{len(places)} bandwidths tried from {_three_digits(places[0])} to {_three_digits(places[-1])} Hz"
 
 
 def _reason(task: Task, best: Attempt | None, wanted: float) -> str:

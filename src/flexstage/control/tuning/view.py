@@ -15,8 +15,14 @@ from flexstage.control.plants import Plant
 from flexstage.control.resolvent import resolvent
 from flexstage.control.system import System
 
-_PLAIN = 400
-"""Frequencies evenly in the logarithm: 2 to 4 % apart."""
+_PLAIN, _PER_DECADE = 400, 60
+"""Frequencies evenly in the logarithm, and how many a decade has at least: 2 to 4 % apart."""
+_TURNED, _OF_RATE = 0.3, 0.4
+"""Highest bandwidth: hold and delay take 0.3 of a turn there, 108 deg, more than laws make up for; at most this share of the rate."""
+_OF_HIGHEST = 0.25
+"""The same of a continuous loop, over the highest frequency that is looked at: 5 times the plant's last mode."""
+_LOWEST, _BELOW_FASTEST = 1e-3, 0.01
+"""Lowest frequency over the first mode, and over the highest bandwidth at most; of a free body, whose mode is at 0 Hz, over both."""
 _AROUND = 21
 """Frequencies around each mode, at even steps of the turn of its resonance from -1.5 to 1.5 rad."""
 _SAME = 0.01
@@ -30,8 +36,8 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: as modelled (first), and with all modes by the `offsets` off.
 
-    `responses` (v, f, k, n) are those of the loops' poses to strokes, sense P, at `frequencies` (f,) [Hz]; `static` (k, n) at rest. `modes`
-    [Hz] and `ratios` are those of the plant's modes.
+    `responses` (v, f, k, n) are those of the loops' poses to strokes, sense P, at `frequencies` (f,) [Hz]. `modes` [Hz] and `ratios` are
+    those of the plant's modes.
     """
 
     plant: Plant
@@ -40,7 +46,6 @@ class View:
     offsets: tuple[float, ...]
     frequencies: Array
     responses: Array
-    static: Array
     modes: Array
     ratios: Array
 
@@ -48,6 +53,16 @@ class View:
     def step(self) -> float | None:
         """Time between samples [s]; None for a continuous loop."""
         return self.systems[0].step
+
+    @property
+    def fastest(self) -> float:
+        """Highest bandwidth [Hz] that is worth a trial, by hold and delay; of a continuous loop by the plant's last mode."""
+        return _fastest(self.plant)
+
+    @property
+    def static(self) -> Array:
+        """The loops' own gains (k,) at the lowest frequency."""
+        return np.real(self.own[0, 0])
 
     def at(self, frequency: float) -> Array:
         """The loops' own responses (k,) at one frequency [Hz]."""
@@ -89,15 +104,25 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     >>> plant = integral_loop().plant
     >>> found = view(plant, platform_loops(plant.coordinates), 0.02)
     >>> found.offsets, found.responses.shape[0], found.static.round(2).tolist()
-    ((0.0, -0.02, 0.02), 3, [[0.99]])
+    ((0.0, -0.02, 0.02), 3, [0.99])
     """
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(_scale_modes(plant, offset) for offset in offsets)
     frequencies = _frequencies(plant, offsets)
     responses = np.stack([loops.sense @ resolvent(system).at(frequencies) for system in systems])
-    static = np.real(loops.sense @ systems[0].transfer(np.zeros(1))[0])
-    return View(plant, loops, systems, offsets, frequencies, responses, static, plant.frequencies, plant.ratios)
+    return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
+
+
+def _fastest(plant: Plant) -> float:
+    step = plant.hardware.step
+    if step is None:
+        return _OF_HIGHEST * _highest(plant)
+    return min(_TURNED / (plant.hardware.delay + 0.5 * step), _OF_RATE / step)
+
+
+def _highest(plant: Plant) -> float:
+    return 20.0 * float(plant.frequencies[-1]) if plant.hardware.rate is None else 0.5 * plant.hardware.rate
 
 
 def _scale_modes(plant: Plant, offset: float) -> System:
@@ -112,8 +137,9 @@ def _scale_modes(plant: Plant, offset: float) -> System:
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
     """Evenly in the logarithm, and densely around every mode wherever it may lie."""
-    highest = 20.0 * plant.frequencies[-1] if plant.hardware.rate is None else 0.5 * plant.hardware.rate
-    plain = np.geomspace(1e-3 * plant.frequencies[0], highest, _PLAIN)
+    highest, slow = _highest(plant), _BELOW_FASTEST * _fastest(plant)
+    lowest = min(slow, _LOWEST * float(plant.frequencies[0] or slow))
+    plain = np.geomspace(lowest, highest, max(_PLAIN, int(_PER_DECADE * np.log10(highest / lowest))))
     around = np.tan(np.linspace(-1.5, 1.5, _AROUND))
     single = np.append(True, np.diff(plant.frequencies) > _REPEATED * plant.ratios[1:] * plant.frequencies[1:])
     places = [

@@ -14,6 +14,7 @@ from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observ
 from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.judge import closed_growth
 from flexstage.control.tuning.outcome import Bench, Outcome, outcome
+from flexstage.control.tuning.search import SETTLED
 from flexstage.control.tuning.wish import Wish
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
@@ -129,11 +130,36 @@ def _improvements(wish: Wish, found: Outcome, against: Outcome) -> Iterator[Arra
         yield np.log(np.maximum(against.settling, 1e-300) / np.maximum(found.settling, 1e-300))
 
 
+def merit(wish: Wish, found: Outcome) -> float:
+    """The mean logarithm by loop of what the aim is about.
+
+    A balance is about the frequency up to which a loop rejects, or that of which it settles in six periods, the lower of them.
+    """
+    settling = np.maximum(found.settling, 1e-300)
+    merits = {
+        Aim.BALANCE: np.minimum(found.rejection[0], SETTLED / settling),
+        Aim.REJECTION: found.rejection[0],
+        Aim.SETTLING: 1.0 / settling,
+        Aim.NOISE: 1.0 / np.maximum(found.noise, 1e-300),
+    }
+    return float(np.mean(np.log(merits[wish.aim])))
+
+
+def worth(tried: Bench, found: Outcome) -> float:
+    """The merit less what passes the bounds of the wish; peaks count where modes are within its spread."""
+    wish = tried.field.wish
+    limits = np.array([each.limit if each.limit <= wish.sensitivity else np.inf for each in tried.field.variants])
+    return merit(wish, found) - _STEEP * _excess(wish, found, limits)
+
+
 def excess_of(tried: Bench, found: Outcome) -> float:
-    """By how much bounds are passed, the sum of what each is."""
-    wish, limits = tried.field.wish, np.array([each.limit for each in tried.field.variants])
+    """By how much bounds are passed, the sum of what each is; of peaks with a margin for frequencies between those looked at."""
+    return _excess(tried.field.wish, found, _INSIDE * np.array([each.limit for each in tried.field.variants]))
+
+
+def _excess(wish: Wish, found: Outcome, limits: Array) -> float:
     over = [
-        *(found.peaks / (_INSIDE * limits) - 1.0),
+        *(found.peaks / limits - 1.0),
         *(found.overshoot - wish.overshoot),
         *((wish.rejection or 0.0) / found.rejection[0] - 1.0),
         *((0.0 if wish.settling is None else found.settling / wish.settling - 1.0) * np.ones(len(found.settling))),
