@@ -42,7 +42,6 @@ HOMES = {
     "parts.strain_gauge": "StrainGauge",
     "parts.body": "Body Block Cylinder Extrusion Imported Inertia Payload Sphere",
     "parts.freedom": "Freedom",
-    "beams.validity": "validity",
     "mechanism.pattern": "Polar Pose Facing Normal",
     "mechanism.mount": "mount",
     "mechanism.mechanism": "Mechanism NamedNumber Link StrokePath Unit Placement Probe LinkProbe GaugeSum Stop Force Opening "
@@ -80,6 +79,7 @@ HOMES = {
     "analysis.inner_stage": "amplified",
     "analysis.complete": "Model analyse",
     "analysis.budget": "budget",
+    "analysis.validity": "validity",
     "show.report": "report",
     "show.viewer.course": "play",
     "show.viewer.view": "View view",

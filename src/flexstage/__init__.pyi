@@ -57,6 +57,9 @@ from flexstage.analysis.workspace.reach import (
 from flexstage.analysis.workspace.workspace import (
     workspace as workspace,
 )
+from flexstage.analysis.validity import (
+    validity as validity,
+)
 from flexstage.base.finding import (
     DesignError as DesignError,
 )
@@ -86,9 +89,6 @@ from flexstage.base.scale import (
     uF as uF,
     um as um,
     urad as urad,
-)
-from flexstage.beams.validity import (
-    validity as validity,
 )
 from flexstage.cases.registry import (
     case as case,

@@ -29,7 +29,6 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
     [
         (replace(SOUND, seconds=0.0), ("seconds", "0 s")),
         (replace(SOUND, seconds=-1.0), ("seconds", "-1 s")),
-        (replace(SOUND, seconds=float("nan")), ("seconds", "nan s")),
         (replace(SOUND, seconds=1e-3), ("seconds", "0.001 s at 2048 Hz are 2 samples")),
         (replace(SOUND, seconds=1e15), ("seconds", "samples")),
         (replace(SOUND, rate=0.0), ("rate", "0 Hz")),
@@ -43,7 +42,6 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
         (replace(SOUND, drive=NoiseDrive(actuators=())), ("actuators", "none is to be driven", "B6")),
         (replace(SOUND, drive=NoiseDrive(actuators=("B1", "B1"))), ("actuator B1", "2 times")),
         (replace(SOUND, drive=NoiseDrive(band=(100.0, 50.0))), ("band", "100 Hz to 50 Hz")),
-        (replace(SOUND, drive=NoiseDrive(band=(0.0, float("inf")))), ("band", "inf Hz")),
         (replace(SOUND, amplifier=Amplifier(bandwidth=0.0)), ("amplifier", "bandwidth is 0")),
         (replace(SOUND, amplifier=Amplifier(bandwidth=10.0, resistance=10.0)), ("amplifier", "both")),
         (replace(SOUND, amplifier=Amplifier(current=1e-3)), ("B4", "A rms pass the amplifier's 0.001 A")),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import flexstage as fs
@@ -26,6 +27,22 @@ STAGE = fs.case("parallelogram")
 def test_a_text_is_no_number(made):
     with pytest.raises(fs.DesignError, match=r"found the text '.*', expected a number"):
         made()
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda: fs.Rod("steel", length=np.array([0.1, np.inf]), diameter=0.01), ["Rod.length at index 1", "inf", "a finite number"]),
+        (lambda: fs.Rod("steel", length=None, diameter=0.1), ["Rod.length", "None", "a number"]),
+        (lambda: fs.Rod("steel", length=True, diameter=0.1), ["Rod.length", "True", "a number"]),
+        (lambda: fs.Mechanism("", parts={"p": "wire"}), ["Mechanism.parts.p", "'wire'", "Elastic"]),
+        (lambda: fs.Given(np.eye(6), ()), ["Given.compliance", "ndarray", "6 values", "tuple"]),
+    ],
+)
+def test_values_of_another_kind_are_refused_at_construction(made, words):
+    with pytest.raises(fs.DesignError) as refusal:
+        made()
+    assert all(word in str(refusal.value) for word in words)
 
 
 @pytest.mark.parametrize(

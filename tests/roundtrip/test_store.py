@@ -89,7 +89,7 @@ def test_texts_are_the_shortest_in_the_shown_unit() -> None:
     assert 'diameter = "300.00000000000004 mm"' in text
 
 
-@pytest.mark.parametrize("value", [np.array([1.0, 2.0]), 1.0 + 1e-20j, float("inf"), float("nan")])
+@pytest.mark.parametrize("value", [np.array([1.0, 2.0]), 1.0 + 1e-20j])
 def test_what_a_file_cannot_hold_is_refused_by_name(value: Any, tmp_path: Path) -> None:
     mechanism = Mechanism("a", parts={"wire": Rod("steel", length=value, diameter=0.001)})
     with pytest.raises(DesignError, match=r"parts\.wire\.length: "):

@@ -12,6 +12,7 @@ from flexstage.analysis.load_effect import felt_links
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.analysis.workspace.map_error import map_error_at
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.number import Array, Number, stack
 from flexstage.mechanism.expand import Assembly, expand
@@ -21,6 +22,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
 
 
+@check_arguments
 def budget(
     mechanism: Mechanism,
     command: Mapping[str, Number],

@@ -15,6 +15,7 @@ from flexstage.analysis.measures import drift
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.seating import seating, seating_findings
 from flexstage.analysis.standing import drawn, kinematics, load_factors, standing
+from flexstage.analysis.validity import validity
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.small import small_motion
@@ -28,7 +29,6 @@ from flexstage.base.record import INNER
 from flexstage.base.threads import one_thread
 from flexstage.base.unit import show
 from flexstage.beams.mass import mass
-from flexstage.beams.validity import validity
 from flexstage.mechanism.contact import contact_findings
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, expand
@@ -40,7 +40,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.contact import Contact
 from flexstage.parts.given import Given, Joint
-from flexstage.parts.part import Part, Restricted, material_of
+from flexstage.parts.part import Restricted, material_of
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
 
@@ -360,7 +360,7 @@ def part_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:
     >>> part_cautions(double_triangle())
     ()
     """
-    return (*_validity(mechanism), *_not_straight(mechanism))
+    return (*(finding for each in validity(mechanism).values() for finding in each.findings), *_not_straight(mechanism))
 
 
 def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
@@ -369,17 +369,6 @@ def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
         if getattr(part, "is_bent", False):
             what = "it is not straight when free; all models but that of large displacements take it as straight, without what holds it so"
             yield Finding(f"parts.{name}", what, "Ask flexstage stroke, or modes --at, what it does")
-
-
-def _validity(mechanism: Mechanism) -> Iterator[Finding]:
-    shared = mechanism.parts
-    told: set[tuple[str, Part]] = set()
-    for link in expand(mechanism).links.values():
-        departs = link.described.part != shared[link.link.part]
-        where = link.name if departs else f"parts.{link.link.part}"
-        if (where, link.part) not in told:
-            told.add((where, link.part))
-            yield from validity(link.part, where).findings
 
 
 def _room(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from flexstage.analysis.workspace.reach import reach as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
+from flexstage.base.arguments import check_arguments
 from flexstage.base.lazy import Late
 from flexstage.base.number import Table
 from flexstage.base.threads import one_thread
@@ -67,6 +68,7 @@ class Analysis:
     the platform belong to the statics.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
     mechanism: Mechanism
     model: Model
     kinematics: Kinematics
@@ -125,6 +127,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
     return linear
 
 
+@check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
     """Every analysis of one model; unless `whole` without what the short form does not show, half of the time.

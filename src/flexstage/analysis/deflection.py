@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -34,7 +34,7 @@ class Deflection(InNotebook):
         return np.sum(self.by_cause.values, axis=-1)
 
 
-@takes_models
+@check_arguments
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Deflection at a point of the platform under gravity and stated forces: q = K^-1 f, strokes held, small displacements.
 

@@ -13,6 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.lost_motion import LOADED
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
@@ -25,7 +26,6 @@ from flexstage.mechanism.expansion import Expansion, Ground, expansion
 from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.sight import Sight
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.parts.given import Joint
 from flexstage.parts.part import Restricted
@@ -92,7 +92,7 @@ class _Thermal:
         return np.asarray(more)[..., None, None] * _growth(arm, link.frame.position - arm - self.datum)
 
 
-@takes_models
+@check_arguments
 def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
     """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
 

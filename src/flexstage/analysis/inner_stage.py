@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.statics import statics
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Number, stack
 from flexstage.beams.mass import mass
@@ -17,6 +18,7 @@ from flexstage.parts.amplified import Amplified
 from flexstage.spatial.frame import COMPONENTS
 
 
+@check_arguments
 def amplified(mechanism: Mechanism) -> Amplified:
     """The stage as one part: its ground is the first face, its platform the second.
 

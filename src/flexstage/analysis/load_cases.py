@@ -13,6 +13,7 @@ from flexstage.analysis.stability import give_way
 from flexstage.analysis.stance import coordinate
 from flexstage.analysis.standing import drawn, load_factors
 from flexstage.analysis.workspace.reach import input_limits
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import first_design
@@ -36,7 +37,7 @@ _ENDS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class LoadCase:
+class LoadCase(CheckedFields):
     """A load that `grows` (loads by name, weight and stated forces among them), and where the stage stands.
 
     `stays` are loads that do not grow. Coordinates and strokes in `at` are brought there, counted from rest, and kept there: the stage
@@ -114,6 +115,7 @@ class CaseFactors(InNotebook):
                 )
 
 
+@check_arguments
 def critical_factors(
     mechanism: Mechanism, cases: Sequence[LoadCase] | None = None, *, temperature: float = 0.0, most: float = _MOST, demand: float = 1.0
 ) -> CaseFactors:

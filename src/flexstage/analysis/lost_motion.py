@@ -8,12 +8,12 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import NOISE, Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH, RATIO
 from flexstage.base.record import INNER, VIEW
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
@@ -91,7 +91,7 @@ class LostMotion(InNotebook):
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
 
-@takes_models
+@check_arguments
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compare an elastic model with the ideal kinematics of the same stage.
 

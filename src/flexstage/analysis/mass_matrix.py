@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.analysis.statics import statics
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.moving_mass import moving_inertia
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.channels import twist_places
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
@@ -43,7 +43,7 @@ class MassMatrix(InNotebook):
     reasons: Mapping[str, str] = field(default_factory=dict)
 
 
-@takes_models
+@check_arguments
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
     """Mass (..., 6, 6) of the platform, or of another body, at its reference point or a named point [kg, kg m, kg m^2].
 
@@ -59,7 +59,10 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
     [13.997, 14.441]
     """
     assembly = expand(mechanism)
-    place = twist_places(assembly)[point]
+    places = twist_places(assembly)
+    if point not in places:
+        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, places))
+    place = places[point]
     placed = assembly.bodies.get(place.body)
     own = None if placed is None else moving_inertia(mechanism, placed)
     rigid = None if own is None or placed is None else _congruent(own, transport(placed.reference - place.point))

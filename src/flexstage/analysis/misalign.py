@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.strained import strain_cautions
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -77,6 +78,7 @@ class Misalignments(InNotebook):
         return () if self.worst is None else self.worst.cautions
 
 
+@check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
     """Force a copy of a unit, or a single link, into a misaligned seat on the ground, at large displacements and under its weight.
 

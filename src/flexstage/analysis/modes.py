@@ -9,13 +9,13 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
 from flexstage.models.batch.choice import Choice, choose, compliance_root, participation, platform_rows
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
@@ -140,7 +140,7 @@ class Modes(InNotebook):
         )
 
 
-@takes_models
+@check_arguments
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Modes of the undamped model (Eq. 28 of Shin & Moon).
 

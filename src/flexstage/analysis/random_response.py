@@ -10,13 +10,13 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.modes import average, repeated_groups
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.mechanism.mechanism import Damping
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import transfer
@@ -37,7 +37,7 @@ class Rate(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(CheckedFields):
     """A one-sided power spectral density of an input.
 
     `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz; between
@@ -96,10 +96,10 @@ class RandomResponse(InNotebook):
         return tuple(channel.unit for channel in self.outputs)
 
 
-@takes_models
+@check_arguments
 def random_response(
     model: LinearModel,
-    outputs: Iterable[str],
+    outputs: str | Iterable[str],
     spectra: Mapping[str, Spectrum],
     band: tuple[float, float],
     *,

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from flexstage.analysis.modes import average, repeated_groups
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, distinct_values, first_design
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law, modal_ratios
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.frequency import Response, transfer
@@ -21,9 +21,14 @@ _MODES_SHOWN = 12
 _ANGLES = np.linspace(-1.45, 1.45, 25)
 
 
-@takes_models
+@check_arguments
 def response(
-    model: LinearModel, outputs: Iterable[str], inputs: Iterable[str], frequencies: Array | None = None, *, damping: Damping | None = None
+    model: LinearModel,
+    outputs: str | Iterable[str],
+    inputs: str | Iterable[str],
+    frequencies: Array | None = None,
+    *,
+    damping: Damping | None = None,
 ) -> Response:
     """Frequency response H (..., f, p, m) of named outputs over named inputs.
 
@@ -44,9 +49,9 @@ def response(
     return Response(grid, chosen.outputs, chosen.inputs, transfer(model, chosen, grid, law), model.provenance)
 
 
-@takes_models
+@check_arguments
 def transmissibility(
-    model: LinearModel, outputs: Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
+    model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
     """Absolute motion of outputs over absolute motion of the ground, both at the platform's reference point: (..., f, p, 6).
 

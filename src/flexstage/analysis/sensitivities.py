@@ -16,6 +16,7 @@ from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.modes import clusters
 from flexstage.analysis.standing import standing
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -94,6 +95,7 @@ class Sensitivities(InNotebook):
         return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
 
 
+@check_arguments
 @one_thread
 def sensitivities(
     mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6

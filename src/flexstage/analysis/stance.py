@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.strained import left_out, strain_cautions
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -61,6 +62,7 @@ class Stance(InNotebook):
         return (*self.doubts, *strain_cautions(strains(self.state)), *left_out(self.state))
 
 
+@check_arguments
 def stance(
     mechanism: Mechanism,
     at: Mapping[str, float] | None = None,

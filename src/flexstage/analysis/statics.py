@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, STIFFNESS
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
@@ -51,6 +51,7 @@ class Statics(InNotebook):
     relative to the load point [m].
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
     load_point: str
     read_point: str
     compliance: Matrix
@@ -67,7 +68,7 @@ class Statics(InNotebook):
         return {name: _LOCKED for names, matrix in locked if np.isnan(matrix.values).any() for name in names}
 
 
-@takes_models
+@check_arguments
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
     """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
 
@@ -117,7 +118,7 @@ class FreedomStiffness(InNotebook):
         return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
 
 
-@takes_models
+@check_arguments
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Stiffness by freedom of a stage that leaves its platform fewer than six ideal motions: those left, then those that links hold.
 

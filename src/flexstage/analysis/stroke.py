@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.stance import coordinate
 from flexstage.analysis.strained import left_out, strain_cautions
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -19,7 +20,6 @@ from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
@@ -67,7 +67,7 @@ class Beyond:
     stroke: Stroke
 
 
-@takes_models
+@check_arguments
 def stroke(
     path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
 ) -> Stroke:

@@ -8,13 +8,11 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from enum import Enum
-from typing import Any, ParamSpec, TypeVar, get_type_hints
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from flexstage.base.finding import refuse
-from flexstage.base.number import freeze
-from flexstage.base.quantity import Quantity
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.register import origin
 
 DOCUMENT_ONLY = {"physics": False}
@@ -33,7 +31,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class Description:
+class Description(CheckedFields):
     """Base of every frozen value that describes a stage: immutable, compared and hashed by content.
 
     Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` leaves out fields marked `DOCUMENT_ONLY`.
@@ -41,14 +39,7 @@ class Description:
     """
 
     __slots__ = ()
-
-    def __post_init__(self) -> None:
-        quantities = _quantity_fields(type(self))
-        for field in fields(self):  # type: ignore[arg-type]
-            value = freeze(getattr(self, field.name))
-            if field.name in quantities:
-                value = _as_floats(_numeric(value, f"{type(self).__name__}.{field.name}"))
-            object.__setattr__(self, field.name, value)
+    frozen_values = True
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and digest(self) == digest(other)
@@ -58,37 +49,6 @@ class Description:
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != _KEPT}
-
-
-@functools.cache
-def _quantity_fields(cls: type) -> frozenset[str]:
-    hints = get_type_hints(cls, include_extras=True)
-    return frozenset(name for name, hint in hints.items() if _has_quantity(hint))
-
-
-def _has_quantity(hint: Any) -> bool:
-    if any(isinstance(item, Quantity) for item in getattr(hint, "__metadata__", ())):
-        return True
-    return any(_has_quantity(item) for item in getattr(hint, "__args__", ()))
-
-
-def _numeric(value: Any, where: str) -> Any:
-    """A value of numbers as it is; refused if any is something else."""
-    for item in value.values() if isinstance(value, Mapping) else value if isinstance(value, tuple) else (value,):
-        if isinstance(item, (Mapping, tuple)):
-            _numeric(item, where)
-        elif isinstance(item, (str, bytes)):
-            advice = "Write a number in SI units, for example 0.4 * fs.mm; texts with units stand in design files (fs.load)"
-            raise refuse(where, f"found the text {item!r}, expected a number", advice)
-    return value
-
-
-def _as_floats(value: Any) -> Any:
-    if isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if isinstance(value, tuple):
-        return tuple(_as_floats(item) for item in value)
-    return value
 
 
 def keep(function: Callable[P, T]) -> Callable[P, T]:

@@ -25,10 +25,15 @@ class Table(Mapping[str, Any]):
     1
     """
 
-    __slots__ = ("_items",)
+    __slots__ = ("_items", "rule")
 
-    def __init__(self, items: Mapping[str, Any]) -> None:
+    def __init__(self, items: Mapping[str, Any], rule: object = None) -> None:
         self._items = {name: freeze(value) for name, value in items.items()}
+        self.rule = rule
+        """The rule that all values were found to follow, so that copies of a description need not apply it again."""
+
+    def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
+        return Table, (self._items,)
 
     def __getitem__(self, name: str) -> Any:
         return self._items[name]

@@ -6,6 +6,7 @@ the JSON Schema, the tables and the checks of sign.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -118,6 +119,16 @@ ROTATIONAL_COMPLIANCE = Quantity("rotational compliance", "rad/(N m)", "urad/(N 
 
 DIRECTION = Quantity("direction", "1", "1", "x")
 """Three components of a direction of any length: bare numbers, or `"x"`, `"-y"` and so on in a file."""
+
+DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
+    "x": (1.0, 0.0, 0.0),
+    "-x": (-1.0, 0.0, 0.0),
+    "y": (0.0, 1.0, 0.0),
+    "-y": (0.0, -1.0, 0.0),
+    "z": (0.0, 0.0, 1.0),
+    "-z": (0.0, 0.0, -1.0),
+}
+"""Directions that have a name in a file."""
 
 COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
 """A 6x6 whose blocks are `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""

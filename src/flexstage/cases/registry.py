@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Number, Table
 from flexstage.cases.bridge import Bridge, bridge
@@ -69,6 +70,7 @@ CASES: Mapping[str, Shipped] = {
 }
 
 
+@check_arguments
 def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
     """The description of a shipped case, its numbers as a file shows them; with some of its `parameters` stated otherwise.
 

@@ -7,6 +7,7 @@ from enum import Enum
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.control.plants import Plant, zero_order_hold
 from flexstage.control.system import System, connect, rename, select, static
@@ -45,6 +46,7 @@ class Loop:
         return self.system.step
 
 
+@check_arguments
 def loop(given: Plant, controller: System) -> Loop:
     """Wire a controller to a plant.
 

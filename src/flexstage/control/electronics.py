@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import CURRENT, FREQUENCY, TIME
@@ -21,7 +22,7 @@ from flexstage.parts.gauge import Instrument
 
 
 @dataclass(frozen=True)
-class ChargeHold:
+class ChargeHold(CheckedFields):
     """What an amplifier of charge does to a stack of that electromechanical `coupling` k: far above a corner it holds charge, not volts.
 
     The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C). `left` is
@@ -52,7 +53,7 @@ class AmplifierSettings(amplifier.Amplifier):
 
 
 @dataclass(frozen=True)
-class GaugeSettings:
+class GaugeSettings(CheckedFields):
     """What replaces or adds to what a design file says of a gauge; what is absent is the gauge's own, or limits nothing.
 
     `bandwidth` [Hz] of its first-order lag, `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before that lag, `resolution`
@@ -149,6 +150,7 @@ class Hardware:
         return None if self.rate is None else 1.0 / self.rate
 
 
+@check_arguments
 def hardware(
     mechanism: Mechanism,
     *,

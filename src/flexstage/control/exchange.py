@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
 
+@check_arguments
 def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     """A system as `control.StateSpace`, with the names of its inputs and outputs, points turned to underscores (`error_x`).
 
@@ -36,6 +38,7 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     return control.ss(*matrices, step, inputs=names[0], outputs=names[1], **({"states": names[2]} if states else {}))
 
 
+@check_arguments
 def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs: tuple[Channel, ...] | None = None) -> System:
     """A `control.StateSpace`, or a transfer function of one input and one output, as a system.
 

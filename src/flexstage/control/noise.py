@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.random_response import Spectrum, quadrature, spectrum_findings
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -101,6 +102,7 @@ class NoiseBudget(InNotebook):
         return not self.slowly_rounding
 
 
+@check_arguments
 def noise_budget(
     closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float], outputs: tuple[str, ...] | None = None
 ) -> NoiseBudget:

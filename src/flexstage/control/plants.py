@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY
@@ -17,7 +18,6 @@ from flexstage.control.electronics import Hardware, Sensor
 from flexstage.control.sampling import discretise, first_order_hold
 from flexstage.control.system import System, connect, from_state_space, lag, rename, select, static
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.kinematics import Kinematics
@@ -68,7 +68,7 @@ class Plant:
         return self.coordinates.gauges
 
 
-@takes_models
+@check_arguments
 def plant(
     model: LinearModel,
     kinematics: Kinematics,

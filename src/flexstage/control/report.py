@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import flexstage
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.control.figures.front import FrontLine, front_figure
 from flexstage.control.playing import response_motions
@@ -23,6 +24,7 @@ from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.motions import Group
 
 
+@check_arguments
 def loop_report(found: LoopStudy) -> str:
     """A loop as a page of HTML: verdict, block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
     mechanism = found.settled.mechanism

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -55,6 +56,7 @@ class Verdict(InNotebook):
     sentence: str
 
 
+@check_arguments
 def verdict(closed: Loop) -> Verdict:
     """The stability of a loop from the eigenvalues of its closed system.
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -69,6 +70,7 @@ class Margins(InNotebook):
         return Matrix(values, rows, kinds, (("1", "1", "rad", "s", "1"),) * len(rows))
 
 
+@check_arguments
 def margins(closed: Loop, cut: Cut, found: Curves | None = None) -> Margins:
     """Margins of one loop at a time, the others closed; `found` are its `curves` where they are known already.
 

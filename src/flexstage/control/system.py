@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.quantity import TIME
@@ -21,7 +22,7 @@ _SINGULAR = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class System:
+class System(CheckedFields):
     """x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
 
     A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` carry names and units, and no name stands twice among either. Raises
@@ -37,6 +38,7 @@ class System:
     step: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse what does not fit together."""
         if not _fits(self):
             require(_findings(self))

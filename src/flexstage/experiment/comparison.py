@@ -12,6 +12,7 @@ from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.modes import Modes, clusters
 from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.solid_modes import FeaModes
+from flexstage.base.arguments import check_arguments
 from flexstage.base.assignment import assignment
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
@@ -140,6 +141,7 @@ class Compared(InNotebook):
         return None if self.fea is None else self.fea.order
 
 
+@check_arguments
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
     """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
 

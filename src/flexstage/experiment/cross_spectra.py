@@ -9,6 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
@@ -41,7 +42,7 @@ class Window(Enum):
 
 
 @dataclass(frozen=True)
-class Segments:
+class Segments(CheckedFields):
     """How a record is cut up: `seconds` of each segment (its inverse is the resolution in Hz), `overlap` as a share, and window."""
 
     seconds: Annotated[float, INNER]
@@ -87,6 +88,7 @@ class Spectra:
         return Spectra(*lines, averages=self.averages, independent=self.independent, segments=self.segments)
 
 
+@check_arguments
 def spectra(record: Record, segments: Segments, tell: Tell | None = None) -> Spectra:
     """Spectra of a record's inputs and outputs: Welch's average of windowed, overlapping segments, each freed of its mean.
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -33,7 +34,7 @@ _UNWINDOWED = (
 
 
 @dataclass(frozen=True)
-class Needs:
+class Needs(CheckedFields):
     """What is asked: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
 
     `unrecorded` where nothing that drove the stage was recorded: there are no inputs then.
@@ -78,6 +79,7 @@ class Examination(InNotebook):
 _NEEDS = Needs()
 
 
+@check_arguments
 def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
     """All faults of a record.
 

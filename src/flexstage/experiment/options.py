@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from enum import Enum
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.experiment.record import Channel, Role
 from flexstage.experiment.unit import plain_unit
@@ -60,7 +61,7 @@ class Allow(Enum):
 
 
 @dataclass(frozen=True)
-class Arrays:
+class Arrays(CheckedFields):
     """Which arrays of a MAT or HDF5 file, or which columns of a CSV file, are what: names or patterns.
 
     A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one a channel. Responses have
@@ -89,7 +90,7 @@ class Arrays:
 
 
 @dataclass(frozen=True)
-class Options:
+class Options(CheckedFields):
     """What a user says about a file.
 
     `inputs` and `outputs` are names or patterns (`u*`, `S?`); where only one of them is given, all other channels are of the other kind.

@@ -14,6 +14,7 @@ from typing import Annotated, Protocol
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import ratio_units
 from flexstage.base.notebook import InNotebook
@@ -34,7 +35,7 @@ class Role(Enum):
 
 
 @dataclass(frozen=True)
-class Channel:
+class Channel(CheckedFields):
     """A recorded channel: its name, the unit of its numbers (empty: not stated) and what it was in the test."""
 
     name: str
@@ -133,7 +134,7 @@ class WatchedSamples:
 
 
 @dataclass(frozen=True, eq=False)
-class Record(InNotebook):
+class Record(InNotebook, CheckedFields):
     """Channels sampled together at a constant rate.
 
     `rate` in Hz; `start` is the time of the first sample in s; `samples` hold (n, channels) numbers in the channels' own units; `name` and
@@ -154,6 +155,7 @@ class Record(InNotebook):
     source: str = ""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         where = self.source or self.name or "record"
         require([*_rate_findings(where, self.rate), *name_findings(where, self.channels)])
 
@@ -236,7 +238,7 @@ class Record(InNotebook):
 
 
 @dataclass(frozen=True, eq=False)
-class Responses(InNotebook):
+class Responses(InNotebook, CheckedFields):
     """Frequency responses as an analyser stored them: H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz, rising; `values` (f, outputs, inputs), complex, in output unit over input unit; `coherence` of the same
@@ -259,6 +261,7 @@ class Responses(InNotebook):
     source: str = ""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         where = self.source or self.name or "responses"
         expected = (len(self.frequencies), len(self.outputs), len(self.inputs))
         shapes = {"values": self.values.shape} | ({} if self.coherence is None else {"coherence": self.coherence.shape})
@@ -311,6 +314,7 @@ def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
     return replace(record, samples=WatchedSamples(record.samples, tell))
 
 
+@check_arguments
 def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record:
     """The record of an array (n, channels), sampled at `rate` in Hz.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.experiment.cross_spectra import Spectra
@@ -12,6 +13,7 @@ from flexstage.experiment.record import Responses
 _DEPENDENT, _NOTHING = 1e-9, 1e-15
 
 
+@check_arguments
 def h1(spectra: Spectra) -> Responses:
     """H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs, any number of correlated inputs (Bendat & Piersol, ch. 7).
 
@@ -29,6 +31,7 @@ def h1(spectra: Spectra) -> Responses:
     return _responses(spectra, values, "H1")
 
 
+@check_arguments
 def h2(spectra: Spectra) -> Responses:
     """H2 = G_yy G_xy^-1, the estimate for noise at the inputs; a least-squares inverse where outputs outnumber inputs.
 

@@ -95,6 +95,8 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     Ground(material='steel', source='all links that stand on it are of it')
     """
     given = asked if asked is not None else mechanism.ground
+    if asked is not None and asked not in (NOT_GROWING, *mechanism.materials):
+        raise refuse("ground", f"material {asked} is not described", suggest_nearest(asked, (NOT_GROWING, *mechanism.materials)))
     if given is not None:
         return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
     assembly = expand(mechanism)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 from flexstage.base.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
 from flexstage.base.notebook import InNotebook
@@ -244,6 +244,7 @@ class Mechanism(InNotebook, Description):
     come out.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")
     name: str = field(metadata=DOCUMENT_ONLY)
     materials: Mapping[str, Material] = _empty()
     parts: Mapping[str, Part] = _empty()

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import Description, digest
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number, Table, Vector, stack
@@ -50,6 +51,7 @@ class Mount(Description):
     pose: Pose = field(default_factory=Pose)
 
 
+@check_arguments
 def mount(
     stage: Mechanism, name: str, carried: Mechanism, *, on: str = GROUND, pose: Pose | None = None, platform: bool | None = None
 ) -> Mechanism:

@@ -23,6 +23,7 @@ from flexstage.base.quantity import (
     COUPLING,
     COUPLING_STIFFNESS,
     DIRECTION,
+    DIRECTIONS,
     RATIO,
     ROTATIONAL_COMPLIANCE,
     ROTATIONAL_STIFFNESS,
@@ -37,16 +38,6 @@ from flexstage.mechanism.mechanism import NamedNumber
 from flexstage.spatial.frame import COMPONENTS
 
 MOST_FINDINGS = 100
-
-DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
-    "x": (1.0, 0.0, 0.0),
-    "-x": (-1.0, 0.0, 0.0),
-    "y": (0.0, 1.0, 0.0),
-    "-y": (0.0, -1.0, 0.0),
-    "z": (0.0, 0.0, 1.0),
-    "-z": (0.0, 0.0, -1.0),
-}
-"""Directions that have a name in a file."""
 
 _NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
@@ -684,6 +675,10 @@ class ChoiceNode(Node):
         if text not in self.words:
             raise refuse(where, f'found "{text}"', f"It is one of {', '.join(self.words)}")
         return self.words[text]
+
+    def fit(self, value: Any, where: str) -> Any:
+        """The choice itself, or that of a name."""
+        return self.parse(value, where) if type(value) is str else value
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Number
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.incidence import free_deformations, layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import ALL
 from flexstage.parts.part import inner
@@ -35,7 +35,7 @@ _RANK = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class FinitePose:
+class FinitePose(CheckedFields):
     """A pose after finite motion: `displacement` (..., 3) [m] of the reference point and `rotation_vector` (..., 3) [rad], stage axes.
 
     Both are measured from the drawn position, so a small pose is a twist.
@@ -125,7 +125,7 @@ class _Relative:
     vector: Array
 
 
-@takes_models
+@check_arguments
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Pose of the platform for strokes (..., n) [m] in the order of `kinematics.actuators`, from the drawn position.
 
@@ -144,7 +144,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
     return _solve(mechanism, kinematics, strokes, None)
 
 
-@takes_models
+@check_arguments
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
     """Strokes that bring the platform's reference point to `pose`, of which the components named in `kinematics.coordinates` count.
 

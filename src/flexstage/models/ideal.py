@@ -17,6 +17,7 @@ from typing import Any, cast
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lapack import pivoted_qr
@@ -68,6 +69,7 @@ def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
     return link.link.free if link.link.free is not None else link.part.intended
 
 
+@check_arguments
 def ideal(mechanism: Mechanism) -> Kinematics:
     """Read a stage as ideal kinematics.
 

@@ -13,6 +13,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lapack import pivoted_qr
@@ -98,6 +99,7 @@ class _Stage:
         return Motions(bodies, lambda body, frame: twist_at(self.assembly, self.order, body, frame))
 
 
+@check_arguments
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     """Read a stage as rigid bodies on 6x6 links.
 

@@ -12,6 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lapack import pivoted_qr
@@ -68,6 +69,7 @@ class LeverStiffness:
         return (self.long_arm / self.short_arm) ** 2 / self.tip_compliance
 
 
+@check_arguments
 def mapped(mechanism: Mechanism) -> LinearModel:
     """Read a stage as the paper does: axial springs in actuator coordinates under a rigid platform.
 

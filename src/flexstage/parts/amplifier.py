@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 
 @dataclass(frozen=True)
-class Amplifier:
+class Amplifier(CheckedFields):
     """A voltage amplifier on the stack's capacitance C: of first order, ideal where all of this is absent.
 
     `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives.

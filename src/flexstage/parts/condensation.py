@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.parts.mass import tensor
@@ -406,6 +407,7 @@ def _dense(matrix: MatrixLike) -> Array:
     return matrix.toarray() if scipy.sparse.issparse(matrix) else np.asarray(matrix)
 
 
+@check_arguments
 def superelement(part: Superelement) -> Superelement:
     """The part with whole paths and the digest of its files as they are now. Raises `DesignError` as `condense` does.
 

@@ -12,6 +12,7 @@ import scipy
 
 import flexstage
 from flexstage.analysis.complete import Analysis
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
@@ -40,6 +41,7 @@ def _write_mat(variables: dict[str, Any]) -> bytes:
     return content.getvalue()
 
 
+@check_arguments
 def to_mat(result: Any) -> bytes:
     """The MATLAB v5 file of a result, its parts as structs of columns, those of matrices with `values`, `rows`, `columns` and `unit`.
 

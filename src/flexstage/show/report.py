@@ -7,6 +7,7 @@ from dataclasses import replace
 import flexstage
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.show.page import Head, page
 from flexstage.show.scene.stage import scene
@@ -22,6 +23,7 @@ from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.motions import Group
 
 
+@check_arguments
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     """The analysis of a stage as a self-contained HTML page: verdict and stage first, nothing loaded, no date.
 

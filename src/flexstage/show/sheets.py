@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.sheet import Sheet, parts, plain_cell
 from flexstage.show.table import first_design
@@ -15,6 +16,7 @@ from flexstage.show.table import first_design
 _FORMULA = ("=", "+", "-", "@")
 
 
+@check_arguments
 def to_csv(result: Any) -> dict[str, str]:
     r"""Every part of a result as CSV (RFC 4180), by its path: names first, numbers as they are, SI units in the heads.
 
@@ -62,6 +64,7 @@ def _matrix_lines(matrix: Matrix) -> Iterator[Sequence[Any]]:
         yield [name, *([unit] if any(rows) else []), *line]
 
 
+@check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
     """Every part of a result as a pandas frame, by its path; the names of rows are the index (extra `tables`).
 
@@ -77,6 +80,7 @@ def _frame(sheet: Sheet) -> Any:
     return frame.set_index(list(sheet.heads)[: len(sheet.names)]) if sheet.names else frame
 
 
+@check_arguments
 def to_xarray(result: Any) -> dict[str, Any]:
     """Every part of a result as an xarray dataset, a matrix as an array, by its path; names of rows are dimensions (extra `tables`)."""
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

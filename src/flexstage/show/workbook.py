@@ -12,6 +12,7 @@ from itertools import chain, count
 from typing import Any
 
 import flexstage
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.sheet import Sheet, parts, plain_cell
@@ -37,6 +38,7 @@ class _Grid:
     named: int
 
 
+@check_arguments
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     """Every part of a result as a sheet of an XLSX file: heads, SI units below them, then names and numbers of 16 digits.
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
@@ -49,6 +50,7 @@ class Calibration(InNotebook):
         }
 
 
+@check_arguments
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
 

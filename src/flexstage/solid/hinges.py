@@ -12,6 +12,7 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
@@ -172,6 +173,7 @@ def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[Place
     return f"{first.link.part}-{link if clear else f'{unit}-{link}'}"
 
 
+@check_arguments
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
     """Compute the 6x6 of every distinct hinge that is drawn.
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.solid_modes import FeaModes
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.drawn import with_drawn_parts
@@ -21,6 +22,7 @@ from flexstage.solid.read import STANDARD_SOLIDS, Solids, coarsen, read_solid
 from flexstage.solid.resolution import DEFAULT, HIGHEST, Resolution, converge, estimates, reduction_of_order
 
 
+@check_arguments
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
     """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid model does."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.scene.facet import Kind
@@ -22,6 +23,7 @@ _LARGEST = 0.05
 _RIGID = (Kind.PLATFORM, Kind.BODY, Kind.GROUND)
 
 
+@check_arguments
 def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
     """The stage as a GLB file (glTF 2.0): a node for each body, link and gauge, an animation for each of its lowest `modes`.
 

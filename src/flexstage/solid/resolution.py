@@ -8,6 +8,7 @@ from typing import Annotated, Generic, TypeVar
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
@@ -24,7 +25,7 @@ _AT_ORDER_TWO = 0.25
 
 
 @dataclass(frozen=True)
-class Resolution:
+class Resolution(CheckedFields):
     """What is asked: the relative error of stiffnesses, gains and frequencies, or, instead, a fixed `order` of elements."""
 
     accuracy: float = 0.01

@@ -13,6 +13,7 @@ from flexstage.analysis.modes import Modes
 from flexstage.analysis.statics import Statics, statics
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -128,6 +129,7 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
     }
 
 
+@check_arguments
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
     """Read a whole stage as a solid.
 

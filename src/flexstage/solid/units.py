@@ -10,6 +10,7 @@ import numpy as np
 from flexstage.analysis.statics import statics
 from flexstage.analysis.unit_output import UnitOutput
 from flexstage.analysis.units import as_vector, driven_units
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -74,6 +75,7 @@ class SolidUnit(UnitOutput, InNotebook):
         return self.gain * self.strokes
 
 
+@check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
     """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
 

@@ -13,6 +13,7 @@ from flexstage.analysis.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.analysis.statics import statics
 from flexstage.analysis.trust import Trust
 from flexstage.analysis.units import UnitResult, driven_units, unit_alone, units
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
 from flexstage.base.quantity import RATIO
@@ -140,6 +141,7 @@ def groups(rows: Iterable[Row]) -> dict[str, tuple[Row, ...]]:
     return {name: tuple(each) for name, each in found.items()}
 
 
+@check_arguments
 def verify(
     mechanism: Mechanism,
     asked: Resolution = DEFAULT,

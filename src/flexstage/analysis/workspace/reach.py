@@ -13,6 +13,7 @@ from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stops import STOPS
 from flexstage.analysis.workspace.strength import sized_links, stress_use
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
@@ -20,7 +21,6 @@ from flexstage.base.number import Array, Number, first_design, magnitude
 from flexstage.base.record import VIEW, Axes
 from flexstage.mechanism.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
@@ -80,7 +80,7 @@ def _least(bounds: Array) -> Array:
     return np.where(np.isinf(least), np.nan, least)
 
 
-@takes_models
+@check_arguments
 def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceReach:
     """Limit over compliance along every ideal motion, of stages with force actuators.
 

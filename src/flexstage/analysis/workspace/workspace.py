@@ -20,6 +20,7 @@ from flexstage.analysis.workspace.polytope import Polytope, reachable
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, Utilisation, single_axis, stroke_limits, utilisation
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
@@ -28,7 +29,6 @@ from flexstage.base.threads import one_thread
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import MOTION
@@ -71,7 +71,7 @@ class Workspace(InNotebook):
         return None if self.loads is None else self.loads.over(self.limits.from_zero)
 
 
-@takes_models
+@check_arguments
 @one_thread
 def workspace(
     mechanism: Mechanism,

@@ -223,8 +223,9 @@ def modes(  # noqa: PLR0913 (its options)
 ) -> None:
     """Natural frequencies, names and shapes.
 
-    Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite elements needed. With --at, --load,
-    --hold or --temperature they are those of the stage where it then is, at large displacements and under its weight.
+    Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite
+    elements needed. With --at, --load, --hold or --temperature they are those of the stage where it then is, at large displacements and
+    under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
     ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)

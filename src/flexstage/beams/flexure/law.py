@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.beams.beam import Beam
@@ -22,7 +23,7 @@ from flexstage.parts.material import Material
 
 
 @dataclass(frozen=True)
-class Resolution:
+class Resolution(CheckedFields):
     """How many modes twist, bending about y and about z have, the loads of the plate's two fields, and the points along the flexure."""
 
     twist: int = 6

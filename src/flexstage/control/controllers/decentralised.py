@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.controllers.law import Law
@@ -19,7 +20,7 @@ from flexstage.models.linear.model import Channel
 
 
 @dataclass(frozen=True, eq=False)
-class Decentralised:
+class Decentralised(CheckedFields):
     """One law for each of the loops, each followed by its notches; strokes = drive times the loops' commands + `feedforward` reference.
 
     `laws` and `notches` are as many as `loops` has names. `feedforward` (n, f) are the strokes by which the reference is fed forward: R_a,
@@ -34,6 +35,7 @@ class Decentralised:
     prefilters: tuple[Prefilter | None, ...] = ()
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse numbers that do not fit."""
         require(_findings(self))
 

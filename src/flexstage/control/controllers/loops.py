@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 
 from flexstage.analysis.modes import Modes
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, first_design
 from flexstage.control.coordinates import Coordinates
@@ -41,6 +42,7 @@ class Loops:
     coordinates: Coordinates
 
 
+@check_arguments
 def actuator_loops(coordinates: Coordinates) -> Loops:
     """One loop for each actuator: sense = R_a, drive = I.
 
@@ -59,6 +61,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
     return Loops(Structure.ACTUATOR, coordinates.actuators, coordinates.strokes, np.eye(actuators), coordinates)
 
 
+@check_arguments
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
     """One loop for each motion of the platform, rotations times the stage's length: sense = S, drive = R_a S^-1.
 
@@ -108,6 +111,7 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     raise refuse("modal coordinates", what, "Give more modes, or close the loops in platform coordinates")
 
 
+@check_arguments
 def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
     """One loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
 

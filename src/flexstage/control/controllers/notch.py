@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import FREQUENCY
 from flexstage.control.sampling import bilinear
@@ -19,7 +20,7 @@ _FAR = 0.1
 
 
 @dataclass(frozen=True)
-class Notch:
+class Notch(CheckedFields):
     """N(s) = (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
     `damping` zeta is that of the poles: the gain is below 1/sqrt(2) over about 2 zeta of the frequency. A mode of ratio zeta_m is cancelled
@@ -36,6 +37,7 @@ class Notch:
     damping: float = _WIDTH
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse numbers that cannot be."""
         where, found = f"notch at {self.frequency:g} Hz", []
         if not 0.0 < self.frequency < np.inf:
@@ -64,6 +66,7 @@ class Notch:
         return bilinear(found, step, self.frequency)
 
 
+@check_arguments
 def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
     """The notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
 

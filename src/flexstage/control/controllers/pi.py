@@ -7,6 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import RATE, TIME
 from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
@@ -14,7 +15,7 @@ from flexstage.control.system import System
 
 
 @dataclass(frozen=True)
-class PI:
+class PI(CheckedFields):
     """C(s) = k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
     Where an actuator saturates, the integrator follows what was applied within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
@@ -31,6 +32,7 @@ class PI:
     tracking: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse gains that cannot be."""
         found = [*gain_findings("PI", {"proportional": self.proportional}), *gain_findings("PI", {"integral": self.integral}, "1/s")]
         require([*found, *tracking_findings("PI", self.tracking)])

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
 from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
@@ -15,7 +16,7 @@ from flexstage.control.system import System
 
 
 @dataclass(frozen=True)
-class PID:
+class PID(CheckedFields):
     """C(s) = k_p + k_i / s + k_d s / (1 + s / (2 pi f)): `proportional` [1], `integral` [1/s], `derivative` [s], `filter` f [Hz].
 
     From a loop's error [m] to its command [m]. The derivative acts on the error; its filter bounds the gain at high frequencies by k_p + 2
@@ -35,6 +36,7 @@ class PID:
     tracking: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse gains that cannot be."""
         found = list(gain_findings("PID", {"proportional": self.proportional}))
         found += gain_findings("PID", {"integral": self.integral}, "1/s")

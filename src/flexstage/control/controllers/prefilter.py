@@ -7,6 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.base.quantity import FREQUENCY
@@ -19,7 +20,7 @@ _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
 
 
 @dataclass(frozen=True)
-class Prefilter:
+class Prefilter(CheckedFields):
     """F(s) = (1 + s/w_l) / (1 + 2 zeta s/w + s^2/w^2), w = 2 pi `frequency`, zeta = `damping`, w_l = 2 pi `lead`; without a lead, 1 above.
 
     The second degree of freedom of a loop (Astrom and Haegglund, Advanced PID Control, 2006, section 3.4): a law with strong integrators
@@ -36,6 +37,7 @@ class Prefilter:
     lead: Annotated[float | None, FREQUENCY] = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse numbers that cannot be."""
         given = {"frequency": self.frequency, "damping": self.damping, "lead": self.lead}
         require(

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.quantity import RATE, TIME
 from flexstage.base.record import Heading
@@ -16,7 +17,7 @@ from flexstage.control.system import System
 
 
 @dataclass(frozen=True)
-class IntegralResonant:
+class IntegralResonant(CheckedFields):
     """u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): the resonance is damped by positive feedback, an integrator tracks around it.
 
     An integrator -k/s around the plant with feed-through G - d is the same as Q around the plant alone (Aphale, Fleming & Moheimani 2007;
@@ -35,6 +36,7 @@ class IntegralResonant:
     tracking_time: Annotated[float | None, TIME] = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse gains that cannot be."""
         found = list(gain_findings("integral resonant control", {"gain": self.gain, "tracking": self.tracking}, "1/s"))
         if not 0.0 < self.feedthrough < np.inf:

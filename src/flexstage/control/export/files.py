@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.store import move_all, write, write_temporary
@@ -116,6 +117,7 @@ def hardware_files(
     return {source: made.source, source.with_suffix(".h"): made.header, source.with_name(f"{source.stem}_test.c"): made.test}
 
 
+@check_arguments
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
     """Write the controller of a machine as C99, `controller.c` and its header beside it, both or none (see `controller_files`).
 
@@ -136,6 +138,7 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
     return source, header
 
 
+@check_arguments
 def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: bool = False) -> Path:
     """Write a program as functional mock-up unit (FMI 2.0 for Co-Simulation); see `fmu`.
 
@@ -153,6 +156,7 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
     return write(_suffix_findings(path, ".fmu"), fmu(program, sources_only=sources_only))
 
 
+@check_arguments
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
     """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` where it cannot be written or does not end in `.mat`.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.protocol import Hysteresis, freeze_by_axis
@@ -130,6 +131,7 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
             yield Finding(where, f"{what}: the stroke would fall while the volts rise", "Choose a smaller lag, which makes narrower loops")
 
 
+@check_arguments
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
     """A Bouc-Wen stack of this `stroke` [m] between `volts`, whose settled major loop is `width` (0.15 for 15 %) of the stroke wide.
 

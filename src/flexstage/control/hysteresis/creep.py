@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
 from flexstage.base.quantity import TIME
@@ -17,7 +18,7 @@ from flexstage.models.linear.model import Channel
 
 
 @dataclass(frozen=True)
-class LogCreep:
+class LogCreep(CheckedFields):
     """w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma a decade, w_0 the stroke `reference` t_0 [s] after it.
 
     (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0 on; it has no limit for short or long times.
@@ -27,6 +28,7 @@ class LogCreep:
     reference: Annotated[float, TIME] = 0.1
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse a reference time that is none."""
         if not (0.0 < self.reference < np.inf and np.isfinite(self.rate)):
             what = f"rate {self.rate:g} a decade from {self.reference:g} s on is no creep"
@@ -117,6 +119,7 @@ class CreepFit:
     error: float
 
 
+@check_arguments
 def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 2) -> CreepFit:
     """The sum of exponentials nearest to a logarithmic law over a span of times [s], `per_decade` of them in each.
 

@@ -6,12 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.envelope import descent_findings, invert
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 
 
+@check_arguments
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
     """The model whose run undoes that of `model`, sample by sample and exactly: again plays, between the envelopes' inverses.
 

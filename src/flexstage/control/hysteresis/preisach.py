@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.protocol import Hysteresis, freeze_by_axis
@@ -154,6 +155,7 @@ def _findings(model: Preisach) -> Iterator[Finding]:
             yield Finding(where, what, "Choose a bulge of 0 or more, and |tilt| + bulge at most 1")
 
 
+@check_arguments
 def preisach(stroke: float, volts: Range, width: float, *, decay: float = 0.5, tilt: float = 0.4, bulge: float = 0.5) -> Preisach:
     """A Preisach stack of this `stroke` [m] between `volts`, whose settled major loop is `width` (0.15 for 15 %) of the stroke wide.
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
 from flexstage.base.store import write
@@ -96,6 +97,7 @@ def _outer_findings(offset: float) -> list[Finding]:
     return [Finding("offset", what, "Leave one of them out")] if offset else []
 
 
+@check_arguments
 def stack_hysteresis(
     model: PrandtlIshlinskii,
     *,
@@ -175,6 +177,7 @@ def hysteresis_schema() -> dict[str, Any]:
     return schema_of(StackHysteresis, FORMAT, "flexstage hysteresis")
 
 
+@check_arguments
 def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Path:
     """Write a hysteresis file and return its path. Raises `DesignError` where it cannot be written.
 
@@ -186,6 +189,7 @@ def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Pat
     return write(path, dumps_hysteresis(stack))
 
 
+@check_arguments
 def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
     """What a hysteresis file holds. Raises `DesignError` with all that is wrong with it, each finding with file, line and key.
 

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -24,7 +25,7 @@ from flexstage.experiment.unit import in_si, same_dimension, unit_problem
 
 
 @dataclass(frozen=True)
-class Channels:
+class Channels(CheckedFields):
     """Names of the channels of a stack's test; without a name the only channel in volts, and the only one in a length."""
 
     volts: str | None = None
@@ -63,6 +64,7 @@ class StackTest(InNotebook):
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
 
+@check_arguments
 def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
     """Identify hysteresis from a record of volts and stroke and, where there is one, creep from the record of a `step`.
 

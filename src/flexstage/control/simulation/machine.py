@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.control.electronics import Amplifier
@@ -124,6 +125,7 @@ class Machine:
         return tuple(f"command.{name}" for name in self.actuators)
 
 
+@check_arguments
 def machine(
     given: Plant,
     controller: System,

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -146,6 +147,7 @@ def simulation_result(given: Machine, reference: Array, found: Series) -> Simula
     )
 
 
+@check_arguments
 def tracking(found: Simulated, after: float = 0.0) -> Matrix:
     """Rms and peak of the error by coordinate from a time [s] on: as the loop sees it, and against the true pose of the platform.
 
@@ -186,6 +188,7 @@ class StepFigures:
     residual: Array
 
 
+@check_arguments
 def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0, band: Array | None = None) -> StepFigures:
     """Settling and overshoot of a simulated step that began at `start` [s].
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.simulation.actuation import Actuation
@@ -20,6 +21,7 @@ _BLOCK = 1024
 _NONE: Mapping[str, Array] = {}
 
 
+@check_arguments
 def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Array] = _NONE) -> Simulated:
     """The loop's answer to a reference (n, f) [m, rad] and disturbances (n,) each, from rest, sample by sample.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding
 from flexstage.base.quantity import (
     CURRENT,
@@ -26,7 +27,7 @@ _MOST_BITS = 32
 _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=1.0)
 
 
-class AmplifierForm:
+class AmplifierForm(CheckedFields):
     """What every `kind` of amplifier has, a frozen dataclass whose fields are the keys of its table; `AMPLIFIERS` lists the kinds."""
 
     kind: ClassVar[str]

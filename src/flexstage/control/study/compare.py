@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 
 from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.stance import Stance
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.jobs import CallError, Line, results
 from flexstage.base.notebook import InNotebook
@@ -30,9 +32,6 @@ from flexstage.control.tuning.wish import Wish
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
-
-if TYPE_CHECKING:
-    from flexstage.analysis.stance import Stance
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
 _SEEN = 0.75
@@ -129,6 +128,7 @@ def _beats(one: list[float], other: list[float]) -> bool:
     return all(a <= b for a, b in zip(one, other, strict=True)) and one != other
 
 
+@check_arguments
 def compare_controllers(
     mechanism: Mechanism,
     setup: LoopSetup | None = None,

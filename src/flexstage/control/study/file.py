@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding
 from flexstage.control.study.setup import FileMotion, LoopSetup
 from flexstage.mechanism.store.decode import record_from
@@ -19,6 +20,7 @@ FORMAT = "flexstage loop 1"
 _RENAMED = {"reading": "model"}
 
 
+@check_arguments
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
     """Return the set-up in a file; the files that it names are looked for from its folder.
 

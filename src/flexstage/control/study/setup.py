@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Annotated, Any, ClassVar, TypeAlias
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.quantity import (
     ACCELERATION,
     ACCELERATION_NOISE,
@@ -61,7 +62,7 @@ GAINS = ("proportional", "integral", "derivative")
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(CheckedFields):
     """Amounts by motion of the platform; absent: none."""
 
     x: Annotated[float, DISPLACEMENT] | None = None
@@ -73,7 +74,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class GaugeSetup:
+class GaugeSetup(CheckedFields):
     """Gauges: white `noise`, steps of `resolution`, `bandwidth`; absent: what each gauge of the design states.
 
     `filter_order` and `filter_corner` are those of an analogue low-pass (Butterworth) before sampling (order 0: none).
@@ -87,7 +88,7 @@ class GaugeSetup:
 
 
 @dataclass(frozen=True)
-class VibrationSetup:
+class VibrationSetup(CheckedFields):
     """The floor along one axis: a `criterion` by name, or an amplitude density of `acceleration`, `velocity` or `displacement`.
 
     One density alone is white; with `frequencies`, as many as there are densities, straight between them in log-log and none outside.
@@ -101,7 +102,7 @@ class VibrationSetup:
 
 
 @dataclass(frozen=True)
-class Floor:
+class Floor(CheckedFields):
     """The floor's vibration by axis; absent: it stands still."""
 
     x: VibrationSetup | None = None
@@ -110,7 +111,7 @@ class Floor:
 
 
 @dataclass(frozen=True)
-class NotchAt:
+class NotchAt(CheckedFields):
     """A notch filter: at which `frequency`, how `deep` (gain there), how wide (`damping` of its poles)."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
@@ -119,7 +120,7 @@ class NotchAt:
 
 
 @dataclass(frozen=True)
-class PrefilterAt:
+class PrefilterAt(CheckedFields):
     """A prefilter of the reference: a low-pass of second order at a `frequency` with a `damping`, and a `lead` above it."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
@@ -128,7 +129,7 @@ class PrefilterAt:
 
 
 @dataclass(frozen=True)
-class LoopNumbers:
+class LoopNumbers(CheckedFields):
     """The numbers of some of the loops, `of` which they are: x, rz ..., in other coordinates mode1 or the actuator's name.
 
     What is absent is that of all loops; `notches` are besides theirs.
@@ -144,7 +145,7 @@ class LoopNumbers:
 
 
 @dataclass(frozen=True)
-class GoalSetup:
+class GoalSetup(CheckedFields):
     """What a search for the controller is after: its `aim`, and what every loop shall keep.
 
     `rejection` is the least frequency up to which disturbances are made smaller, `settling` the longest time to 2 % of a step, `overshoot`
@@ -163,7 +164,7 @@ class GoalSetup:
 
 
 @dataclass(frozen=True)
-class ControllerSetup:
+class ControllerSetup(CheckedFields):
     """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
 
     Without a kind it is PI, where forces drive the stage PID (unless numbers are given). What it shall reach: `bandwidth` (where the open
@@ -199,7 +200,7 @@ class ControllerSetup:
 
 
 @dataclass(frozen=True)
-class DampingSetup:
+class DampingSetup(CheckedFields):
     """Integral force feedback in the legs, under the loop of the pose: each stack gives way at the rate of its leg's tension.
 
     `ratio` is the damping wanted of the modes that the loop feels most, or the `gain` is stated. `corner` of the high pass (absent: a tenth
@@ -221,7 +222,7 @@ class DampingSetup:
 
 
 @dataclass(frozen=True)
-class FollowSetup:
+class FollowSetup(CheckedFields):
     """What the loop is asked to follow instead of the trajectory itself, which is known beforehand; the error is against the trajectory.
 
     `by` the inverse of the model's loop, by learning (so many `passes` of a `gain`) or by repetitive control of that gain (of a path that
@@ -238,7 +239,7 @@ class FollowSetup:
 
 
 @dataclass(frozen=True)
-class HystereticStacks:
+class HystereticStacks(CheckedFields):
     """The stacks' hysteresis: a model in a `file`, as `flexstage hysteresis` writes it, or only the `width` of the loop per stroke.
 
     The model is scaled to each stack's stroke and voltage. It is what the inverse inverts; the stacks themselves behave as `plant` says:
@@ -254,7 +255,7 @@ class HystereticStacks:
 
 
 @dataclass(frozen=True)
-class StepMotion:
+class StepMotion(CheckedFields):
     """A step of every stated motion, each by itself; without any: 1 um and 10 urad, of all motions that the stage has.
 
     With `speed`, `acceleration` and `jerk`, all three, it is a move within them: along the way, in m; of a move that only turns, a metre
@@ -270,7 +271,7 @@ class StepMotion:
 
 
 @dataclass(frozen=True)
-class RasterMotion:
+class RasterMotion(CheckedFields):
     """`lines` of a `length`, `pitch` apart, to and fro at an even `speed`, turned around with `acceleration`; along `fast` and `slow`.
 
     Of a motion that turns, a metre stands for a radian: a line of 20 um along rx is one of 20 urad.
@@ -288,7 +289,7 @@ class RasterMotion:
 
 
 @dataclass(frozen=True)
-class SpiralMotion:
+class SpiralMotion(CheckedFields):
     """A spiral from the middle to `radius`, its turns `pitch` apart, at an even `speed`; in the plane of `first` and `second`.
 
     Of a motion that turns, a metre stands for a radian.
@@ -304,7 +305,7 @@ class SpiralMotion:
 
 
 @dataclass(frozen=True)
-class SineMotion:
+class SineMotion(CheckedFields):
     """A sine of every stated motion at `frequency`, all at once, for so many `periods`; without any motion: 1 um in the first one."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
@@ -315,7 +316,7 @@ class SineMotion:
 
 
 @dataclass(frozen=True)
-class FileMotion:
+class FileMotion(CheckedFields):
     """A table of times and poses in a `file` (CSV): a first column `time [s]`, and motions with units, as `x [um]`, `rz [urad]`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
@@ -327,7 +328,7 @@ TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMoti
 
 
 @dataclass(frozen=True)
-class LoopSetup:
+class LoopSetup(CheckedFields):
     """A loop: by which `model` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
 
     Without a rate it is 10 kHz, or for faster stages ten times the highest platform mode; without a delay it is one sample. `modes` is

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import Annotated, ClassVar, TypeVar
 
 import numpy as np
 
 from flexstage.analysis.load_effect import LoadEffect
 from flexstage.analysis.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.stance import Stance
 from flexstage.analysis.workspace.small import SecondOrder, second_order
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -42,9 +44,6 @@ from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stack
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
 
-if TYPE_CHECKING:
-    from flexstage.analysis.stance import Stance
-
 _Found = TypeVar("_Found")
 _LOWEST = 0.1
 _ENOUGH = 0.98
@@ -67,6 +66,7 @@ class LoopStudy(InNotebook):
     are what one should know of all this.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a loop study", "fs.control.loop_study(stage)")
     settled: Annotated[ResolvedSetup, INNER]
     lost: Annotated[LostMotion | None, INNER]
     controller: Control
@@ -148,6 +148,7 @@ class LoopStudy(InNotebook):
         return None if self.resting is None else (self.resting.low, self.resting.high)
 
 
+@check_arguments
 @one_thread
 def loop_study(
     mechanism: Mechanism,

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
@@ -52,6 +53,7 @@ class Trajectory(Protocol):
         ...
 
 
+@check_arguments
 def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array, motion: Matrix | None = None) -> Array:
     """The poses (n, f) a loop of these coordinates is asked for at `times` (n,); coordinates that do not move are nought.
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.control.trajectory.pieces import Pieces, join
 
 
 @dataclass(frozen=True)
-class Limits:
+class Limits(CheckedFields):
     """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for moves that only turn."""
 
     speed: float

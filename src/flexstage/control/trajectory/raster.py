@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
@@ -29,7 +30,7 @@ class Scan(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Raster:
+class Raster(CheckedFields):
     """`lines` parallel lines of a `length`, `pitch` apart [m], around nought, each passed at an even `speed` [m/s].
 
     Turns lie outside the lines: the fast coordinate is decelerated evenly to the opposite speed, while the slow one steps smoothly by
@@ -54,6 +55,7 @@ class Raster:
     point: str = PLATFORM
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse numbers that make no raster, and pitches that turns have no time for."""
         named = {"length": self.length, "pitch": self.pitch, "lines": self.lines, "speed": self.speed, "acceleration": self.acceleration}
         positive = {name: value for name, value in named.items() if not 0.0 < value < np.inf}

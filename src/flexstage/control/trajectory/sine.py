@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import join, smooth
@@ -14,7 +15,7 @@ from flexstage.mechanism.mechanism import PLATFORM
 
 
 @dataclass(frozen=True, eq=False)
-class Sine:
+class Sine(CheckedFields):
     """a sin(2 pi f (t - start)) from `start` [s] on: `amplitudes` a by coordinate [m, rad], `frequency` f [Hz].
 
     `phases` by coordinate [rad] are added to the angle (none: 0); `fade` [s] is how long the amplitude grows from nought, smoothly. Without

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
@@ -15,21 +16,21 @@ from flexstage.mechanism.mechanism import PLATFORM
 
 
 @dataclass(frozen=True)
-class EvenSpeed:
+class EvenSpeed(CheckedFields):
     """The same `speed` [m/s] everywhere on the path."""
 
     speed: float
 
 
 @dataclass(frozen=True)
-class EvenTurns:
+class EvenTurns(CheckedFields):
     """The same number of `turns` a second [1/s] everywhere."""
 
     turns: float
 
 
 @dataclass(frozen=True, eq=False)
-class Spiral:
+class Spiral(CheckedFields):
     """r = b theta from nought to a `radius` [m], `pitch` = 2 pi b between turns [m], passed at a `pace`; there it stays.
 
     `ramp` [s] is how long speed (or the rate of turns) rises from nought, evenly, and falls at the end. The path's length is
@@ -49,6 +50,7 @@ class Spiral:
     point: str = PLATFORM
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         """Refuse numbers that make no spiral, and ramps that it is too short for."""
         named = {"radius": self.radius, "pitch": self.pitch, "pace": self._pace}
         wrong = {name: value for name, value in named.items() if not 0.0 < value < np.inf}

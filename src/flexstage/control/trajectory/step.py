@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
 from flexstage.control.trajectory.pieces import Pieces
@@ -15,7 +16,7 @@ from flexstage.mechanism.mechanism import PLATFORM
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class Step(CheckedFields):
     """A move `to` a pose (by coordinate [m, rad]) at `start` [s]: at once, or within `limits` along the straight path.
 
     The path's length is that of the translation, or the angle of a move that only turns; what else moves keeps pace with it.

@@ -8,6 +8,7 @@ from enum import Enum
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.family import Family
@@ -25,7 +26,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Goal:
+class Goal(CheckedFields):
     """What is wanted: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
 
     `sensitivity` is the highest peak of S allowed (poses as lengths; 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg,

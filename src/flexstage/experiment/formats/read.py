@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.files import require_regular
 from flexstage.base.finding import refuse
 from flexstage.experiment.formats import FORMATS
@@ -26,6 +27,7 @@ _OTHERS = {
 }
 
 
+@check_arguments
 def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | Responses:
     """Read a file of a test: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a form that another package offers.
 

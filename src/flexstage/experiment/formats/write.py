@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.experiment.formats import FORMATS
 from flexstage.experiment.record import Record, Responses
 
 
+@check_arguments
 def write(path: str | os.PathLike[str], what: Record | Responses, form: str = "") -> None:
     """Write a record or responses, in the form named or that of the file's ending, whole or not at all.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.cross_spectra import Segments, Spectra, Tell
@@ -35,7 +36,7 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 
 
 @dataclass(frozen=True)
-class Search:
+class Search(CheckedFields):
     """What is searched for: modes with frequencies in `band` (Hz; absent: all the record can show), damped no more than `highest_damping`.
 
     `segments` are those of the spectra that candidates are taken from (absent: chosen by the record's length). `excitation` is what moved
@@ -48,6 +49,7 @@ class Search:
     excitation: Excitation = Excitation.RECORDED
 
 
+@check_arguments
 def identify(
     what: Record | Responses | Sequence[Record], search: Search = Search(), tell: Tell | None = None, known: Sequence[Spectra] = ()
 ) -> Identified:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from flexstage.analysis.sensitivities import departure, not_numbers
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.address import get, quantity_of, set_value
@@ -17,7 +18,7 @@ from flexstage.mechanism.node import NumberNode
 
 
 @dataclass(frozen=True)
-class Known:
+class Known(CheckedFields):
     """What is known before the test, each as a relative standard deviation: all of it assumed unless it is stated.
 
     `prior` of every free number, `priors` those of single ones by address; `model_error` of theory's frequencies, whatever its numbers;

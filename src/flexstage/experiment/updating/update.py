@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import scipy
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
@@ -241,6 +242,7 @@ class Updated(InNotebook):
         return f"{told.value} from {self.data}{rest}"
 
 
+@check_arguments
 @one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
     """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.

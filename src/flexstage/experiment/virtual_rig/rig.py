@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import require
 from flexstage.experiment.cross_spectra import Tell
 from flexstage.experiment.record import Channel, Record, Role
@@ -14,14 +15,13 @@ from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.samples import Simulated
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.mechanism import Damping, Mechanism
-from flexstage.models.linear.arguments import takes_models
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.model import LinearModel
 
 _MICROMETRE = 1e6
 
 
-@takes_models
+@check_arguments
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None, tell: Tell | None = None) -> Record:
     """The record of a virtual test: strokes or voltages in, gauges out, by name and with units.
 

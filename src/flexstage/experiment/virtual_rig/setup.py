@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
 from flexstage.parts.amplifier import Amplifier
 
 
 @dataclass(frozen=True)
-class NoiseDrive:
+class NoiseDrive(CheckedFields):
     """Gaussian noise that drives the actuators, each its own.
 
     `stroke` is the rms of the commanded free stroke [m], or `voltage` that of the command [V]; without either it is 1 % of each stack's
@@ -24,7 +25,7 @@ class NoiseDrive:
 
 
 @dataclass(frozen=True)
-class AntiAlias:
+class AntiAlias(CheckedFields):
     """Butterworth filter of every recorded analogue channel: `order` (0: none) and `corner` [Hz] (absent: 0.4 times the sampling rate)."""
 
     order: int = 8
@@ -32,7 +33,7 @@ class AntiAlias:
 
 
 @dataclass(frozen=True)
-class Sensing:
+class Sensing(CheckedFields):
     """What gauges add: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
 
     Where absent, density and resolution are those each gauge of the design states (none stated: none). `drift` is a random walk, its
@@ -45,7 +46,7 @@ class Sensing:
 
 
 @dataclass(frozen=True)
-class RigSetup:
+class RigSetup(CheckedFields):
     """A test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
 
     A test whose peaks ask for more than the amplifier's current is refused, since a saturated amplifier is not linear.

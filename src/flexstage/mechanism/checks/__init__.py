@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Table
 from flexstage.mechanism.checks.geometry import geometry_findings, matrix_findings
@@ -24,6 +25,7 @@ from flexstage.mechanism.mechanism import Mechanism
 __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 
 
+@check_arguments
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all findings about a description, none if it can be read.
 

@@ -11,11 +11,12 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about values of another kind than their field's: files are so by their reading, descriptions written in Python may not be.
+    """Findings about values of another kind than a file can hold: classes that no register lists, for example.
 
     >>> from flexstage.parts.rod import Rod
-    >>> print(*kind_findings(Mechanism("", parts={"wire": Rod("steel", length=None, diameter=0.001)})))
-    parts.wire.length: found None where a length is expected. Give a number or an array in SI units.
+    >>> class Wire(Rod): ...
+    >>> print(*kind_findings(Mechanism("", parts={"wire": Wire("steel", length=0.03, diameter=0.001)})))
+    parts.wire: found Wire(... where ... Rod ... is expected. Give ...
     """
     return node_of(Mechanism).check(mechanism, "")
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.store import write
 from flexstage.mechanism.catalogue import shipped_catalogue
@@ -36,6 +37,7 @@ __all__ = [
 ]
 
 
+@check_arguments
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Return the description in a design file.
 
@@ -50,6 +52,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     return loads(read_text(path), where=os.fspath(path), checked=checked, folder=Path(path).parent)
 
 
+@check_arguments
 def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
     """Return the description in a design file's text; `where` names it in findings, relative paths in it are from `folder`, if given.
 
@@ -65,6 +68,7 @@ def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path 
         raise DesignError(with_lines(error.findings, text, where)) from None
 
 
+@check_arguments
 def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[str, str] | None = None) -> Path:
     """Write a description as a design file and return its path; see `dumps`.
 
@@ -76,6 +80,7 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
     return write(path, dumps(beside(mechanism, Path(path).parent), comments))
 
 
+@check_arguments
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
     """Return the text of a description's design file.
 

@@ -37,7 +37,7 @@ class StandIn:
     def drawn_name(self) -> str:
         """The name that the drawn part had.
 
-        >>> StandIn(Given((), (), stands_for="neck-drawn"), ()).drawn_name
+        >>> StandIn(Given(((0.0,) * 6,) * 6, (), stands_for="neck-drawn"), ()).drawn_name
         'neck'
         """
         return self.given.stands_for.removesuffix(KEPT)

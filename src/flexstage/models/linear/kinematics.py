@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -49,6 +49,7 @@ class Kinematics(InNotebook):
     a unit of their input (`thrust_inputs`, N or A) exerts on xi, V^T W.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.ideal(stage)")
     actuators: tuple[str, ...]
     coordinates: tuple[str, ...]
     gauges: tuple[str, ...]

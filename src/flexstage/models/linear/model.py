@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeAlias, cast
+from typing import ClassVar, TypeAlias, cast
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.arguments import CheckedFields
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Number
 from flexstage.base.sparse import Rows, Sparse, as_csr
@@ -43,7 +44,7 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 
 
 @dataclass(frozen=True, eq=False)
-class LinearModel:
+class LinearModel(CheckedFields):
     """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
 
     `force` (..., n, m) are direct generalised forces of the inputs; `imposed` gives per stiffness contribution the deformation (..., r, m)
@@ -64,6 +65,7 @@ class LinearModel:
     dense matrix, and K and M are made when they are asked for.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.lumped(stage)")
     coordinates: tuple[str, ...]
     stiffness: Contributions
     inertia: Contributions
@@ -165,17 +167,16 @@ class LinearModel:
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
-        """Positions of outputs by name."""
-        return [self._output_places[name] for name in names]
+        """Positions of outputs by name; raises `DesignError` for names of none."""
+        return _places(names, self._output_places, "output")
 
     @cached_property
     def _output_places(self) -> Mapping[str, int]:
         return {channel.name: index for index, channel in enumerate(self.outputs)}
 
     def input_index(self, names: tuple[str, ...]) -> list[int]:
-        """Positions of inputs by name."""
-        known = {channel.name: index for index, channel in enumerate(self.inputs)}
-        return [known[name] for name in names]
+        """Positions of inputs by name; raises `DesignError` for names of none."""
+        return _places(names, {channel.name: index for index, channel in enumerate(self.inputs)}, "input")
 
     @property
     def strokes(self) -> tuple[str, ...]:
@@ -186,6 +187,19 @@ class LinearModel:
     def actuators(self) -> tuple[str, ...]:
         """Names of the actuators' inputs, strokes and forces; all others are components of wrenches."""
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
+
+
+def _places(names: tuple[str, ...], known: Mapping[str, int], kind: str) -> list[int]:
+    require(dict.fromkeys(_unknown(name, known, kind) for name in names if name not in known))
+    return [known[name] for name in names]
+
+
+def _unknown(name: str, known: Iterable[str], kind: str) -> Finding:
+    """The finding of a name that no channel has, or, where all of its components are unknown, of its point."""
+    owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in known} - {""}
+    if not owner or owner in owners:
+        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, known))
+    return Finding(owner, "the model has no point of this name", suggest_nearest(owner, owners))
 
 
 def assemble(contributions: Contributions, size: int) -> Array:

@@ -34,7 +34,7 @@ class Ports:
     loss: Array | float = 0.0
 
 
-def ports(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> Ports:
+def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterable[str]) -> Ports:
     """Pick outputs and inputs by name.
 
     A name is that of a channel (`platform.x`, `S1`, `B4/pivot.mz`), or of a group: `platform` means its six components. Inputs are the
@@ -95,7 +95,7 @@ def _twists(model: LinearModel) -> list[str]:
     return [name for name in names if name.rpartition(".")[0]]
 
 
-def _expand_groups(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
+def _expand_groups(names: str | Iterable[str], known: tuple[str, ...], kind: str) -> list[str]:
     """Groups written out; unknown names refused together."""
     result: list[str] = []
     findings: list[Finding] = []

@@ -9,7 +9,8 @@ from enum import Enum
 import numpy as np
 import scipy
 
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, first_point, follow_to_turn
 from flexstage.models.nonlinear.condense import system
@@ -73,6 +74,7 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
     return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
 
 
+@check_arguments
 def critical(  # noqa: PLR0913 (what stays, one by one)
     model: Nonlinear,
     load: Mapping[str, float],
@@ -101,6 +103,7 @@ def critical(  # noqa: PLR0913 (what stays, one by one)
     if not any(load.values()):
         raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
     held = dict(hold or {})
+    require(Finding(name, "no value holds it", suggest_nearest(name, held)) for name in locked or () if name not in held)
     search = _Search(model, dict(load), dict(rest or {}), held, tuple(held if locked is None else locked), (weight, stated))
     low, high = (0.0, _FIRST) if known is None else (1.0, _GROWTH)
     last = search.at(low, known)

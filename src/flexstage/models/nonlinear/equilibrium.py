@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
@@ -29,6 +31,7 @@ class State:
     `reactions` (..., h) are what holds the `held` coordinates [N, N m].
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a state of equilibrium", "fs.equilibrium(fs.nonlinear(stage))")
     model: Nonlinear
     loads: Loads
     hold: Hold
@@ -121,6 +124,7 @@ def place(model: Nonlinear, name: str) -> tuple[int, Array]:
     return body, known[name].point - model.reference[body]
 
 
+@check_arguments
 def equilibrium(
     model: Nonlinear,
     loads: Mapping[str, Number] | None = None,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.beams.compliance import viscous_damping
@@ -85,6 +86,7 @@ class _Coordinates:
         return np.concatenate([self.body(joins[0]), self.body(joins[1]), inside])
 
 
+@check_arguments
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
     """Small motions about a state, all cases of it as a batch: modes, responses and losses of a displaced or loaded stage.
 

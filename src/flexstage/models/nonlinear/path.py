@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, Point, first_point, follow_course
@@ -58,6 +59,7 @@ class Path:
         return tuple(found)
 
 
+@check_arguments
 def path(
     model: Nonlinear,
     drive: str,
@@ -154,6 +156,7 @@ def _neighbour(found: State) -> State:
     return replace(found, pose=found.pose.of(chosen))
 
 
+@check_arguments
 def trace(
     model: Nonlinear,
     load: Mapping[str, float],
@@ -189,6 +192,7 @@ def trace(
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
 
 
+@check_arguments
 def branch(
     model: Nonlinear,
     load: Mapping[str, float],

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Number
 from flexstage.mechanism.address import get, set_value
@@ -29,6 +30,7 @@ Results = Callable[[State], Any]
 """Numbers or arrays that are read from a state: `State.twist`, frequencies, a critical factor of its model."""
 
 
+@check_arguments
 def over_designs(
     mechanism: Mechanism,
     results: Results,
@@ -58,6 +60,7 @@ def over_designs(
     return found[0] if count is None else np.stack(found)
 
 
+@check_arguments
 def slopes(
     mechanism: Mechanism,
     names: Iterable[str],

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, stack
@@ -18,7 +20,7 @@ from flexstage.beams.geometric import foreshortening
 from flexstage.beams.mass import mass
 from flexstage.mechanism.drawn import as_drawn
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
-from flexstage.mechanism.expansion import expansion
+from flexstage.mechanism.expansion import expansion, ground_of
 from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, Damping, Mechanism
 from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
@@ -62,6 +64,7 @@ class Nonlinear:
     size bodies have.
     """
 
+    WRITTEN: ClassVar[tuple[str, str]] = ("a nonlinear model", "fs.nonlinear(stage)")
     assembly: Assembly
     bodies: tuple[str, ...]
     reference: Array
@@ -144,6 +147,7 @@ class _Drawn:
     growth: _Growth
 
 
+@check_arguments
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Read a stage for large displacements: every flexure one spectral element, bodies free in space (docs/nonlinear.md).
 
@@ -200,6 +204,8 @@ def _laws(assembly: Assembly, resolution: Resolution) -> dict[str, FlexureLaw | 
 
 def _growth(mechanism: Mechanism, assembly: Assembly, bodies: tuple[str, ...], change: float, ground: str | None) -> _Growth:
     """How bodies and parts have grown at the temperatures of the description and a uniform change, on a ground of some material."""
+    if ground is not None:
+        ground_of(mechanism, ground)  # refuses the name of no material, whatever the temperatures are
     stated = {name: float(np.real(value)) for name, value in mechanism.temperatures.items()}
     warmth = {name: change + stated.get(name, stated.get(EVERYWHERE, 0.0)) for name in (*bodies, GROUND)}
     if not any(warmth.values()):

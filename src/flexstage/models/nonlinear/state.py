@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 WEIGHT = "weight"
@@ -25,7 +26,7 @@ class Status(IntEnum):
 
 
 @dataclass(frozen=True)
-class Effort:
+class Effort(CheckedFields):
     """When a search ends: steps below `step` (lengths over the flexures', radians, amplitudes), gaps below `gap`; after `iterations`.
 
     `limit` is the largest step, translations over the stage's `reach`. What fails is loaded in steps, the least 2^-`halvings` of the load;

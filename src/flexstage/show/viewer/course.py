@@ -13,6 +13,7 @@ from flexstage.analysis.misalign import Misaligned
 from flexstage.analysis.modes import Modes
 from flexstage.analysis.stance import Stance
 from flexstage.analysis.stroke import Beyond, Stroke
+from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND, Mechanism
@@ -285,6 +286,7 @@ def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[
     return ends[0] + shares[:, None] * (ends[1] - ends[0])
 
 
+@check_arguments
 def play(mechanism: Mechanism, path: Path) -> Any:
     """The stage as it moves along a path at large displacements, to turn and to play: notebooks show it, `save` writes it as a page.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.progress import Progress
 from flexstage.base.store import atomic_write
@@ -26,6 +27,7 @@ from flexstage.solid.fea.sound import sound_components
 _CACHE, _STANDARD = Cache(), Reduction()
 
 
+@check_arguments
 def export_superelement(
     mechanism: Mechanism,
     name: str,

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
 from flexstage.base.store import FOLDER_VARIABLE, cache_folder, write
@@ -38,7 +39,7 @@ HINGES = Kind(".hinge", "6x6", "hinge")
 
 
 @dataclass(frozen=True)
-class Cache:
+class Cache(CheckedFields):
     """Where superelements are kept, and how many bytes of them: the least recently used go first.
 
     Without a `folder`: that named by the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.

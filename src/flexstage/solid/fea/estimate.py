@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 _MOST = 0.8
@@ -14,7 +15,7 @@ _MOST = 0.8
 
 
 @dataclass(frozen=True)
-class Accuracy:
+class Accuracy(CheckedFields):
     """What to ask of an adaptive solve.
 
     `error` is the relative error wanted, `freedoms` the most degrees of freedom to spend. On the first mesh the order rises from the first

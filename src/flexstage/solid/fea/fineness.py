@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from flexstage.base.arguments import CheckedFields
+
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """How the mesh is varied where the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
@@ -14,7 +16,7 @@ WARPS = 12
 
 
 @dataclass(frozen=True)
-class Fineness:
+class Fineness(CheckedFields):
     """How fine to mesh and of which polynomial `order`, that of the curved geometry included; notches take one order more within.
 
     Elements are `neck` times a link's least thickness on its faces, `block` times a body's least dimension elsewhere, and grow by
@@ -35,7 +37,7 @@ class Hold(Enum):
 
 
 @dataclass(frozen=True)
-class Reduction:
+class Reduction(CheckedFields):
     """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held.
 
     `residual`: it also keeps the static response, faces held, to the inertia of the faces' motions: what is left of the modes that are not

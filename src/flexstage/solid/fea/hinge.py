@@ -15,6 +15,7 @@ from typing import Any
 import ngsolve
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.parts.material import Material
@@ -125,6 +126,7 @@ class Listener:
 _NOBODY = Listener()
 
 
+@check_arguments
 def hinge_compliance(
     part: Shaped,
     material: Material,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
 from flexstage.base.progress import Progress
@@ -47,6 +48,7 @@ class SolidModel:
         return tuple(element for _, element in self.parts)
 
 
+@check_arguments
 def model(
     mechanism: Mechanism,
     reduction: Reduction = _STANDARD,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.studies.form import OptimiseTable, study_file
@@ -11,6 +12,7 @@ from flexstage.studies.sweeps.definition import Study
 _MOST = 2
 
 
+@check_arguments
 def load_wanted(study: Study, where: str = "text") -> Wanted:
     """Read what is wanted from the study's own text. Raises `DesignError` with every finding, each at `where`.
 

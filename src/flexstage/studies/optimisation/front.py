@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.analysis.requirements import Sense
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.threads import one_thread
@@ -26,6 +27,7 @@ _KEEP = 1e-6
 """By how much (relative) an objective may give way while the other is improved at an end of the front."""
 
 
+@check_arguments
 @one_thread
 def pareto_front(study: Study, wanted: Wanted, progress: Progress | None = None) -> Front:
     """The front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).

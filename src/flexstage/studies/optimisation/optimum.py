@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.threads import one_thread
@@ -27,6 +28,7 @@ Progress = Callable[[str], None]
 """Told what is being done, with how many designs were evaluated."""
 
 
+@check_arguments
 @one_thread
 def optimise(study: Study, wanted: Wanted, progress: Progress | None = None) -> Optimum:
     """The best design within the variables' ranges that keeps all limits.

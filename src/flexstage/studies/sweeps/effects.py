@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.studies.sweeps.interactions import (
@@ -58,6 +59,7 @@ class Effects(InNotebook):
     method: str
 
 
+@check_arguments
 def effects(results: Results, plan: Plan) -> Effects:
     """Effects of a study's variables on its responses, over all complete designs so far.
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from flexstage.analysis.measures import Measure
 from flexstage.analysis.requirements import Requirement, measure, requirement
 from flexstage.analysis.sensitivities import not_numbers
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
 from flexstage.base.quantity import RATIO, Quantity
@@ -28,6 +29,7 @@ _DESIGNS = 1024
 _MOST = 10**9
 
 
+@check_arguments
 def load_study(path: str | os.PathLike[str]) -> Study:
     """Read a study's file; a design file that it names is looked for beside it.
 

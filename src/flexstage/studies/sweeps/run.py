@@ -15,6 +15,7 @@ from filelock import FileLock, Timeout
 
 from flexstage.analysis.measures import platform_frequency
 from flexstage.base import memory
+from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import DesignError, refuse, require
 from flexstage.base.jobs import cores
 from flexstage.base.number import Array
@@ -52,7 +53,7 @@ Told = Callable[[Cost], None]
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(CheckedFields):
     """How a study is run: `workers` processes (absent: one a core), `resume` what is there, or a Dask `scheduler`'s address."""
 
     workers: int | None = None
@@ -63,6 +64,7 @@ class Run:
 DEFAULT = Run()
 
 
+@check_arguments
 @one_thread
 def sweep(
     study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None, told: Told | None = None

@@ -16,6 +16,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.files import Attribute, Hdf, hdf
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
@@ -247,6 +248,7 @@ def _is_count(value: Attribute | None) -> bool:
     return isinstance(value, float) and 1.0 <= value < 2.0**53 and value.is_integer()
 
 
+@check_arguments
 def read_results(path: str | os.PathLike[str]) -> Results:
     """Read results, complete or not, by their file or the folder of pieces beside it. Raises `DesignError` for files that are none.
 

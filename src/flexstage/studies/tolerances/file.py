@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from flexstage.analysis.requirements import Requirement, requirements
+from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Table
 from flexstage.base.quantity import RATIO, Quantity
@@ -32,6 +33,7 @@ _FEWEST = 32
 _MOST = 10**7
 
 
+@check_arguments
 def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     """Read a study's file with sections `[scatter]` and, if need be, `[tolerance]`.
 

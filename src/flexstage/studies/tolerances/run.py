@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass
 from typing import Annotated
 
+from flexstage.base.arguments import check_arguments
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.store import temporary_folder
 from flexstage.studies.sweeps.result import StudyResult
@@ -81,6 +82,7 @@ class Toleranced(StudyResult):
         )
 
 
+@check_arguments
 def tolerance(
     study: Tolerance,
     path: str | os.PathLike[str] | None = None,

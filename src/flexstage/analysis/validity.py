@@ -1,0 +1,43 @@
+"""Where beam theory holds: for a part, and for every part of a stage as its links use it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import overload
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.number import Table
+from flexstage.beams import validity as beams
+from flexstage.beams.validity import Validity
+from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, material_of
+
+
+@overload
+def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity: ...
+@overload
+def validity(part: Mechanism, where: str = "part", material: Material | None = None) -> Mapping[str, Validity]: ...
+
+
+@check_arguments
+def validity(part: Part | Mechanism, where: str = "part", material: Material | None = None) -> Validity | Mapping[str, Validity]:
+    """Range of validity and expected error of beam theory, of a part or of all parts of a stage.
+
+    Parameters: a part, which `where` names in the findings and whose Poisson's ratio is 0.3 unless a `material` is given; or a stage, whose
+    parts have their own names and materials (a material that is given goes before).
+    Returns the validity of the part (see `beams.validity`); of a stage by address: `parts.NAME`, or the link whose part departs from it.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = validity(parallelogram())
+    >>> list(found), round(float(found["parts.leaf"].errors["x"]), 3)
+    (['parts.leaf', 'parts.stack'], 0.0)
+    """
+    if not isinstance(part, Mechanism):
+        return beams.validity(part, where, material)
+    used = dict[str, Part]()
+    for link in expand(part).links.values():
+        departs = link.described.part != part.parts[link.link.part]
+        used.setdefault(link.name if departs else f"parts.{link.link.part}", link.part)
+    return Table({name: beams.validity(each, name, material or part.materials.get(material_of(each) or "")) for name, each in used.items()})
