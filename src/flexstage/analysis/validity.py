@@ -32,7 +32,7 @@ def validity(part: Part | Mechanism, where: str = "part", material: Material | N
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = validity(parallelogram())
     >>> list(found), round(float(found["parts.leaf"].errors["x"]), 3)
-    (['parts.leaf', 'parts.stack'], 0.0)
+    (['parts.leaf', 'parts.neck', 'parts.stack'], 0.034)
     """
     if not isinstance(part, Mechanism):
         return beams.validity(part, where, material)
