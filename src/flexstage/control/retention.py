@@ -23,7 +23,7 @@ from flexstage.control.system import select
 from flexstage.spatial.frame import COMPONENTS
 
 LOOP_GAINS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0)
-"""Loop gains at resonance from which modes are retained: the first with which no margin is off by more than `MARGIN_CHANGE`."""
+"""Loop gains at resonance from which modes are retained: the first; where none reaches it, as low as the margins need."""
 MARGIN_CHANGE = 0.01
 """Relative change of the margins that all modes left out may make together."""
 RINGING = 0.001
@@ -62,8 +62,8 @@ def retention(whole: Plant, closed: Loop) -> Retention:
 
     A mode left out matters where its loop gain at resonance is not small, the other loops and axes closed: |a| |b K S| for its pulse
     transfer function a b psi(z), exact between hold and sampler, above half the sampling rate too; where it rings by more than `RINGING`
-    in a step, in the true motion of the platform along any axis; and where all that are left out would change a margin: then those of
-    less loop gain are added until none changes by more than `MARGIN_CHANGE`.
+    in a step, in the true motion of the platform along any axis; and where all that are left out would change a margin: those of less loop
+    gain are added until none changes by more than `MARGIN_CHANGE`, once none is left of more.
 
     >>> from flexstage.control.closed import loop
     >>> from flexstage.control.example import integral_loop
@@ -78,41 +78,70 @@ def retention(whole: Plant, closed: Loop) -> Retention:
     kept = np.isin(names, closed.plant.states)
     if np.all(kept):
         return Retention(len(names), len(names), 0.0, None, 0.0, kept)
-    poles = _left_out(whole, kept)
-    loop, hardware, step = closed.plant.coordinates, whole.hardware, whole.hardware.step
-    lines = _lines(closed, poles.values)
-    own = np.abs(_folded(np.imag(poles.values) / (2.0 * np.pi), step))
-    lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
-    place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
-    seen = LoopLines(lines, loop.scale, feedback_response(closed.controller, loop, lines))
-    gaps = [f"gap.{name}" for name in closed.plant.gauges]
-    plant = loop.pose @ resolvent(select(closed.held, loop.actuators, gaps)).at(lines)
-    back = seen.control @ seen.sensitivity(plant)
-    forward = reference_response(closed.controller, loop, lines)
-    forward = forward - back @ plant @ forward
-    held = poles.held(lines, hardware)
-    peaks = np.max(np.abs(held[:, place, np.arange(len(own))]), axis=0)
-    true = np.array([1.0 if each[0] != "r" else loop.length for each in COMPONENTS])
-    gains = peaks * np.linalg.norm(poles.pose(loop.pose) * loop.scale, axis=1)
-    gains = gains * np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, back[place]) / loop.scale, axis=1)
-    rings = peaks * np.linalg.norm(poles.exits[:, len(gaps) :] * true, axis=1)
-    rings = rings * np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, forward[place]) / loop.scale, axis=1)
-    rings = rings * 2.0 * np.abs(np.real(poles.values)) / np.abs(poles.values)
-    truth = _figures(seen.margins(plant + poles.response(loop.pose, held, np.ones(len(own), bool))))
-    chosen, change = np.zeros(len(own), bool), np.inf
-    for least in LOOP_GAINS:
-        chosen |= gains >= least
-        change = _change(_figures(seen.margins(plant + poles.response(loop.pose, held, chosen))), truth)
-        if change <= MARGIN_CHANGE:
-            break
+    left_out = _contributions(whole, kept, closed)
+    chosen, change = _choose(left_out)
     retune = bool(np.any(chosen))
-    chosen |= rings >= RINGING
+    chosen |= left_out.rings >= RINGING
     wanted = kept.copy()
     wanted[~kept] = chosen
-    rest = np.where(chosen, 0.0, gains)
+    rest = np.where(chosen, 0.0, left_out.gains)
     largest = int(np.argmax(rest))
     frequency = None if np.all(chosen) else float(whole.frequencies[~kept][largest])
     return Retention(int(np.sum(kept)), len(names), float(rest[largest]), frequency, change, wanted, retune)
+
+
+@dataclass(frozen=True, eq=False)
+class _Contributions:
+    """What modes left out (d,) come to in a loop: `gains` at resonance, `place` (d,) among the lines, and `rings` in a step.
+
+    `plant` (f, c, n) is the response of what is retained from commands to pose; `poles` are those of modes left out, `held` how hold and
+    sampler see them.
+    """
+
+    lines: LoopLines
+    plant: Array
+    pose: Array
+    poles: _Poles
+    held: Array
+    place: Array
+    gains: Array
+    rings: Array
+
+    def margins(self, chosen: Array) -> ResponseMargins:
+        """Margins with the `chosen` modes too."""
+        return self.lines.margins(self.plant + self.poles.response(self.pose, self.held, chosen))
+
+
+def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
+    poles, loop, hardware = _left_out(whole, kept), closed.plant.coordinates, whole.hardware
+    own = np.abs(_folded(np.imag(poles.values) / (2.0 * np.pi), hardware.step))
+    lines = _lines(closed, poles.values)
+    lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
+    place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
+    seen = LoopLines(lines, loop.scale, feedback_response(closed.controller, loop, lines))
+    plant = loop.pose @ resolvent(select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges])).at(lines)
+    back, forward = seen.control @ seen.sensitivity(plant), reference_response(closed.controller, loop, lines)
+    forward = forward - back @ plant @ forward
+    held = poles.held(lines, hardware)
+    peaks = np.max(np.abs(held[:, place, np.arange(len(own))]), axis=0)
+    driven = [np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, each[place]) / loop.scale, axis=1) for each in (back, forward)]
+    seen_as = np.linalg.norm(poles.pose(loop.pose) * loop.scale, axis=1)
+    lengths = np.array([loop.length if each[0] == "r" else 1.0 for each in COMPONENTS])
+    moved = np.linalg.norm(poles.exits[:, len(loop.gauges) :] * lengths, axis=1)
+    decay = 2.0 * np.abs(np.real(poles.values)) / np.abs(poles.values)
+    return _Contributions(seen, plant, loop.pose, poles, held, place, peaks * seen_as * driven[0], peaks * moved * driven[1] * decay)
+
+
+def _choose(given: _Contributions) -> tuple[Array, float]:
+    """Modes (d,) to be added, and the change of margins by the rest: those of loop gain 0.1, else as many as margins need."""
+    truth = _figures(given.margins(np.ones(len(given.gains), bool)))
+    chosen, change = np.zeros(len(given.gains), bool), np.inf
+    for least in LOOP_GAINS:
+        chosen = given.gains >= least
+        change = _change(_figures(given.margins(chosen)), truth)
+        if change <= MARGIN_CHANGE or np.any(given.gains >= LOOP_GAINS[0]):
+            break
+    return chosen, change
 
 
 @dataclass(frozen=True, eq=False)
