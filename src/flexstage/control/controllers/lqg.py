@@ -99,7 +99,7 @@ def with_observer(model: System, coordinates: Coordinates, weights: Weights, obs
     0.00796
     """
     regulator, integral = _regulator(model, coordinates, weights)
-    tracking = 1.0 / (2.0 * np.pi * float(np.min(weights.bandwidth)))
+    tracking = max(1.0 / (2.0 * np.pi * float(np.min(weights.bandwidth))), model.step or 0.0)
     return LQG(model, regulator, integral, observer, coordinates, tracking, feedforward)
 
 

@@ -17,7 +17,7 @@ from flexstage.control.controllers.family import Family, Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
-from flexstage.control.resolvent import resolvent
+from flexstage.control.resolvent import Resolvent, resolvent
 from flexstage.control.system import System
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
@@ -30,15 +30,26 @@ _AGREES = 0.005
 """Relative difference of a crossing that counts as none: half of the 1 % within which a bandwidth is reached."""
 _TRUST = (1.0, 30.0, 1000.0)
 """How many times the expected noise the strokes of an observer have, tried in turn: the more, the less it trusts its model."""
+_TRUST_OF_MASS, _MASS = (0.01, 0.3, 10.0), 0.01
+"""The same over what makes strokes and gauges equally loud at the bandwidth, where loops have so small a part of their gain at rest.
+
+A mass then follows what drives it, and an observer is as fast as the root of these times the bandwidth, however soft the guide.
+"""
 _ROUNDS = 8
 _AROUND = 4.0
-"""Rounds in which the weights of LQG follow where loops pass 1; by how much at most, and how far above the bandwidth that is looked for."""
+"""Rounds in which the weights of LQG follow the gain of loops at the bandwidth; by how much of it at most."""
+_FLATTEST, _STEEPEST, _SAME_WEIGHT = 0.2, 1.5, 1e-4
+"""Powers of its weight with which a loop's gain goes, 1 without dynamics, less with roll-off; weights too near to tell it by."""
+_FARTHEST = 1e4
+"""How far from the first guess weights may move, as factors: loops that do not pass 1 for them never do."""
 _EQUAL = 1e-9
 """Relative difference of responses below which loops are the same, as those of symmetric stages are but for rounding."""
 _WRONG = 1e6
 """Score of what is no loop at all, far above any peak of S."""
 _WIDTHS = (0.4, 0.6, 0.9, 1.4)
 """Dampings of notches' poles that are tried: the gain is below 0.7 over about twice that share of the frequency."""
+_UNSTATED = Disturbances(1e-9, {})
+"""What an observer expects where nothing is stated."""
 _Sets: TypeAlias = tuple[tuple[Notch, ...], ...]
 _Options: TypeAlias = tuple[_Sets, ...]
 
@@ -325,44 +336,69 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
 
 def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
-    wanted = np.full(len(seen.loops.names), frequency)
-    for trust in _TRUST:
+    driven = _driven(seen, frequency)
+    first = wanted = frequency / driven
+    for trust in _trusts(seen, task, frequency, driven):
         design = _designer(seen, task, trust)
-        found, wanted = _balance_bandwidths(seen, design, frequency, wanted)
+        found, wanted = _balance_bandwidths(seen, design, frequency, wanted, first)
         if found is not None:
             gains = seen.responses @ _strokes(seen, found, design.estimates, seen.frequencies)
             yield Attempt(seen, found, gains, ((),) * len(wanted))
 
 
+def _driven(seen: View, frequency: float) -> Array:
+    """Gains (k,) from all strokes together to the loops' poses at a frequency [Hz]."""
+    return np.linalg.norm(seen.loops.sense @ seen.systems[0].transfer(np.array([frequency]))[0], axis=1)
+
+
+def _trusts(seen: View, task: Task, frequency: float, driven: Array) -> tuple[float, ...]:
+    """How many times the noise that is expected of them strokes have in turn, over decades where gauges are loud."""
+    expected = task.expected or _UNSTATED
+    heard = np.abs(seen.loops.sense @ seen.loops.coordinates.pose) @ np.array(
+        [expected.gauges[name] for name in seen.loops.coordinates.gauges]
+    )
+    even = float(np.max(heard / (driven * expected.strokes)))
+    masses = tuple(even * each for each in _TRUST_OF_MASS)
+    if np.max(np.abs(seen.at(frequency)) / np.abs(seen.static)) < _MASS:
+        return masses
+    return (*_TRUST, *(each for each in masses if each > _TRUST[-1]))
+
+
 @dataclass(frozen=True, eq=False)
 class _Designer:
-    """Regulators for an `observer`, which is the same at every bandwidth, and so are its `estimates` (s, f, k + n).
-
-    They are the responses of its states to the loops' errors, taken from the pose, and to the strokes.
-    """
+    """Regulators for an `observer`, which is the same at every bandwidth, and so are the `responses` of its states."""
 
     seen: View
     task: Task
     observer: Array
-    estimates: Array
+    responses: Resolvent
 
-    def __call__(self, wanted: Array) -> LQG:
-        """The controller with weights for these bandwidths (k,) [Hz]."""
+    @cached_property
+    def estimates(self) -> Array:
+        """Responses of its states (s, f, k + n) to the loops' errors, taken from the pose, and to the strokes, where the view looks."""
+        return self.estimates_at(self.seen.frequencies)
+
+    def estimates_at(self, frequencies: Array) -> Array:
+        """The same (s, f, k + n) at other frequencies [Hz]."""
+        found, count = self.responses.at(frequencies), len(self.seen.loops.names)
+        found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
+        return np.ascontiguousarray(np.moveaxis(found, 0, 1))
+
+    def __call__(self, wanted: Array, frequency: float) -> LQG:
+        """The controller with these weights (k,) [Hz], whose integrators follow what was applied as fast as loops do that pass 1 there."""
         model, coordinates = self.seen.systems[0], self.seen.loops.coordinates
-        return with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.task.feedforward)
+        found = with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.task.feedforward)
+        return replace(found, tracking=1.0 / (2.0 * np.pi * frequency))
 
 
 def _designer(seen: View, task: Task, trust: float) -> _Designer:
-    expected = task.expected or Disturbances(1e-9, {})
+    expected = task.expected or _UNSTATED
     looser = Disturbances(expected.strokes * trust, expected.gauges)
     model, coordinates = seen.systems[0], seen.loops.coordinates
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
         observer = observer_gain(model, coordinates, looser)
-        found = resolvent(estimator(model, observer)).at(seen.frequencies)
-        count = len(seen.loops.names)
-        found[..., :count] = found[..., :count] @ np.linalg.inv(seen.loops.sense)
-        seen.kept[key] = _Designer(seen, task, observer, np.ascontiguousarray(np.moveaxis(found, 0, 1)))
+        seen.kept[key] = _Designer(seen, task, observer, resolvent(estimator(model, observer)))
     return seen.kept[key]
 
 
@@ -381,19 +417,25 @@ def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> 
     return np.linalg.solve(np.eye(len(felt)) + fed[..., count:], entered)
 
 
-def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted: Array) -> tuple[LQG | None, Array]:
-    """The design whose loops all pass 1 at the frequency, or the nearest to it that a few rounds give; and its weights' bandwidths."""
-    found = None
-    low = np.flatnonzero(seen.frequencies < _AROUND * frequency)[::2]
-    frequencies, responses, estimates = seen.frequencies[low], seen.responses[0, low], np.ascontiguousarray(design.estimates[:, low])
+def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted: Array, first: Array) -> tuple[LQG | None, Array]:
+    """The design whose loops all have a gain of 1 at the frequency, or the nearest to it that a few rounds give; and its weights.
+
+    Weights follow by the secant of the loops' gains there, in the logarithms. They are given up where they leave `first` by decades.
+    """
+    found, before, slope = None, None, 1.0
+    at = np.array([frequency])
+    responses, estimates = seen.loops.sense @ seen.systems[0].transfer(at), design.estimates_at(at)
     for _ in range(_ROUNDS):
-        if not np.all(np.isfinite(wanted)) or (seen.step is not None and np.max(wanted) >= 0.5 / seen.step):
-            return None, np.full(len(wanted), frequency)
-        found = design(wanted)
-        gains = np.abs(np.einsum("fkn,fnk->kf", responses, _strokes(seen, found, estimates, frequencies)))
-        passed = np.array([crossing_frequency(frequencies, own) for own in gains])
-        ratio = np.clip(passed / frequency, 1.0 / _AROUND, _AROUND)
-        if np.all(np.abs(ratio - 1.0) < _AGREES):
+        if not np.all(np.abs(np.log(wanted / first)) < np.log(_FARTHEST)):
+            return None, first
+        found = design(wanted, frequency)
+        gains = np.log(np.abs(np.einsum("fkn,fnk->k", responses, _strokes(seen, found, estimates, at))))
+        if np.all(np.abs(gains) < _AGREES):
             break
-        wanted = wanted / ratio
+        if before is not None:
+            moved = np.log(wanted) - before[0]
+            far = np.abs(moved) > _SAME_WEIGHT
+            slope = np.where(far, np.clip((gains - before[1]) / np.where(far, moved, 1.0), _FLATTEST, _STEEPEST), slope)
+        before = np.log(wanted), gains
+        wanted = wanted * np.exp(-np.clip(gains, -np.log(_AROUND), np.log(_AROUND)) / slope)
     return found, wanted
