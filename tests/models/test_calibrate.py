@@ -26,7 +26,7 @@ from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.roots import Roots
 from flexstage.solid.hinges import distinct_hinges, solid_hinges
 from flexstage.solid.tables import verification_table
-from flexstage.solid.verification import Row, hinge_rows, verdict
+from flexstage.solid.verification import Row, Verification, departures, hinge_rows, verdict
 from flexstage.spatial.frame import transport
 from tests.models.solid_studies import softened
 
@@ -204,6 +204,33 @@ def test_trust(theory: float, calibrated_value: float | None, error: float, trus
     row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
     assert row.trust is trust
     assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
+
+
+@pytest.mark.parametrize(
+    ("unit", "theory", "calibrated_value", "words"),
+    [
+        ("N/m", 4.4, 4.3, "theory 4.4 times too stiff (rigid bodies bend)"),
+        ("N/m", 1.1, 1.1, "theory 10 % too stiff (rigid bodies bend)"),
+        ("N/m", 1.1, 1.0, "theory 10 % too stiff"),
+        ("N m/rad", 0.25, 0.3, "theory 4 times too soft"),
+        ("m/N", 0.25, None, "theory 4 times too stiff"),
+        ("rad/(N m)", 2.0, None, "theory 2 times too soft"),
+        ("Hz", 2.0, 2.0, "theory 2 times too high (rigid bodies bend)"),
+        ("Hz", 0.9, None, "theory 10 % too low"),
+        ("N/m", 1.01, 1.0, ""),
+    ],
+)
+def test_headlines_say_in_words_where_theory_and_finite_elements_differ(
+    unit: str, theory: float, calibrated_value: float | None, words: str
+) -> None:
+    """The worst figure of each unit, also where another is too coarse to tell."""
+    row = Row("stage", "figure", unit, theory, 1.0, 0.001, calibrated=calibrated_value)
+    better = replace(row, figure="better", theory=1.0 + 0.5 * (theory - 1.0))
+    coarse = replace(row, figure="coarse", theory=1.1, fea_error=0.75)
+    assert departures((better, row, coarse)) == (f"figure: {words}" if words else "")
+    found = Verification(parallelogram(), (better, row, coarse), {}, None, None, {})
+    assert found.headline.endswith(f"{words}." if words else "for 2 of 3 figures.")
+    assert verdict((better, row, coarse)).startswith(f"Figure: {words}. " if words else "Lumped theory")
 
 
 def test_what_is_not_known_gets_no_verdict() -> None:

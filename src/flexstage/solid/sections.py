@@ -120,12 +120,9 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_headline(found: Verification) -> Headline:
-    """On how many figures of the widest group that was compared, the stage where it was, theory will do; and how far off it is at most."""
-    name, rows = list(found.groups.items())[-1]
-    good = [row for row in rows if row.trust in {Trust.EITHER, Trust.THEORY}]
-    off = max((row for row in rows if row.difference is not None), key=lambda row: abs(row.difference or 0.0), default=None)
-    most = "" if off is None else f"; at most it is {100.0 * abs(off.difference or 0.0):.2g} % off, in {off.figure}"
-    return Headline(f"{name.capitalize()}: theory will do for {len(good)} of {len(rows)} figures{most}.", len(good) == len(rows))
+    """The headline of a verification, and whether theory will do for all of the widest group."""
+    rows = list(found.groups.values())[-1]
+    return Headline(found.headline, all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:

@@ -40,6 +40,16 @@ from flexstage.solid.units import SolidUnit, solid_units
 from flexstage.spatial.frame import COMPONENTS
 
 _CLOSE = 0.02
+_TIMES = 1.5
+"""A factor from which differences are told as factors."""
+_WORDS = {
+    "Hz": ("high", "low"),
+    "N/m": ("stiff", "soft"),
+    "N m/rad": ("stiff", "soft"),
+    "m/N": ("soft", "stiff"),
+    "rad/(N m)": ("soft", "stiff"),
+}
+"""What a figure that is too large makes of theory, and one that is too small, by unit."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +127,14 @@ class Verification(InNotebook):
     def groups(self) -> dict[str, tuple[Row, ...]]:
         """The rows by what they are about, in order."""
         return groups(self.rows)
+
+    @property
+    def headline(self) -> str:
+        """For how many figures of the widest group that was compared theory will do, and where it differs from finite elements."""
+        name, rows = list(self.groups.items())[-1]
+        good = sum(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows)
+        words = departures(rows)
+        return f"{name.capitalize()}: theory will do for {good} of {len(rows)} figures{f'; {words}' if words else ''}."
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
@@ -376,6 +394,34 @@ def _reasons(rows: Iterable[Row]) -> str:
     return " ".join(f"{', '.join(figures)}: {reason}." for reason, figures in reasons.items())
 
 
+def departures(rows: Iterable[Row]) -> str:
+    """In words, where theory and finite elements differ: of every kind of figure the one that theory has most wrong, and why.
+
+    >>> row = Row("stage", "softest in plane, others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
+    >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
+    'softest in plane, others free: theory 4.5 times too stiff (rigid bodies bend)'
+    """
+    worst: dict[str, Row] = {}
+    for row in rows:
+        if row.trust in {Trust.FEA, Trust.CALIBRATED} and _factor(row) > _factor(worst.get(row.unit)):
+            worst[row.unit] = row
+    return "; ".join(f"{row.figure}: theory {_departure(row)}" for row in worst.values())
+
+
+def _factor(row: Row | None) -> float:
+    """By what factor theory is off, 1 and more; without a row, 1."""
+    ratio = 1.0 if row is None or row.difference is None else 1.0 + row.difference
+    return max(ratio, 1.0 / ratio) if ratio > 0.0 else float("inf")
+
+
+def _departure(row: Row) -> str:
+    above, factor = (row.difference or 0.0) > 0.0, _factor(row)
+    more, less = _WORDS.get(row.unit, ("large", "small"))
+    size = f"{factor:.2g} times" if factor >= _TIMES else _percent(_size_of_difference(row))
+    rigid = above and more in {"stiff", "high"} and row.trust is Trust.FEA and row.calibrated is not None
+    return f"{size} too {more if above else less}{' (rigid bodies bend)' if rigid else ''}"
+
+
 def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     """What rows say whose difference is known, and, unless they are not independent, whose error is."""
     worst = max(rows, key=_size_of_difference)
@@ -387,15 +433,18 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
+    known = departures(rows)
     if any(row.trust is Trust.UNCLEAR for row in rows):
-        return f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+        return f"{known[:1].upper()}{known[1:]}. {said}" if known else said
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
     after = f"with calibrated hinges {_percent(max(better))}"
     if all(row.trust is not Trust.FEA for row in rows):
         return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
-    return f"{name} is {off}; {after}: the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
+    rest = "the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
+    return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"
 
 
 def _size_of_difference(row: Row) -> float:
