@@ -11,7 +11,8 @@ import flexstage as fs
 from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
 from flexstage.analysis.judge import judge
 from flexstage.analysis.load_effect import FELT, felt_links, load_effect
-from flexstage.analysis.stability import prestress, stability
+from flexstage.analysis.stability import Stability, prestress, stability
+from flexstage.analysis.statics import statics
 from flexstage.beams.compliance import stiffness
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.study.resolve import resolve
@@ -270,6 +271,25 @@ def test_how_far_leaves_shorten_is_told():
     ends = fs.equilibrium(fs.nonlinear(stage), hold={"platform.z": 2e-3})
     assert found.shortening == pytest.approx(float(ends.displacement()[0]), rel=0.005)
     assert "gets shorter by 0.04 mm" in found.text
+
+
+def test_the_error_over_strokes_is_that_of_kinematics_alone():
+    """Along a stroke the stiffness of a double parallelogram's guide changes by more than its kinematics are off, and the text says so."""
+    stage = fs.case("voice-coil-stage")
+    found = fs.analyse(stage).second_order
+    assert found is not None
+    model = fs.nonlinear(stage)
+    stiffness = [1.0 / statics(linearise(fs.equilibrium(model, hold={"platform.x": at}))).compliance.values[1, 1] for at in (0.0, 2e-3)]
+    assert abs(stiffness[1] / stiffness[0] - 1.0) > found.error
+    assert found.text.startswith("Over the strokes linear kinematics is off by up to")
+    assert "Stiffness and frequencies may change by more" in found.text
+
+
+@pytest.mark.parametrize(("dead", "stiffens"), [(1.5, 0.0), (100.0, 0.5), (1.5, 0.5)])
+def test_only_the_load_effect_says_which_stage_results_are_of(dead: float, stiffens: float):
+    doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").cautions
+    assert doubts
+    assert not any("told of" in str(each) or "results are of" in str(each) for each in doubts)
 
 
 def test_stages_guided_by_given_matrices_have_a_stroke_and_no_second_order():

@@ -90,8 +90,8 @@ class Stability:
                 f"weight, payloads and forces soften it: load factor {dead:.3g}, where {give_way(' and '.join(self.moving))}. In that "
                 f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
             )
-            advice = "Stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
-            yield Finding("stage", what, f"{advice}; elsewhere count on the lower values; stiffen what the load presses on, or let it hang")
+            advice = "Count on the lower values in results of the unloaded stage; stiffen what the load presses on, or let it hang"
+            yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
             if worst >= 1.0:
@@ -99,8 +99,7 @@ class Stability:
             yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
             what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
-            advice = "Stiffness, modes, responses, lost motion, drift and loops are told of the loaded stage"
-            yield Finding("stage", what, f"{advice}; elsewhere count on higher frequencies in that motion")
+            yield Finding("stage", what, "Count on higher frequencies in that motion in results of the unloaded stage")
 
 
 def give_way(bodies: str) -> str:

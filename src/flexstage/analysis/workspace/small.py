@@ -32,7 +32,7 @@ _ATOM = 1e-10
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """By how much linear models may be off over a box of motions: the relative `error` of second order, of the part `link`, and why.
+    """By how much linear kinematics is off over a box of motions: the relative `error` of second order, of the part `link`, and why.
 
     `shortening` is how far the ends of the leaf or rod `shortened` come nearer as it bends, by which a guide goes aside; empty of none.
     `held_twice`: redundant constraints may stretch flexures besides.
@@ -47,22 +47,20 @@ class SecondOrder:
 
     @property
     def text(self) -> str:
-        """What is said of it; where constraints are redundant, that they may stretch flexures, which stiffens them besides.
+        """The error, of kinematics alone; stiffness and frequencies have no such bound.
 
-        >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text
-        'Over the strokes small-displacement theory is off by up to 0.02 % (left bends by 0.02 of its length).'
+        >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text.partition(". ")[0]
+        'Over the strokes linear kinematics is off by up to 0.02 % (left bends by 0.02 of its length)'
         """
-        more = ": flexstage stroke tells them at large displacements" if self.error >= ERROR else ""
-        besides = (
-            "; redundant constraints may stretch flexures besides, which flexstage stroke tells" if self.held_twice and not more else ""
-        )
+        cause = ", as redundant constraints stretch flexures" if self.held_twice else ""
         aside = (
             f", and leaves out that {self.shortened} gets shorter by {show(self.shortening, LENGTH, digits=2)}"
             if self.shortening > _ATOM
             else ""
         )
-        what = f"Over the strokes small-displacement theory is off by up to {100.0 * self.error:.2g} %"
-        return f"{what} ({self.link} {self.why}){aside}{more}{besides}."
+        what = f"Over the strokes linear kinematics is off by up to {100.0 * self.error:.2g} %"
+        more = f"Stiffness and frequencies may change by more{cause}: see flexstage stroke"
+        return f"{what} ({self.link} {self.why}){aside}. {more}."
 
 
 @dataclass(frozen=True, eq=False)

@@ -92,7 +92,7 @@ def workspace(
 
 
 def _with_error(body: Any, small: SecondOrder | None) -> Any:
-    """A result, and beside it by how much small-displacement theory is off over the motions that it is about."""
+    """A result, and beside it by how much linear kinematics is off over the motions that it is about."""
     return body if small is None else SideBySide((body, {"second_order": small}))
 
 

@@ -123,7 +123,7 @@ class LoopStudy(InNotebook):
 
     @property
     def second_order(self) -> Annotated[SecondOrder | None, VIEW]:
-        """By how much small-displacement theory, by which the plant is as drawn, is off over the runs; null where no motion is known."""
+        """By how much linear kinematics, by which the plant is as drawn, is off over the runs; null where no motion is known."""
         given = self.settled
         if given.displaced or not self.runs:
             return None

@@ -55,12 +55,12 @@ def load_line(analysis: Analysis) -> str | None:
 
 
 def small_line(analysis: Analysis) -> str | None:
-    """By how much small-displacement theory is off over the strokes; `None` where no motion is known.
+    """By how much linear kinematics is off over the strokes; `None` where no motion is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> small_line(analyse(double_triangle(), Model.MAPPED)).partition(" (")[0]
-    'Over the strokes small-displacement theory is off by up to 0.0016 %'
+    'Over the strokes linear kinematics is off by up to 0.0016 %'
     """
     return None if analysis.second_order is None else analysis.second_order.text
 
