@@ -453,6 +453,8 @@ def test_files_that_are_wrong_are_refused(tmp_path, fault):
         ("%%MatrixMarket matrix coordinate complex general\n2 2 1\n1 1 2.0 1.0\n", "complex entries"),
         ("%%MatrixMarket matrix array real general\n2 2\n1.0\nx\n3.0\n4.0\n", "cannot be read as a Matrix Market file"),
         ("no matrix", "cannot be read as a Matrix Market file"),
+        ("%%MatrixMarket matrix coordinate real general\n100000000 100000000 1\n1 1 1.0\n", "is 100000000 x 100000000 with 1 entries"),
+        ("%%MatrixMarket matrix coordinate real symmetric\n12 13 12\n1 1 2.0\n", "is 12 x 13 with 24 entries"),
     ],
 )
 def test_matrix_market_files_that_are_wrong_are_refused(tmp_path, text, told):
@@ -462,6 +464,13 @@ def test_matrix_market_files_that_are_wrong_are_refused(tmp_path, text, told):
     with pytest.raises(DesignError) as caught:
         superelement(part)
     assert told in str(caught.value)
+
+
+def test_a_mass_matrix_of_another_size_is_refused_before_it_is_read(tmp_path):
+    part = written(elastic(3), tmp_path, "mtx")
+    (tmp_path / "M.mtx").write_text("%%MatrixMarket matrix coordinate real general\n100000000 100000000 1\n1 1 1.0\n")
+    with pytest.raises(DesignError, match=r"its matrix is 100000000 x 100000000, and the stiffness in K\.mtx"):
+        matrix_file.read_matrices(replace(part, sha256=matrix_file.digest_of(part.files)))
 
 
 def test_another_version_of_the_file_is_told(tmp_path):

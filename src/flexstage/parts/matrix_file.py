@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -40,7 +41,9 @@ def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
         require_regular(path)
     require(_version_findings(part))
     if not part.file:
-        return tuple(_matrix_market(Path(each)) for each in part.files)
+        paths = tuple(map(Path, part.files))
+        require(_size_findings(*((path, *_market_head(path)) for path in paths)))
+        return tuple(_matrix_market(path) for path in paths)
     path = Path(part.file)
     names = tuple(name for name in (part.arrays.stiffness, part.arrays.mass, part.arrays.damping) if name)
     found = _READERS[path.suffix.lower()](path, names)
@@ -115,7 +118,7 @@ def _npz(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
             _require_room(path, name, sizes.get(name, 0))
         with np.load(path, allow_pickle=False) as found:
             return {name: found[name] if name in names else np.zeros(0) for name in found.files}
-    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, KeyError, NotImplementedError) as error:
+    except (zipfile.BadZipFile, zlib.error, ValueError, OSError, EOFError, KeyError, NotImplementedError, MemoryError) as error:
         if isinstance(error, DesignError):
             raise
         raise refuse(str(path), f"it cannot be read as an NPZ file ({' '.join(str(error).split())[:200]})", advice) from None
@@ -138,21 +141,48 @@ def _mat(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
 _READERS: Mapping[str, Callable[[Path, tuple[str, ...]], dict[str, MatrixLike]]] = {".mat": _mat, ".npz": _npz}
 
 
-def _matrix_market(path: Path) -> MatrixLike:
-    advice = "Write it with scipy.io.mmwrite, or as the code exports Matrix Market files: real or integer, general or symmetric"
+_MARKET = "Write it with scipy.io.mmwrite, or as the code exports Matrix Market files: real or integer, general or symmetric"
+
+
+@contextlib.contextmanager
+def _read_as_market(path: Path) -> Generator[None]:
     try:
-        rows, columns, entries, form, kind, _ = scipy.io.mminfo(str(path))
-        if kind not in ("real", "integer", "double"):
-            raise refuse(str(path), f"it holds {kind} entries where real ones are expected", advice)
-        size = path.stat().st_size
-        if entries * _LEAST_ENTRY > 2 * size:
-            raise refuse(str(path), f"it breaks off: {entries} entries are announced, and it has {size} bytes", "Copy or export it anew")
-        _require_room(path, "its matrix", 8 * rows * columns if form == "array" else 24 * entries)
-        found = scipy.io.mmread(str(path))
+        yield
     except (ValueError, OSError, OverflowError, MemoryError) as error:
         if isinstance(error, DesignError):
             raise
-        raise refuse(str(path), f"it cannot be read as a Matrix Market file ({' '.join(str(error).split())[:200]})", advice) from None
+        what = f"it cannot be read as a Matrix Market file ({' '.join(str(error).split())[:200]})"
+        raise refuse(str(path), what, _MARKET) from None
+
+
+def _market_head(path: Path) -> tuple[int, int, int]:
+    """Rows, columns and entries that a Matrix Market file announces, as many as its bytes and the memory have room for."""
+    with _read_as_market(path):
+        rows, columns, entries, form, kind, symmetry = scipy.io.mminfo(str(path))
+    if kind not in ("real", "integer", "double"):
+        raise refuse(str(path), f"it holds {kind} entries where real ones are expected", _MARKET)
+    size = path.stat().st_size
+    if entries * _LEAST_ENTRY > 2 * size:
+        raise refuse(str(path), f"it breaks off: {entries} entries are announced, and it has {size} bytes", "Copy or export it again")
+    _require_room(path, "its matrix", 8 * rows * columns if form == "array" else 24 * entries)
+    return rows, columns, entries if symmetry == "general" else 2 * entries
+
+
+def _size_findings(stiffness: tuple[Path, int, int, int], *others: tuple[Path, int, int, int]) -> Iterator[Finding]:
+    """Sizes that cannot be those of one part: no memory is taken for more rows than the stiffness has entries."""
+    path, rows, columns, entries = stiffness
+    if rows != columns or entries < rows:
+        what = f"its stiffness is {rows} x {columns} with {entries} entries at most, where a square matrix has one a row at least"
+        yield Finding(str(path), what, "Export the whole matrix over ports and inner coordinates")
+    for other, *size, _ in others:
+        if size != [rows, columns]:
+            what = f"its matrix is {' x '.join(map(str, size))}, and the stiffness in {path.name} {rows} x {columns}"
+            yield Finding(str(other), what, "Export all over the same coordinates")
+
+
+def _matrix_market(path: Path) -> MatrixLike:
+    with _read_as_market(path):
+        found = scipy.io.mmread(str(path))
     whole = found.tocsc() if scipy.sparse.issparse(found) else found
     return _plain(path, "it", whole.toarray() if scipy.sparse.issparse(whole) and max(whole.shape) <= LARGEST_DENSE else whole)
 
