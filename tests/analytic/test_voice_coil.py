@@ -11,6 +11,7 @@ from flexstage.analysis.complete import analyse
 from flexstage.analysis.judge import judge
 from flexstage.analysis.response import response
 from flexstage.analysis.workspace.reach import reach
+from flexstage.base.finding import DesignError
 from flexstage.base.scale import X, Z, mm
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, StructuralDamping
@@ -23,9 +24,12 @@ from flexstage.models.linear.state_space import state_space
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia
+from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
+from flexstage.parts.rod import Rod
+from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import Supply, VoiceCoil
 from flexstage.show.sections.reach import workspace_section
 
@@ -156,6 +160,53 @@ def test_a_coil_does_not_bound_what_it_does_not_move():
     for axis, other, row in zip(found.bounds.rows, ("D2", "D1"), np.isinf(found.bounds.values), strict=True):
         assert row.tolist() == [cause.startswith(other) for cause in found.bounds.columns], axis
     assert np.count_nonzero(found.per_motion.values) == 2
+
+
+def pushed(rods: bool, along: tuple[float, float, float]) -> Mechanism:
+    """A platform on three rods along x, or on a spring without coupling, and a force through its middle."""
+    rod, spring = Rod("steel", 40 * mm, 0.8 * mm), Spring(diagonal=(1e4, 2e4, 3e4, 5.0, 6.0, 7.0))
+    places = ((-20 * mm, 20 * mm, 0.0), (-20 * mm, -10 * mm, 17 * mm), (-20 * mm, -10 * mm, -17 * mm)) if rods else ((0.0, 0.0, 0.0),)
+    links = {f"held{number}": Link((GROUND, PLATFORM), "held", at, X, bends=Z) for number, at in enumerate(places)}
+    return Mechanism(
+        name="pushed",
+        materials={"steel": Material(young=YOUNG, poisson=0.3, density=7800.0, yield_stress=1.5e9)},
+        parts={"held": rod if rods else spring, "push": ForceActuator(maximum=10.0)},
+        bodies={PLATFORM: Body(mass=0.2, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e-4, 1e-4, 1e-4), reference=(0.0, 0.0, 0.0))},
+        links=links | {"motor": Link((GROUND, PLATFORM), "push", (0.0, 0.0, 0.0), along)},
+        gravity=(0.0, 0.0, 0.0),
+    )
+
+
+@pytest.mark.parametrize(("rods", "along", "moved", "unmoved"), [(False, X, "x", "y z rx ry rz"), (True, Z, "z", "y rx")])
+def test_motions_that_no_force_causes_have_no_reach(rods, along, moved, unmoved):
+    """A gain of zero, or of rounding, is none: neither a failure nor a stroke of 1e-23 m."""
+    mechanism = pushed(rods, along)
+    found = reach(mechanism, ideal(mechanism), lumped(mechanism))
+    assert (found.coordinates, found.unmoved) == ((moved,), tuple(unmoved.split()))
+    assert 0.0 < found.held.item() <= 10.0 * static_gain(lumped(mechanism), (f"platform.{moved}",), ("motor",)).values.item() * (1 + 1e-9)
+    verdict = judge(replace(mechanism, requirements={"stroke.y": "at least 1 um"}))[0]
+    assert verdict.value is None
+    assert "no actuator moves it" in verdict.reason
+    assert analyse(mechanism).reach is not None
+
+
+def test_a_stage_that_no_force_moves_is_refused():
+    mechanism = pushed(rods=True, along=X)
+    with pytest.raises(DesignError, match=r"no actuator moves platform along any ideal motion \(y, z, rx\)"):
+        reach(mechanism, ideal(mechanism), lumped(mechanism))
+
+
+def test_designs_whose_force_turns_off_a_motion_have_none_of_it():
+    """A batch in which the force is along x, between x and y, and along y."""
+    mechanism = pushed(rods=False, along=X)
+    angles = np.array([0.0, 0.3, 0.5 * np.pi])
+    motor = replace(mechanism.links["motor"], along=(np.array([1.0, np.cos(0.3), 0.0]), np.array([0.0, np.sin(0.3), 1.0]), 0.0))
+    several = replace(mechanism, links={**mechanism.links, "motor": motor})
+    found = reach(several, ideal(several), lumped(several))
+    assert found.coordinates == ("x", "y")
+    expected = np.stack([10.0 * np.abs(np.cos(angles)) / 1e4, 10.0 * np.abs(np.sin(angles)) / 2e4], axis=-1)
+    expected[[0, 2], [1, 0]] = np.nan
+    assert found.held == pytest.approx(expected, rel=1e-9, nan_ok=True)
 
 
 def test_travel_and_a_stress_end_the_reach_too():

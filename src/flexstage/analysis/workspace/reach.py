@@ -24,12 +24,12 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.linear.static import displacement, input_motion, static_gain
+from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.voice_coil import VoiceCoil
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, Frame, twist_transform
 
-_ROUNDING = 1e-12
+_ROUNDING, _NONE = 1e-12, 1e-9
 
 _STRESS_STEPS = 60
 _YIELD = "yield stress"
@@ -43,7 +43,8 @@ class ForceReach(InNotebook):
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
     ones at zero, or, where `alone` says so, giving way. `bounds` (coordinates x causes) [m, rad] is the motion at which each cause ends it
     if it is held for ever, `short` that in short use (a coil's `duty`); NaN where a limit is not stated. `current`, `voltage`, `power` and
-    `rise` (coordinates x coils) are what the held motion takes: i, R i, i^2 R and i^2 R times the thermal resistance [K].
+    `rise` (coordinates x coils) are what the held motion takes: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are the
+    ideal motions that no input moves.
     """
 
     point: str
@@ -56,6 +57,7 @@ class ForceReach(InNotebook):
     voltage: Matrix
     power: Matrix
     rise: Matrix
+    unmoved: tuple[str, ...]
     provenance: str
 
     @property
@@ -87,13 +89,17 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
     C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
     limits for more. What is left of the motion ends with the first of: each coil's peak and continuous current, heat i^2 R over its
     thermal resistance, amplifier voltage R i (at rest), largest force, magnetic travel, each stroke, each stop's nearer side, and yield in
-    a hinge under dead load. Linear. Raises `DesignError` where the stage has no force actuator, or no ideal motion.
+    a hinge under dead load. Linear. An input moves a coordinate where it does so by more than rounding: 1e-9 of (c E)^1/2, which by Cauchy
+    and Schwarz is the most, c the coordinate's compliance and E twice the input's energy. Raises `DesignError` where the stage has no force
+    actuator, no ideal motion, or none that an input moves.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("reach", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
     assembly = expand(mechanism)
-    inputs, names = model.actuators, kinematics.coordinates
-    gain = static_gain(model, tuple(f"{point}.{name}" for name in names), inputs).values
+    inputs, gain, names = model.actuators, *_moved(model, point, kinematics.coordinates)
+    if not names:
+        what = f"no actuator moves {point} along any ideal motion ({', '.join(kinematics.coordinates)})"
+        raise refuse("reach", what, "Look which way the actuators push, and how they turn with what they are joined to")
     limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
     per_motion, alone = _inverse(gain, _sizes(limits[False]))
     per_motion = _without_rounding(per_motion)
@@ -113,8 +119,23 @@ def reach(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, p
         bounds=bounds[False],
         short=bounds[True],
         **_needs(assembly, inputs, names, per_motion * _least(bounds[False].values)[..., None, :]),
+        unmoved=tuple(name for name in kinematics.coordinates if name not in names),
         provenance=model.provenance,
     )
+
+
+def _moved(model: LinearModel, point: str, coordinates: tuple[str, ...]) -> tuple[Array, tuple[str, ...]]:
+    """The gain (..., f, n) of all inputs on the coordinates that they move in some design, zero where it is rounding; and those."""
+    outputs = tuple(f"{point}.{name}" for name in coordinates)
+    wrenches = tuple(f"{point}.{FORCES[COMPONENTS.index(name)]}" for name in coordinates)
+    gain = static_gain(model, outputs, model.actuators).values
+    compliance = np.diagonal(static_gain(model, outputs, wrenches).values, axis1=-2, axis2=-1)
+    strains = part_deformation(model, input_motion(model, model.input_index(model.actuators)))
+    energy = sum(np.sum(strain * (model.stiffness[name].law @ strain), axis=-2) for name, strain in strains.items())
+    most = np.sqrt(np.abs(np.real(compliance[..., :, None] * np.asarray(energy)[..., None, :])))
+    moved = np.abs(np.real(gain)) > _NONE * most
+    kept = np.flatnonzero(np.any(moved.reshape(-1, *moved.shape[-2:]), axis=(0, 2)))
+    return np.where(moved, gain, gain - np.real(gain))[..., kept, :], tuple(coordinates[place] for place in kept)
 
 
 _Causes = list[tuple[str, Array]]
@@ -155,11 +176,12 @@ def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
 
 
 def _least_norm(gain: Array) -> Array:
-    """G = C^T (C C^T)^-1, which is C^-1 of a square C; infinite where an input does not reach."""
+    """G = C^T (C C^T)^-1, which is C^-1 of a square C; NaN of designs in which no input moves a coordinate."""
     transposed = np.swapaxes(gain, -1, -2)
-    if gain.shape[-1] == gain.shape[-2]:
-        return np.linalg.inv(gain)
-    return transposed @ np.linalg.inv(gain @ transposed)
+    square = gain if gain.shape[-1] == gain.shape[-2] else gain @ transposed
+    lost = np.linalg.det(np.real(square))[..., None, None] == 0.0
+    inverse = np.linalg.inv(np.where(lost, np.eye(square.shape[-1]), square))
+    return np.where(lost, np.nan, inverse if square is gain else transposed @ inverse)
 
 
 def _by_input(inputs: tuple[str, ...], limits: list[list[tuple[str, Number]]], per_motion: Array) -> Iterator[tuple[str, Array]]:
@@ -178,7 +200,7 @@ def _over(limit: Array, slope: Array) -> Array:
 def _without_rounding(slope: Array) -> Array:
     """Slopes per motion (..., f), zero where they are rounding beside those of other motions; their derivatives stay."""
     size = np.abs(np.real(slope))
-    known = size > _ROUNDING * np.max(size, axis=-1, keepdims=True)
+    known = size > _ROUNDING * np.max(np.nan_to_num(size), axis=-1, keepdims=True)
     return np.where(known, slope, slope - np.real(slope))
 
 
@@ -301,7 +323,8 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 def bounds_along(found: ForceReach, name: str) -> Array:
     """The bounds (..., k) of the motion along one coordinate, infinite where a limit is not stated; refused where none is."""
     if name not in found.coordinates:
-        raise refuse(f"stroke.{name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(found.coordinates)}")
+        what = "no actuator moves it" if name in found.unmoved else "is no ideal motion of this stage"
+        raise refuse(f"stroke.{name}", what, f"Its actuators move it along {', '.join(found.coordinates)}")
     place = found.coordinates.index(name)
     if np.any(np.isnan(found.held[..., place])):
         what = "no limit of its actuators is stated"

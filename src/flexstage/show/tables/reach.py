@@ -32,6 +32,8 @@ def reach_table(found: ForceReach) -> Table:
     notes = ["Elastic motion, either way. Held: for ever; short use: for a coil's share of time, `duty`."]
     if not all(found.alone):
         notes.append("There are fewer inputs than ideal motions: the other coordinates give way.")
+    if found.unmoved:
+        notes.append(f"No actuator moves {', '.join(found.unmoved)}.")
     heads = ["along", "unit", Column("held, both ways"), Column("short use"), "limited by"]
     return make_table("Reach", heads, rows, notes=notes, provenance=found.provenance)
 
