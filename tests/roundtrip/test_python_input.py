@@ -12,6 +12,8 @@ from flexstage.mechanism.address import set_value
 from flexstage.parts.part import Restricted
 
 STAGE = fs.case("parallelogram")
+PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Entries of moments and products of inertia."""
 
 
 @pytest.mark.parametrize(
@@ -117,3 +119,31 @@ def test_what_does_not_fit_into_memory_is_refused_with_what_would(monkeypatch):
             fs.DesignError, match=r"3 bodies and .* links need about .* GB of memory, and 1e-06 GB are there\. About \d+ bodies"
         ):
             read(STAGE)
+
+
+def test_whole_numbers_are_numbers_wherever_they_are_given():
+    """Also in tables by name: a file then holds them as lengths, weights and temperatures."""
+    platform = replace(STAGE.bodies["platform"], points={"tip": (0, 0, 3)})
+    stage = replace(STAGE, bodies={**STAGE.bodies, "platform": platform}, temperatures={"all": 2})
+    assert not fs.check(stage)
+    assert fs.loads(fs.dumps(stage)) == stage
+
+
+@pytest.mark.parametrize("digits", [5, 6, 9])
+def test_rounding_of_written_digits_makes_no_thin_bar_impossible(digits):
+    """The inertia of a bar along any direction, m L^2 / 12 (1 - n n^T), written with so many digits."""
+    for seed in range(20):
+        along = np.random.default_rng(seed).normal(size=3)
+        moments = 5e-5 * (np.eye(3) - np.outer(along, along) / (along @ along))
+        written = [float(f"{sign * moments[place]:.{digits}g}") for sign, place in zip((1, 1, 1, -1, -1, -1), PLACES, strict=True)]
+        bar = replace(STAGE.bodies["platform"], solids={}, mass=0.06, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(*written))
+        stage = replace(STAGE, bodies={**STAGE.bodies, "platform": bar})
+        assert not fs.check(stage)
+        assert np.all(fs.modes(fs.lumped(stage)).frequencies > 0.0)
+
+
+@pytest.mark.parametrize("moments", [(1.0, 2.0, 3.01), (1.0e-4, 1.0e-4, 2.001e-4), (4.12345678e-7, 4.12345678e-7, 8.247e-7)])
+def test_moments_that_no_mass_has_are_refused(moments):
+    body = fs.Body(mass=1.0, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(*moments))
+    told = [finding.what for finding in fs.check(replace(STAGE, bodies={**STAGE.bodies, "platform": body}))]
+    assert any("none may be negative or above the sum of the other two" in each for each in told)

@@ -29,8 +29,8 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all findings about a description, none if it can be read.
 
-    A check is left out where its ground is not sound: numbers are not compared before they are finite, the graph is not followed before its
-    names exist, files of matrices are not read before all else is sound.
+    A check is left out where its ground is not sound: numbers are not compared before they are finite, links not turned before their parts
+    are sound, the graph is not followed before its names exist, files of matrices are not read before all else is sound.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
@@ -46,7 +46,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     values = (*formula_findings(mechanism), *value_findings(sound))
     findings = (*names, *changes, *tag_findings(mechanism), *values)
     if not values:
-        findings += (*geometry_findings(sound, departures=not findings), *orientation_findings(sound))
+        geometry = tuple(geometry_findings(sound, departures=not findings))
+        findings += geometry or tuple(orientation_findings(sound))
     findings = findings if names else (*findings, *graph_findings(mechanism))
     return findings or tuple(matrix_findings(mechanism))
 

@@ -34,6 +34,10 @@ _SLACK = 1e-9
 """Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
 
 
+_MOMENT_DIGITS = 5
+"""Digits of moments of inertia below which rounding does not excuse what no mass has: a thin bar's least one is a difference of entries."""
+
+
 def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Iterator[Finding]:
     """Findings about materials, parts, solids, stated masses and payloads; with `departures` also about parts of single copies.
 
@@ -238,14 +242,26 @@ def _cross(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
 
 
 def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
-    """No mass has a principal moment above the sum of the other two, or a negative one."""
-    principal = np.linalg.eigvalsh(np.real(tensor(inertia)))
+    """No mass has a principal moment above the sum of the other two, or a negative one, by more than its digits are rounded."""
+    matrix = np.real(tensor(inertia))
+    principal = np.linalg.eigvalsh(matrix)
     total = functools.reduce(np.add, np.moveaxis(principal, -1, 0))
-    lacking = total - 2.0 * principal[..., 2] < -_SLACK * np.abs(total)
-    negative = principal[..., 0] < -_SLACK * np.abs(total)
+    rounded = 0.75 * 10.0 ** (1 - max(_MOMENT_DIGITS, *map(_digits, np.ravel(matrix))))  # three entries a row, each half of a digit
+    slack = max(_SLACK, rounded) * np.abs(total)
+    lacking = total - 2.0 * principal[..., 2] < -slack
+    negative = principal[..., 0] < -slack
     failing = lacking | negative
     if np.any(failing):
         at, values = first_failing(failing, *np.moveaxis(principal, -1, 0))
         told = ", ".join(f"{value:.6g}" for value in values)
         what = f"its principal moments are {told} kg m^2: none may be negative or above the sum of the other two"
         yield Finding(f"{where}{at}", what, "Check the moments and the signs of the products")
+
+
+def _digits(value: float) -> int:
+    """With how many significant digits a number is written, at most twelve.
+
+    >>> _digits(4.25e-7), _digits(130e-9)
+    (3, 2)
+    """
+    return len(f"{abs(value):.11e}".partition("e")[0].replace(".", "").rstrip("0"))
