@@ -83,6 +83,23 @@ def test_outside_of_what_was_compared_nothing_is_stated():
     assert np.isnan(found).tolist() == [False, True]
 
 
+@pytest.mark.parametrize("poisson", [0.25, 0.33])
+@pytest.mark.parametrize(
+    "profile", [Circular(1.0), Elliptic(1.0, 0.5), Filleted(2.0, 1.0), Straight(1.0)], ids=lambda each: type(each).__name__
+)
+def test_wide_thin_hinges_bend_in_plane_strain(profile, poisson):
+    """Their limit is closed: 1 - nu^2 of the compliance of beam theory. It is a finding, of a batch for its worst design."""
+    width = np.array([0.01, 1e3])
+    found = validity(Notch("m", 1e-5 if profile != Straight(1.0) else 1e-2, width, profile), "hinge", replace(UNIT, poisson=poisson))
+    narrow, wide = 1.0 / (1.0 + found.errors["rz"])
+    assert wide == pytest.approx(1.0 - poisson**2, abs=2e-3)
+    assert wide < narrow <= 1.001
+    (finding,) = found.findings
+    assert finding.where == "hinge"
+    assert f"1 - nu^2 = {1.0 - poisson**2:.3g}" in finding.what
+    assert f"{100.0 / (1.0 - poisson**2) - 100.0:.2g} % too soft" in finding.what
+
+
 OUTSIDE = (
     (Notch("m", thickness=1.2, width=10.0, profile=Circular(1.0)), "thickness over radius = 1.2 is above 0.8"),
     (Notch("m", thickness=1.0, width=0.5, profile=Circular(5.0)), "width over thickness = 0.5 is below 1"),

@@ -8,6 +8,8 @@ import pytest
 from flexstage.beams.elasticity import AXES
 from flexstage.beams.validity import slot_of, validity
 from flexstage.parts.material import Material
+from flexstage.parts.notch import Notch
+from flexstage.parts.profile import Circular, Profile, Straight
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
 from tools.validation.beam_errors import COUNTS, sampled
@@ -34,3 +36,16 @@ def test_errors_stated_are_right(kind: str, count: int) -> None:
             left = 0.5 * float(np.nan_to_num(found.changes[index], posinf=0.01))
             assert float(error) == pytest.approx(true, abs=0.01 * WITHIN + left), (part, poisson, axis)
     assert told >= 2 * count
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(
+    ("profile", "thickness", "width"), [(Circular(3.0), 0.1, 14.0), (Circular(1.5), 0.3, 20.0), (Straight(2.0), 0.2, 12.0)]
+)
+def test_the_error_of_very_wide_hinges_is_right(profile: Profile, thickness: float, width: float) -> None:
+    """Bending about z, wider than what the law was fitted to: 25 times the root of t R and more, 6 times the length."""
+    material = Material(young=1.0, poisson=0.33, density=1.0)
+    part = Notch("m", thickness, width, profile)
+    found = hinge_compliance(part, material, Accuracy(error=0.01, orders=(2, 3), meshes=1))
+    true = slot_of(part, 0.33).beam[5] / found.compliance[5, 5] - 1.0
+    assert float(validity(part, material=material).errors["rz"]) == pytest.approx(true, abs=0.01 * WITHIN)
