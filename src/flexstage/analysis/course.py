@@ -21,12 +21,13 @@ from flexstage.spatial.frame import COMPONENTS, FORCES
 if TYPE_CHECKING:
     from flexstage.analysis import stance
     from flexstage.analysis import stroke as strokes
-    from flexstage.models.nonlinear import equilibrium
+    from flexstage.models.nonlinear import critical, equilibrium
     from flexstage.models.nonlinear import path as paths
     from flexstage.models.nonlinear import stage as nonlinear
 else:
     stance = Late("flexstage.analysis.stance")
     strokes = Late("flexstage.analysis.stroke")
+    critical = Late("flexstage.models.nonlinear.critical")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
     paths = Late("flexstage.models.nonlinear.path")
     nonlinear = Late("flexstage.models.nonlinear.stage")
@@ -54,7 +55,9 @@ class Course:
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
         """Equilibria along it, or at other values of its drive."""
         wanted, hold = self._wanted(model, rest, values)
-        return paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        found = paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        self._require_continuation(found.state, rest, hold, wanted)
+        return found
 
     def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
         """Values of the drive, counted from where it is drawn, and what stays locked where."""
@@ -62,6 +65,16 @@ class Course:
         driven = self.drive in {channel.name for channel in model.inputs}
         start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
         return start + wanted, {name: float(stance.coordinate(rest, name)) for name in self.locked}
+
+    def _require_continuation(self, found: equilibrium.State, rest: equilibrium.State, hold: dict[str, float], values: Array) -> None:
+        """Refuse states along a load or stroke beyond a snap: of both ends, as far as they are found. A held coordinate has none."""
+        if self.drive not in {channel.name for channel in rest.model.inputs}:
+            return
+        start = equilibrium.equilibrium(rest.model, self.loads, hold=hold, weight=self.weight, start=rest) if hold else rest
+        known = np.flatnonzero(found.converged)
+        ends = {int(known[most(values[known])]) for most in (np.argmin, np.argmax)} if known.size else set[int]()
+        for place in ends:
+            critical.require_continuation(start, found.case(place))
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
         """The points of its stroke, of which single columns may be asked."""
@@ -74,6 +87,8 @@ class Course:
         asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
         wanted, hold = [each for each, _ in asked], [each for _, each in asked]
         states = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        for state, rest, locked, each in zip(states, rests, hold, wanted, strict=True):
+            self._require_continuation(state, rest, locked, each)
         return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
 
     def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
@@ -85,6 +100,7 @@ class Course:
 def _resting(found: equilibrium.State) -> equilibrium.State:
     if not bool(found.converged):
         raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
+    critical.require_continuation(equilibrium.equilibrium(found.model, weight=0.0, stated=0.0), found)
     return found
 
 

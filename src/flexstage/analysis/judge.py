@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.measures import Measure, corner, stroke
+from flexstage.analysis.measures import Measure, corner, stroke, value_or_bound
 from flexstage.analysis.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.workspace.stops import single_strokes
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, LowerBoundError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -72,17 +72,21 @@ def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
     14.0
     """
     try:
-        return asked.kind.value(bench, asked)
+        return value_or_bound(asked.kind.value, bench, asked)
     except DesignError as error:
         return str(error)
 
 
 def _verdict(bench: Bench, line: Requirement) -> Verdict:
     felt = line.kind.softening > 0.0 or line.kind.felt
-    value = value_or_reason(bench.felt if felt else bench, line)
-    if isinstance(value, str):
-        return Verdict(line, None, value)
-    drawn = Verdict(line, value)
+    try:
+        drawn = Verdict(line, line.kind.value(bench.felt if felt else bench, line))
+    except LowerBoundError as error:
+        least = Verdict(line, np.asarray(error.bound))
+        decided = bool(least.passed) is (line.sense is Sense.AT_LEAST)
+        return least if decided else Verdict(line, None, str(error))
+    except DesignError as error:
+        return Verdict(line, None, str(error))
     weighed = felt and bench.felt is not bench
     doubt = ("" if weighed else _loaded_doubt(bench, drawn)) or _large_doubt(bench, drawn)
     return Verdict(line, None, doubt) if doubt else drawn

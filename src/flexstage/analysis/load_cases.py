@@ -14,14 +14,14 @@ from flexstage.analysis.stance import coordinate
 from flexstage.analysis.standing import drawn, load_factors
 from flexstage.analysis.workspace.reach import input_limits
 from flexstage.base.arguments import CheckedFields, check_arguments
-from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import first_design
 from flexstage.base.quantity import DISPLACEMENT, RATIO
 from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import Critical, NothingGivesWayError, critical, unstable_motions
+from flexstage.models.nonlinear.critical import Critical, NothingGivesWayError, critical, require_continuation, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT
@@ -30,7 +30,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES
 REST = "at rest"
 ENOUGH = 1e-4
 """How closely a factor is printed."""
-_MOST = 1e6
+_MOST = 1e12
 """Up to how many times a load is followed."""
 _ENDS = 8
 """Actuators whose ends are looked at one by one; of more only the worst corner."""
@@ -68,7 +68,8 @@ class LoadCase(CheckedFields):
 class CaseFactor:
     """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and what `gives_way`.
 
-    `factor` is infinite where nothing gives way as far as the load was followed, NaN where it is not known; `why` says so.
+    `factor` is infinite where nothing gives way up to the largest factor, NaN where it is not known; `why` gives the reason. `bound` is the
+    factor up to which the stage is stable, NaN where that is not known.
     """
 
     load: str
@@ -77,6 +78,7 @@ class CaseFactor:
     kind: str
     gives_way: str
     why: str
+    bound: Annotated[float, RATIO] = np.nan
     found: Annotated[Critical | None, INNER] = None
 
 
@@ -95,6 +97,12 @@ class CaseFactors(InNotebook):
         return min(known, key=lambda case: case.factor, default=None)
 
     @property
+    def least_bound(self) -> CaseFactor | None:
+        """The case whose path ends first without a vanishing stiffness; None where all are followed."""
+        unknown = [case for case in self.cases if np.isnan(case.factor) and case.bound > 0.0]
+        return min(unknown, key=lambda case: case.bound, default=None)
+
+    @property
     def cautions(self) -> tuple[Finding, ...]:
         """Cases that bear less than they have, or less than is asked."""
         return tuple(self._doubts())
@@ -109,7 +117,7 @@ class CaseFactors(InNotebook):
             what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.gives_way)}{others}"
             yield Finding(least.place, what, "Ask for less stroke, lighten the load, or make what it presses on stiffer")
         for case in self.cases:
-            if np.isnan(case.factor):
+            if np.isnan(case.factor) and not case.bound >= bound:
                 yield Finding(
                     case.place, f"how many times {case.load} it bears is not known: {case.why}", "Ask flexstage stroke how far it goes"
                 )
@@ -212,10 +220,12 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
     try:
         found = case_critical(model, case, most=most)
     except NothingGivesWayError as error:
-        return CaseFactor(case.load, case.place, np.inf, "", "", error.findings[0].what)
+        return CaseFactor(case.load, case.place, np.inf, "", "", error.findings[0].what, most)
     except DesignError as error:
-        return CaseFactor(case.load, case.place, np.nan, "", "", "; ".join(each.what for each in error.findings))
-    return CaseFactor(case.load, case.place, found.factor, found.kind.value, found.link or " and ".join(_moving(found)), "", found)
+        bound = error.bound if isinstance(error, LowerBoundError) else np.nan
+        return CaseFactor(case.load, case.place, np.nan, "", "", "; ".join(each.what for each in error.findings), bound)
+    moving = found.link or " and ".join(_moving(found))
+    return CaseFactor(case.load, case.place, found.factor, found.kind.value, moving, "", found.factor, found)
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
@@ -226,8 +236,8 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> stage = nonlinear(parallelogram())
-    >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3})).factor, 3)
-    11.072
+    >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3}, gravity=0.0)).factor, 3)
+    11.063
     """
     there, hold = _brought(model, case)
     inputs = {channel.name for channel in model.inputs}
@@ -263,6 +273,10 @@ def _brought(model: Nonlinear, case: LoadCase) -> tuple[State, dict[str, float]]
     there = equilibrium(model, {**case.whole, **given}, hold=hold, weight=case.gravity, start=rest)
     if not bool(there.converged):
         raise refuse("stage", "no equilibrium was found there", "Ask for less")
+    if case.at and not int(unstable_motions(there, locked=case.locked)):
+        begun = {name: float(coordinate(rest, name)) for name in held}
+        require_continuation(equilibrium(model, weight=0.0, stated=0.0), rest)
+        require_continuation(equilibrium(model, case.whole, hold=begun, weight=case.gravity, start=rest), there)
     return there, hold
 
 

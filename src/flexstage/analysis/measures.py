@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial, wraps
@@ -18,7 +18,7 @@ from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_
 from flexstage.analysis.workspace.reach import bounds_along
 from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.stroke import utilisation
-from flexstage.base.finding import refuse, require
+from flexstage.base.finding import LowerBoundError, refuse, require
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.quantity import (
@@ -452,10 +452,18 @@ def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None
             benches = [[bench.one(place, share) for share in shares] for place in places]
             if together is not None:
                 together([each for group in benches for each in group], asked)
-            found += [_value_and_slope([work(each, asked) for each in group], step) for group in benches]
+            found += [_value_and_slope([value_or_bound(work, each, asked) for each in group], step) for group in benches]
         return np.array(found)
 
     return works
+
+
+def value_or_bound(work: Callable[[Bench, Measure], Array], bench: Bench, asked: Measure) -> Array:
+    """The value of a measure, or its lower bound if no more is known."""
+    try:
+        return work(bench, asked)
+    except LowerBoundError as error:
+        return np.asarray(error.bound)
 
 
 def _shares(step: float) -> tuple[float, ...]:
@@ -517,7 +525,7 @@ path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural freq
 @_each_design
 def buckling_factor(bench: Bench, _: Measure) -> float:
     """How many times its own weight and payloads the stage bears, at large displacements."""
-    return _borne(bench, cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0}))
+    return _least_factor(bench, [cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0})])
 
 
 @partial(MeasureKind, "<path>.buckling", RATIO, along=True)
@@ -525,14 +533,24 @@ def buckling_factor(bench: Bench, _: Measure) -> float:
 def path_buckling(bench: Bench, asked: Measure) -> float:
     """How many times its weight, and what loads it, the stage bears at the ends of a path, at large displacements; the least."""
     places = None if asked.place is None else {"there": asked.place}
-    return min((_borne(bench, each) for each in cases.path_cases(bench.mechanism, asked.name, places)), default=np.inf)
+    return _least_factor(bench, cases.path_cases(bench.mechanism, asked.name, places))
 
 
-def _borne(bench: Bench, asked: cases.LoadCase) -> float:
-    try:
-        return cases.case_critical(bench.nonlinear, asked, tolerance=1e-9).factor  # slopes are taken of it
-    except critical.NothingGivesWayError:
-        return np.inf
+def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
+    """The least factor of load cases, infinite where nothing buckles. Raises `LowerBoundError` where the least is a lower bound."""
+    least, bounded = np.inf, None
+    for case in load_cases:
+        try:
+            factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
+        except critical.NothingGivesWayError:
+            continue
+        except LowerBoundError as found:
+            factor, error = found.bound, found
+        if factor < least:
+            least, bounded = factor, error
+    if bounded is not None:
+        raise bounded
+    return float(least)
 
 
 def over(kind: MeasureKind) -> MeasureKind:

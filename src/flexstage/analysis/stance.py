@@ -19,7 +19,7 @@ from flexstage.base.record import INNER
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.linear.model import LinearModel
-from flexstage.models.nonlinear.critical import unstable_motions
+from flexstage.models.nonlinear.critical import require_continuation, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
@@ -94,6 +94,9 @@ def stance(
     if not bool(state.converged):
         raise refuse("--at", *_how_far(asked, rest))
     _require_stable(asked, state)
+    require_continuation(equilibrium(asked.model, weight=0.0, stated=0.0), rest)
+    if asked.at:
+        require_continuation(asked.reach(rest, 0.0), state)
     places = (PLATFORM, *(name for name in wrench_places(asked.model.assembly) if name not in asked.model.bodies))
     units = (TWIST_UNITS,) * len(places)
     sag = np.stack([rest.twist(name) for name in places])

@@ -307,7 +307,7 @@ def _number(demand: Demand, value: Any) -> Any:
     """A number or an array of them, real or complex."""
     if type(value) is float and value - value == 0.0:
         return value
-    if isinstance(value, np.ndarray) and value.ndim:
+    if isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim):
         return _array(demand, value)
     if isinstance(value, complex | np.complexfloating):
         return complex(value)

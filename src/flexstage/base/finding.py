@@ -33,6 +33,17 @@ class DesignError(ValueError):
         return type(self), (self.findings,)
 
 
+class LowerBoundError(DesignError):
+    """A quantity that is at least `bound`, and not known beyond."""
+
+    def __init__(self, findings: Iterable[Finding], bound: float) -> None:
+        super().__init__(findings)
+        self.bound = bound
+
+    def __reduce__(self) -> tuple[type[DesignError], tuple[tuple[Finding, ...], float]]:
+        return type(self), (self.findings, self.bound)
+
+
 def require(findings: Iterable[Finding]) -> None:
     """Raise a `DesignError` with all findings, or return if there are none.
 

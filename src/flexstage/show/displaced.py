@@ -32,7 +32,6 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 _MEANING = {
     Kind.LIMIT.value: "the load cannot pass it",
     Kind.BIFURCATION.value: "it leaves into another motion",
-    Kind.BEND.value: "it bends off into another motion, beside where a symmetric stage would branch",
 }
 
 
@@ -108,7 +107,9 @@ def _buckling_facts(case: CaseFactor) -> Facts:
 
 
 def _buckling_text(found: CaseFactors) -> str:
-    least = found.least
+    least, open_ = found.least, found.least_bound
+    if open_ is not None and not (least is not None and least.factor <= open_.bound):
+        return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load, not followed beyond"
     if least is None:
         return f"{len(found.cases)} load cases and stroke ends: nothing gives way"
     where = "" if least.place == REST else f", {least.place}"
@@ -132,7 +133,9 @@ def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Tab
 
 
 def _factor_text(case: CaseFactor) -> str:
-    return format_value(case.factor, "1") if np.isfinite(case.factor) else "-"
+    if np.isfinite(case.factor):
+        return format_value(case.factor, "1")
+    return f"> {format_value(case.bound, '1')}" if np.isfinite(case.bound) else "-"
 
 
 def shape_of(case: CaseFactor) -> Matrix:

@@ -232,7 +232,7 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     if not found.cases:
         what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
         yield Finding("stage", what, 'Name a load: --load "platform.fz=-20 N"')
-    elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor):
+    elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
         yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another place")
 
 

@@ -2,30 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, LowerBoundError, refuse, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.arc import Course, first_point, follow_to_turn
-from flexstage.models.nonlinear.condense import system
-from flexstage.models.nonlinear.element import Tangent
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
-from flexstage.models.nonlinear.graph import System, assemble
+from flexstage.models.nonlinear.arc import Course, Point, first_point, load_rate, march, step_along
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, state
+from flexstage.models.nonlinear.graph import assemble
+from flexstage.models.nonlinear.inertia import count_descents, kept_rows, lowest_stiffness, weakest_flexure
+from flexstage.models.nonlinear.newton import USUAL, search
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads
-from flexstage.models.nonlinear.summed import nearest_descent, negative_pivots
+from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads, Pose, Status
+from flexstage.models.nonlinear.strain import strains
 
-_FIRST, _MOST, _GROWTH = 1e-3, 1e6, 2.0
-_NEAR = Effort(halvings=0, iterations=12, arcs=0)
-"""Each state starts from one beside it."""
-_ROUGH = 1e-6
-"""How far a count is bisected where no stiffness goes through zero."""
+_MOST, _FIRST = 1e12, 1e-4
+"""The largest factor, and the first step in the motion of bodies, over the stage's size and in radians."""
+_NEAR = Effort(halvings=0, iterations=15, arcs=0)
+"""Each state starts from one next to it."""
+_POINTS, _JUMPS = 400, 8
+"""Equilibria along a path, and steps over to another one, before it is given up."""
+_STRAINED = 0.05
+"""Strain of a flexure from which on a path is not followed: no linear elastic law is physics there."""
+_VANISHED = 1e-5
+"""Stiffness over that at the start which counts as zero; what is left where a step changes to another path is more."""
+_SAME = 1e-6
+"""Distance of two poses, over the stage's size and in radians, that are the same."""
+_FLAT, _SOON, _WELL = 0.01, 1.01, 1.25
+"""Slope over the steepest so far below which a path bends off; times the factor there, how far it is followed at least and at most."""
+_BESIDE = (1.0, 1.0 - 1e-8, 1.0 - 1e-7, 1.0 - 1e-6, 1.0 - 1e-5)
+"""Shares of a step at which an equilibrium is looked for where it is singular."""
+_NEXT = 1e-9
+"""Of the last step: the last stable state before a critical one."""
 _SEEN = 1e-6
 """Work of the load on the motion, over their sizes, below which it does none."""
 
@@ -35,21 +49,18 @@ class NothingGivesWayError(DesignError):
 
 
 class Kind(Enum):
-    """What happens at a critical load: a `LIMIT` that it cannot pass, a `BIFURCATION` into another way of giving, or a sharp `BEND`.
-
-    A stage whose symmetry is not quite right bends off beside a bifurcation, to one side, and may bear more load so.
-    """
+    """The type of a critical point: a `LIMIT` point, which the load cannot pass, or a `BIFURCATION` into another path."""
 
     LIMIT = "limit"
     BIFURCATION = "bifurcation"
-    BEND = "bend"
 
 
 @dataclass(frozen=True, eq=False)
 class Critical:
     """The `factor` on a load at which the stage gives way, the `shape` (n, 6) of its `bodies` doing so, and of which `kind` it is.
 
-    `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one.
+    `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one. `bend` is the
+    factor at which the path has bent off before, an imperfect bifurcation; None where it has not.
     """
 
     factor: float
@@ -58,6 +69,17 @@ class Critical:
     kind: Kind
     link: str
     state: State
+    bend: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A path from its start: its last stable point, its first critical one, if there is one, the factors of its bend and of its end."""
+
+    last: Point
+    event: Point | None
+    bend: float | None
+    factor: float
 
 
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
@@ -66,11 +88,8 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
     The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers. Of what the state
     holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
     """
-    whole = _system(state)
-    kept = _kept(state, whole, state.held if locked is None else locked)
-    count = _descents(whole, kept, state.model.freedoms) - (len(kept) - state.model.freedoms)
-    for bent in whole.bent:
-        count = count + np.sum(_negative(_indefinite(system(bent.tangent))) - 6, axis=0)
+    whole = assemble(state.model, state.pose, state.loads, state.hold)
+    count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
     return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
 
 
@@ -94,193 +113,198 @@ def critical(  # noqa: PLR0913 (what stays, one by one)
     forces` those of the description with its preloads, likewise. Coordinates in `hold` stay at their values; those that are not `locked`
     too (absent: all are) count as free under the force that holds them there.
 
-    The factor doubles from 0.001, or from 1 where the state under the whole load is `known`, each state from the one before; the change of
-    `unstable_motions` is then found, to `tolerance`, as a zero of the stage's lowest stiffness, or bisected, to 1e-6 at best. Where
-    steps of load find no state beside the last one the path is followed by arc length: it turns, a limit, or bends sharply. Raises
-    `DesignError` for a load that is nothing and for a stage that is unstable where that begins, `NothingGivesWayError` where nothing gives
-    way up to `most`.
+    The path of equilibria is followed from no load, or from the whole load where the state under it is `known`, by arc length with steps
+    that resolve its turning and the change of its lowest stiffness. The first limit point or bifurcation is where that stiffness is zero,
+    to `tolerance`. Raises `DesignError` for a load that is zero and for a stage that is unstable where that begins,
+    `NothingGivesWayError` where no stiffness vanishes up to `most` times the load, and `LowerBoundError` where the path is followed to
+    less than that: to a strain of 5 %, or to where no further equilibrium is found.
     """
     if not any(load.values()):
         raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
-    held = dict(hold or {})
-    require(Finding(name, "no value holds it", suggest_nearest(name, held)) for name in locked or () if name not in held)
-    search = _Search(model, dict(load), dict(rest or {}), held, tuple(held if locked is None else locked), (weight, stated))
-    low, high = (0.0, _FIRST) if known is None else (1.0, _GROWTH)
-    last = search.at(low, known)
-    if search.motions(last) != 0:
+    require(Finding(name, "no value holds it", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
+    low = 0.0 if known is None else 1.0
+    start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
+    course = course_of(start, load, low, _NEAR, locked=locked)
+    begin = first_point(course, start.pose, low)
+    if not bool(start.converged) or begin.motions:
         under = "with" if low else "without"
         raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Look at its weight and its stated forces")
-    while low < most:
-        high = min(high, most)
-        found = search.at(high, last)
-        if search.motions(found) != 0:
-            return _close(search, low, high, last, tolerance)
-        last, low, high = found, high, _GROWTH * high
-    what = f"nothing gives way up to {most:g} times the load"
-    raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
+    followed = follow_to_event(course, begin, most, tolerance)
+    if followed.event is None or followed.factor > most:
+        what = f"nothing gives way up to {most:g} times the load"
+        raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
+    return _critical(course, followed, start.held)
 
 
-@dataclass(frozen=True, eq=False)
-class _Search:
-    """A load to be scaled, and what stays: loads, coordinates, of which some are locked, and shares of weight and stated forces."""
-
-    model: Nonlinear
-    load: Mapping[str, float]
-    rest: Mapping[str, float]
-    hold: Mapping[str, float]
-    locked: tuple[str, ...]
-    shares: tuple[float, float]
-
-    def at(self, factor: float, start: State | None) -> State:
-        scaled = {name: factor * value for name, value in self.load.items()}
-        weight, stated = (share + scaled.pop(name, 0.0) for share, name in zip(self.shares, (WEIGHT, STATED), strict=True))
-        together = {name: scaled.get(name, 0.0) + self.rest.get(name, 0.0) for name in {**self.rest, **scaled}}
-        return equilibrium(self.model, together, hold=self.hold, weight=weight, stated=stated, start=start, effort=_NEAR)
-
-    def motions(self, state: State) -> int:
-        return int(unstable_motions(state, locked=self.locked))
+def _at(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    factor: float,
+    *,
+    rest: Mapping[str, float],
+    hold: Mapping[str, float],
+    shares: tuple[float, float],
+    start: State | None,
+) -> State:
+    """The equilibrium under a factor on a load, all else staying."""
+    scaled = {name: factor * value for name, value in load.items()}
+    weight, stated = (share + scaled.pop(name, 0.0) for share, name in zip(shares, (WEIGHT, STATED), strict=True))
+    together = {name: scaled.get(name, 0.0) + rest.get(name, 0.0) for name in {**rest, **scaled}}
+    return equilibrium(model, together, hold=hold, weight=weight, stated=stated, start=start, effort=Effort(arcs=0))
 
 
-def _close(search: _Search, low: float, high: float, last: State, tolerance: float) -> Critical:
-    """Bisect the count; once both sides are near, the stage's lowest stiffness is taken to zero instead."""
-    close = 1e-2
-    while high - low > max(_ROUGH, tolerance) * high:
-        middle = 0.5 * (low + high)
-        found = search.at(middle, last)
-        if search.motions(found) == 0:
-            last, low = found, middle
-        elif not bool(found.converged) or high - low > close * high:
-            high = middle
+def follow_to_event(
+    course: Course, begin: Point, most: float, tolerance: float, *, length: float = _FIRST, bounded: bool = True
+) -> Followed:
+    """Follow a path to the first point where its stiffness vanishes, or to the factor `most`; its first step has a `length`.
+
+    Raises `LowerBoundError` where the path is not followed so far: where no equilibrium is found, and if it is `bounded`, well beyond an
+    imperfect bifurcation and at strains beyond the law.
+    """
+    last, bent = begin, None
+    for _ in range(_JUMPS):
+        for point in itertools.islice(march(course, last, length), _POINTS):
+            length = 0.1 * float(np.linalg.norm(point.step))
+            if point.motions:
+                event = _zero(course, last, point, _stiffness, tolerance)
+                if event is None or abs(event.stiffness) > _VANISHED:
+                    break  # the step went over to another path
+                if bounded:
+                    _require_lawful(course, event, last, bent)
+                before = step_along(course, last, (1.0 - _NEXT) * float(np.linalg.norm(event.step)))
+                rest = event.stiffness * float(np.linalg.norm(event.step)) / (last.stiffness - event.stiffness)
+                factor = event.factor + event.slope * rest
+                return Followed(before if event.motions and before is not None else event, event, _bend(bent, event), factor)
+            if bounded:
+                _require_lawful(course, point, last, bent)
+            if bent is None and _excess(point) < 0.0:
+                bent = _zero(course, last, point, _excess, 1e-4) or point
+            last = point
+            if last.factor >= most:
+                return Followed(last, None, _bend(bent, last), last.factor)
+            if bounded and bent is not None and last.factor > _WELL * bent.factor:
+                raise _not_followed(last, "", bent)
         else:
-            sharp = _zero(search, low, middle, last, tolerance)
-            if sharp is None:
-                high, close = middle, 0.03 * close
-            else:
-                return _told(search, sharp, search.at(sharp, last), "")
-    own, factor = _inside(last), 0.5 * (low + high)
-    return _told(search, factor, last, own) if own else _where_lost(search, factor, last, low)
+            break
+    raise _not_followed(last, "no equilibrium is found next to the last one", bent)
 
 
-def _where_lost(search: _Search, factor: float, last: State, low: float) -> Critical:
-    """A load beyond which steps find nothing near: its limit if the load turns there, else a bend of the path."""
-    top, turns = follow_to_turn(course_of(last, search.load, low, _NEAR), first_point(last.pose, low))
-    shape = top.step[: last.model.freedoms].reshape(-1, 6)
-    return Critical(factor, last.model.bodies, shape, Kind.LIMIT if turns else Kind.BEND, "", last)
+def require_continuation(start: State, end: State) -> None:
+    """Refuse a stable state that is not the continuation of another one as loads and held coordinates go from those to its own.
+
+    Raises `DesignError` at the load of the first limit point or bifurcation on the way, where the path ends, and where it leads to another
+    equilibrium. A state that is not stable, or whose path begins at one that is not, is let through.
+    """
+    course, begin = _course_between(start, end)
+    if begin.motions or not np.isfinite(begin.slope) or int(unstable_motions(end)):
+        return
+    advice = "Load it less, or ask flexstage buckle what gives way"
+    try:
+        followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope, bounded=False)
+    except LowerBoundError as error:
+        what = f"equilibrium was followed to {error.bound:.3g} of the way from the unloaded stage: a state beyond is not its continuation"
+        raise refuse("stage", what, advice) from None
+    if followed.event is not None and followed.factor < 1.0:
+        what = f"at {followed.factor:.4g} of its loads it snaps or buckles: the equilibrium beyond is not the continuation of the unloaded"
+        raise refuse("stage", what, advice)
+    found = search(course.model, followed.last.found.pose, end.loads, end.hold, USUAL)
+    if found.status[0] != Status.CONVERGED or _apart(course.model, found.pose, end.pose) > _SAME:
+        raise refuse("stage", "the equilibrium found under its loads is not the continuation of the unloaded stage", advice)
 
 
-def course_of(start: State, load: Mapping[str, float], factor: float, effort: Effort) -> Course:
+def _course_between(start: State, end: State) -> tuple[Course, Point]:
+    """The course from the loads and held coordinates of a state to those of another one, and its first point."""
+    gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
+    kept = kept_rows(start.model, start.held, start.held)
+    course = Course(start.model, start.loads, start.hold, gain, end.hold.value - start.hold.value, _NEAR, kept)
+    return course, first_point(course, start.pose, 0.0)
+
+
+def _apart(model: Nonlinear, one: Pose, other: Pose) -> float:
+    """How far bodies are from where another pose has them, over the stage's size and in radians."""
+    moved = np.max(np.abs(one.position - other.position)) / model.size
+    return float(max(moved, np.max(np.abs(one.turn - other.turn))))
+
+
+def _stiffness(point: Point) -> float:
+    return point.stiffness
+
+
+def _excess(point: Point) -> float:
+    """How far the slope is above that of a path that has bent off."""
+    return point.slope / point.steepest - _FLAT
+
+
+def _require_lawful(course: Course, point: Point, last: Point, bent: Point | None) -> None:
+    """Refuse a point where a flexure is strained beyond any linear law."""
+
+    def left(each: Point) -> float:
+        return _STRAINED - float(np.max(strains(state_at(course, each, ())).largest, initial=0.0))
+
+    if left(point) < 0.0:
+        raise _not_followed(_zero(course, last, point, left, 1e-4) or last, f"a flexure is strained by {_STRAINED:.0%} there", bent)
+
+
+def _not_followed(last: Point, why: str, bent: Point | None) -> LowerBoundError:
+    """A path that ends without a critical point: stable up to its end, or to where it bends off."""
+    bend = _bend(bent, last)
+    bound = last.factor if bend is None else bend
+    reason = why if bend is None else f"it bends off there, an imperfect bifurcation, and moves {1.0 / _FLAT:g} times as far per load"
+    what = f"it is stable up to {bound:.6g} times the load, and not followed beyond: {reason}"
+    return LowerBoundError([Finding("load", what, "Follow the load with fs.trace, or name another one")], bound)
+
+
+def _bend(bent: Point | None, last: Point) -> float | None:
+    """The factor at which a path has bent off, if it has not ended soon after."""
+    return None if bent is None or last.factor < _SOON * bent.factor else bent.factor
+
+
+def _zero(course: Course, last: Point, after: Point, measure: Callable[[Point], float], tolerance: float) -> Point | None:
+    """The point between two at which a measure of points changes its sign; `None` where one between them is not found."""
+    length = float(np.linalg.norm(after.step))
+
+    def at(part: float) -> Point:
+        if part in (0.0, length):
+            return after if part else last
+        for share in _BESIDE:  # where stiffness vanishes Newton's method has none
+            point = step_along(course, last, share * part)
+            if point is not None:
+                return point
+        raise ValueError
+
+    try:
+        return at(float(scipy.optimize.brentq(lambda part: measure(at(part)), 0.0, length, xtol=min(tolerance, 1e-6) * length)))
+    except ValueError:
+        return None
+
+
+def course_of(start: State, load: Mapping[str, float], factor: float, effort: Effort, *, locked: Sequence[str] | None = None) -> Course:
     """The course of a load that changes by a factor, from a state that has it so many times."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
     gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))
     begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
-    return Course(model, begun, start.hold, gain, 0.0 * start.hold.value, effort)
+    kept = kept_rows(model, start.held, start.held if locked is None else locked)
+    return Course(model, begun, start.hold, gain, 0.0 * start.hold.value, effort, kept)
 
 
-def _zero(search: _Search, low: float, high: float, start: State, tolerance: float) -> float | None:
-    """Where the stage's lowest stiffness is zero; `None` where it is not what changes sign."""
-
-    def lowest(factor: float) -> float:
-        found = search.at(factor, start)
-        return float(_lowest(found, search.locked)[0]) if bool(found.converged) else np.nan
-
-    ends = [lowest(factor) for factor in (low, high)]
-    if not np.all(np.isfinite(ends)) or ends[0] * ends[1] >= 0.0:
-        return None
-    try:
-        return float(scipy.optimize.brentq(lowest, low, high, xtol=tolerance * high, rtol=1e-14))
-    except ValueError:  # some state between them was not found
-        return None
+def state_at(course: Course, point: Point, held: tuple[str, ...]) -> State:
+    """The state at a point of a course."""
+    return state(course.model, *course.at(point.factor), point.found, ((), held))
 
 
-def _lowest(state: State, locked: Sequence[str]) -> tuple[float, Array]:
-    """The lowest scaled stiffness among motions that keep what is `locked`, and its motion (n,)."""
-    whole, freedoms = _system(state), state.model.freedoms
-    kept, scale = _kept(state, whole, locked), _scale(state.model)
-    if not isinstance(whole.matrix, np.ndarray):
-        value, motion = nearest_descent(whole.matrix[0][kept][:, kept], scale)
-        return value, motion / scale
-    matrix = whole.stiffness[0][np.ix_(kept, kept)]
-    stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
-    free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
-    values, vectors = np.linalg.eigh(free.T @ stiff @ free)
-    return values[0], free @ vectors[:, 0] / scale
-
-
-def _inside(state: State) -> str:
-    """The flexure that gives way by itself, or none."""
-    weakest = [
-        (float(least), name)
-        for group, each in zip(state.model.flexures, _system(state).bent, strict=True)
-        for name, least in zip(group.names, _softest(each.tangent), strict=True)
-    ]
-    size, name = min(weakest, default=(1.0, ""))
-    return name if size < 1e-7 else ""
-
-
-def _softest(found: Tangent) -> Array:
-    """How near the own system of each flexure (l,) is to being singular, in the first case."""
-    return np.min(np.abs(np.linalg.eigvalsh(_indefinite(system(found))[:, 0])), axis=-1)
-
-
-def _told(search: _Search, factor: float, state: State, own: str) -> Critical:
-    model = search.model
-    _, motion = _lowest(state, search.locked)
-    gravity = search.load.get(WEIGHT, 0.0) * model.gravity[None]
-    stated = search.load.get(STATED, 0.0) * np.ones_like(state.loads.constant)
-    pushed = model.dead(replace(state.loads, inputs=_inputs(search), gravity=gravity, constant=stated))
-    work = _work(model, state, pushed, motion)
-    return Critical(factor, model.bodies, motion.reshape(-1, 6), Kind.LIMIT if work > _SEEN else Kind.BIFURCATION, own, state)
-
-
-def _inputs(search: _Search) -> Array:
-    names = [channel.name for channel in search.model.inputs]
-    return np.array([[search.load.get(name, 0.0) for name in names]])
-
-
-def _work(model: Nonlinear, state: State, dead: Array, motion: Array) -> float:
-    """The load's work on a motion over both their sizes, lengths over the model's."""
-    arms = (state.pose.turn[0, model.places.body] @ model.places.arm[..., None])[..., 0]
-    force = np.zeros((len(model.bodies) + 1, 6))
-    np.add.at(force, model.places.body, np.concatenate([dead[0, :, :3], dead[0, :, 3:] + np.cross(arms, dead[0, :, :3])], axis=-1))
-    scale = _scale(model)
-    scaled, moved = np.ravel(force[:-1]) / scale, motion * scale
-    size = np.linalg.norm(scaled) * np.linalg.norm(moved)
-    return float(abs(scaled @ moved) / size) if size > 0.0 else 0.0
-
-
-def _scale(model: Nonlinear) -> Array:
-    return np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
-
-
-def _kept(state: State, whole: System, locked: Sequence[str]) -> list[int]:
-    """The rows of the system without those that hold what is not `locked`."""
-    first = whole.residual.shape[-1] - len(state.held)
-    return [*range(first), *(first + place for place, name in enumerate(state.held) if name in locked)]
-
-
-def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
-    """Negative eigenvalues (b,) of the rows and columns kept; of sparse matrices by their pivots."""
-    if isinstance(whole.matrix, np.ndarray):
-        return _negative(whole.matrix[:, kept][:, :, kept])
-    known = [bool(np.isfinite(each.data).all()) for each in whole.matrix]
-    return np.array([negative_pivots(each[kept][:, kept], freedoms) if good else 0 for each, good in zip(whole.matrix, known, strict=True)])
-
-
-def _system(state: State) -> System:
-    return assemble(state.model, state.pose, state.loads, state.hold)
-
-
-def _indefinite(matrix: Array) -> Array:
-    """The symmetric form of a flexure's system: the rows of its end with reversed signs."""
-    size = matrix.shape[-1] - 6
-    result = np.array(matrix)
-    result[..., size:, :] *= -1.0
-    return 0.5 * (result + np.swapaxes(result, -1, -2))
-
-
-def _negative(matrix: Array) -> Array:
-    """How many eigenvalues of symmetric matrices (..., n, n), scaled by their rows, are negative."""
-    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
-    size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
-    return np.sum(np.linalg.eigvalsh(np.nan_to_num(even / size[..., None] / size[..., None, :])) < 0.0, axis=-1)
+def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Critical:
+    """The critical point where a stiffness vanishes: a limit point where the load works on the motion of that stiffness."""
+    model, event = course.model, followed.event
+    assert event is not None  # noqa: S101
+    assert event.reference is not None  # noqa: S101
+    scale = event.reference.scale
+    value, motion = lowest_stiffness(model, event.system, course.kept, scale)
+    own, link = weakest_flexure(model, event.system)
+    inside = abs(own) < _VANISHED * event.reference.flexure
+    force = load_rate(course, event.found.pose, event.factor, event.system)[: model.freedoms]
+    work = abs(force @ motion) / (np.linalg.norm(force / scale) * np.linalg.norm(motion * scale))
+    apart = inside and abs(value) > _VANISHED * event.reference.stage
+    kind = Kind.LIMIT if work > _SEEN and not apart else Kind.BIFURCATION
+    last = state_at(course, followed.last, held)
+    return Critical(followed.factor, model.bodies, motion.reshape(-1, 6), kind, link if inside else "", last, followed.bend)

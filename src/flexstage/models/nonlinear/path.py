@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.arc import Course, Point, first_point, follow_course
+from flexstage.models.nonlinear.arc import Course, Point, critical_point, first_point, follow_course
 from flexstage.models.nonlinear.critical import Critical, Kind, course_of, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, state
 from flexstage.models.nonlinear.newton import USUAL, join
@@ -33,7 +35,8 @@ class Path:
     """Equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
 
     `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
-    `locked` coordinates stay where they are along it.
+    `locked` coordinates stay where they are along it. `turns` (k - 1,) are the extreme loads between its points, NaN where the load is
+    monotonic; None where values were given.
     """
 
     drive: str
@@ -41,6 +44,7 @@ class Path:
     state: State
     motions: Array
     locked: tuple[str, ...] = ()
+    turns: Array | None = None
 
     def some(self, points: Array) -> Path:
         """Some of its points, by their numbers."""
@@ -48,15 +52,17 @@ class Path:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limits and changes of stability, in order, each at the mean of the values beside it."""
-        found = []
-        for place in range(1, len(self.values)):
-            middle = 0.5 * (self.values[place - 1] + self.values[place])
-            if place > 1 and np.diff(self.values[place - 2 : place]) * np.diff(self.values[place - 1 : place + 1]) < 0.0:
-                found.append(Event(Kind.LIMIT, place - 1, float(self.values[place - 1])))
-            elif min(self.motions[place - 1 : place + 1]) >= 0 and self.motions[place - 1] != self.motions[place]:
-                found.append(Event(Kind.BIFURCATION, place - 1, float(middle)))
-        return tuple(found)
+        """Limit points and bifurcations, in order, a bifurcation at the mean of the values on either side."""
+        return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
+
+    def _between(self, place: int) -> Iterator[Event]:
+        """What happens between a point and the next: at a limit point one motion is gained or lost, more at a bifurcation."""
+        top, motions = np.nan if self.turns is None else float(self.turns[place]), self.motions[place : place + 2]
+        changes = 0 if min(motions) < 0 else abs(int(motions[1] - motions[0]))
+        if np.isfinite(top):
+            yield Event(Kind.LIMIT, place, top)
+        if changes > np.isfinite(top):
+            yield Event(Kind.BIFURCATION, place, float(np.mean(self.values[place : place + 2])))
 
 
 @check_arguments
@@ -188,7 +194,7 @@ def trace(
     if unknown or not any(load.values()):
         raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
     course = course_of(start, load, 0.0, effort)
-    begin = first_point(start.pose, 0.0)
+    begin = first_point(course, start.pose, 0.0)
     return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
 
 
@@ -249,11 +255,12 @@ def beyond(
         raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
     if given.link and given.kind is Kind.BIFURCATION:
         raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
-    course, begin, into = course_of(start, load, given.factor, effort), first_point(start.pose, given.factor), None
+    course, into = course_of(start, load, given.factor, effort), None
     if given.kind is Kind.BIFURCATION:
         others = np.zeros(len(course.scale) - start.model.freedoms)
         into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
-    found = [begin, *follow_course(course, begin, step, points, into=into)]
+    begin = critical_point(course, start.pose, given.factor, into)
+    found = [begin, *follow_course(course, begin, step, points)]
     if len(found) == 1:
         raise refuse("load", f"no equilibrium is found beyond what gives way {what}", "Try a smaller step")
     return _along(course, found, start.held)
@@ -266,4 +273,13 @@ def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
     along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
     whole = join([each.found for each in found])
     states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
-    return Path("factor", factors, states, unstable_motions(states), held)
+    motions = np.array([each.motions for each in found])
+    return Path("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
+
+
+def _turn(one: Point, other: Point) -> float:
+    """The extreme factor between two points, of the cubic with their values and slopes; NaN where it goes one way."""
+    if one.slope * other.slope >= 0.0:
+        return np.nan
+    cubic = CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])
+    return float(cubic(cubic.derivative().roots(extrapolate=False)[0]))

@@ -1,0 +1,126 @@
+"""Critical loads against small steps along the path: the first limit point or bifurcation, whatever the load's size, units and parts.
+
+The path of reference is followed here by arc length in equal small steps, and negative eigenvalues are counted in all of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexstage.base.finding import LowerBoundError
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.models.nonlinear.condense import system
+from flexstage.models.nonlinear.critical import critical
+from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.graph import advance, assemble
+from flexstage.models.nonlinear.hold import nothing
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import Loads
+from flexstage.parts.body import Body, Inertia
+from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part
+from flexstage.parts.rod import Rod
+
+STEEL = Material(young=200e9, poisson=0.3, density=0.0)
+DOWN = "platform.fz"
+
+
+def legs(part: Part, azimuths: np.ndarray, slopes: np.ndarray, *, radius: float = 2e-3, height: float = 0.0) -> Mechanism:
+    """A platform on legs that rise towards it: an arch of two, a dome of three or four; upright columns at a slope of 90 degrees."""
+    length = float(part.length)  # type: ignore[attr-defined]
+    body = Body(mass=0.02, inertia=Inertia(1e-6, 1e-6, 1e-6), centre=(0.0, 0.0, height), reference=(0.0, 0.0, 0.0))
+    links: dict[str, Link] = {}
+    for number, (azimuth, slope) in enumerate(zip(azimuths, slopes, strict=True)):
+        out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        along = np.array([0.0, 0.0, np.sin(slope)]) - np.cos(slope) * out
+        across = np.array([-out[1], out[0], 0.0])
+        links[f"leg{number}"] = Link(("ground", "platform"), "leg", tuple(radius * out - 0.5 * length * along), tuple(along), tuple(across))
+    return Mechanism("", {"steel": STEEL}, parts={"leg": part}, bodies={"platform": body}, links=links, gravity=(0.0, 0.0, 0.0))
+
+
+def random_legs(seed: int) -> Mechanism:
+    """Arches, symmetric or skew, of leaves; domes of three and four rods, with double eigenvalues; columns that buckle all round."""
+    random = np.random.default_rng([7, seed])
+    length, kind = 0.05, seed % 5
+    slope = random.uniform(0.01, 0.08)
+    leaf = Leaf("steel", length, random.uniform(0.2e-3, 0.8e-3), random.uniform(4e-3, 20e-3), section=LeafSection.BEAM)
+    rod = Rod("steel", length=length, diameter=random.uniform(0.3e-3, 1.2e-3))
+    if kind < 2:
+        return legs(leaf, np.array([0.0, np.pi]), slope * np.array([1.0, 1.0 if kind == 0 else random.uniform(0.8, 1.0)]))
+    if kind < 4:
+        return legs(rod, 2.0 * np.pi * np.arange(kind + 1) / (kind + 1), np.full(kind + 1, slope), radius=random.uniform(1e-3, 6e-3))
+    return legs(rod, 0.5 * np.pi * np.arange(4), np.full(4, 0.5 * np.pi), radius=10e-3)
+
+
+def lowest(model: Nonlinear, system_: object) -> tuple[int, float]:
+    """Negative eigenvalues, and the lowest over the scale of translations and rotations."""
+    matrix = system_.stiffness[0]  # type: ignore[attr-defined]
+    scale = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+    values = np.linalg.eigvalsh(0.5 * (matrix + matrix.T) / scale / scale[:, None])
+    inside = 0
+    for bent in system_.bent:  # type: ignore[attr-defined]
+        own = system(bent.tangent)[:, 0]
+        own[:, -6:] *= -1.0
+        inside += int(np.sum(np.linalg.eigvalsh(0.5 * (own + np.swapaxes(own, -1, -2))) < 0.0)) - 6 * len(own)
+    return int(np.sum(values < 0.0)) + inside, float(values[0])
+
+
+def first_event(model: Nonlinear, step: float, count: int) -> float:
+    """The load at which the first eigenvalue vanishes along fz, by arc length in equal steps of bodies over the size; NaN if none does."""
+    index = [channel.name for channel in model.inputs].index(DOWN)
+    scale = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+    pose, load, last = equilibrium(model).pose, 0.0, None
+
+    def loads(size: float) -> Loads:
+        inputs = np.zeros((1, len(model.inputs)))
+        inputs[0, index] = size
+        return Loads(inputs, np.zeros((1, 3)), np.ones(1))
+
+    held, before = nothing(1), (0.0, 0.0)
+    for number in range(count):
+        here = assemble(model, pose, loads(load), held)
+        motions, value = lowest(model, here)
+        if motions:
+            there, was = before
+            return there + (load - there) * was / (was - value)
+        before, moved = (load, value), np.zeros(model.freedoms)
+        for correction in range(20):
+            here = assemble(model, pose, loads(load), held)
+            rate = np.linalg.solve(here.stiffness[0], (here.residual - assemble(model, pose, loads(load + 1.0), held).residual)[0])
+            own = np.linalg.solve(here.stiffness[0], -here.residual[0])
+            if correction:
+                change = -float((scale * moved) @ (scale * own)) / float((scale * moved) @ (scale * rate))
+            else:
+                sign = -1.0 if last is None else np.sign((scale * rate) @ last)
+                change, own = sign * step / np.linalg.norm(scale * rate), 0.0 * own
+            moved, load = moved + own + change * rate, load + change
+            pose, _ = advance(model, pose, here.bent, (own + change * rate)[None], np.ones(1))
+            if np.linalg.norm(scale * own) < 1e-11 and correction:
+                break
+        last = scale * moved
+        assert number < count
+    return np.nan
+
+
+def factors(model: Nonlinear, sizes: np.ndarray) -> list[float]:
+    """The critical load by each size of the load; NaN where the path leaves the law of the material."""
+    found: list[float] = []
+    for size in sizes:
+        try:
+            found.append(critical(model, {DOWN: -float(size)}, weight=0.0).factor * -float(size))
+        except LowerBoundError:
+            found.append(np.nan)
+    return found
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 4, *(pytest.param(each, marks=pytest.mark.full) for each in (3, *range(5, 200)))])
+def test_the_critical_load_is_the_first_event_of_small_steps_whatever_the_size_of_the_load(seed: int):
+    model = nonlinear(random_legs(seed))
+    found = np.array(factors(model, np.geomspace(1e-3, 1e3, 20 if seed > 4 else 3)))
+    if np.isnan(found).any():
+        assert np.isnan(found).all()
+        return
+    assert np.ptp(found) < 1e-3 * np.abs(found[0])
+    assert first_event(model, 1e-6 if seed % 5 == 4 else 5e-5, 10000) == pytest.approx(found[0], rel=1e-3)
