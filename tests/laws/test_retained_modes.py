@@ -117,17 +117,19 @@ def test_margins_and_bandwidth_of_a_shipped_case_are_those_with_all_modes(name):
     _check(case(name))
 
 
-@pytest.mark.parametrize(("rate", "accuracy"), [(10e3, 0.05), (1e3, 0.2)])
-def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the_sampled_plant(rate, accuracy):
+@pytest.mark.parametrize(("rate", "accuracy"), [(10e3, 0.05), (2e3, 0.2)])
+def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the_sampled_plant(rate, accuracy, monkeypatch):
     """|dL S| at its resonance, from two discretised plants; with slow samples most modes are above half their rate, and broad."""
     setup = LoopSetup(
-        rate=rate, controller=ControllerSetup(kind=ControllerKind.PID, proportional=0.5, integral=5.0, derivative=1e-3, filter=300.0)
+        rate=rate, controller=ControllerSetup(kind=ControllerKind.PID, proportional=300.0, integral=3e3, derivative=0.3, filter=500.0)
     )
     given = resolve(random_stage(3), setup)
     names = mode_names(given.whole)
     control = make_controller(given, given.plant.coordinates.strokes)
+    monkeypatch.setattr("flexstage.control.retention.LOOP_GAINS", (np.inf,))  # none is retained for its gain, nor for its ringing
+    monkeypatch.setattr("flexstage.control.retention.RINGING", np.inf)
     compared = 0
-    for left_out in np.argsort(-given.whole.frequencies)[::4]:
+    for left_out in np.argsort(-given.whole.frequencies)[::2]:
         wanted = np.ones(len(names), dtype=bool)
         wanted[left_out] = False
         few = reduce_modes(given.whole, wanted)
@@ -141,11 +143,9 @@ def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the
         feedback = feedback_response(closed.controller, loops, lines)
         change = (plants[1] - plants[0]) @ feedback @ np.linalg.inv(np.eye(len(loops.names)) + plants[0] @ feedback)
         direct = np.max(np.linalg.norm(loops.scale[:, None] * change / loops.scale, 2, axis=(1, 2)))
-        if found.complete and direct > 1e-6:
+        if direct > 1e-4:
             compared += 1
             assert found.gain == pytest.approx(direct, rel=accuracy)
-        elif not found.complete:
-            assert direct > 1e-4
     assert compared > 2
 
 
