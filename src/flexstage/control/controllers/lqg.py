@@ -48,7 +48,7 @@ class LQG:
     Sampled: x^ = x- + M (y - C x-), x- = A x^ + B u, z+ = z + T e. Continuous: x^' = A x^ + B u + L (y - C x^ - D u), z' = e. `model` goes
     from `command.<actuator>` to `pose.<c>`; `regulator` K (n, s), `integral` K_z (n, f), `observer` M or L (s, f), `feedforward` (n, f)
     the strokes at rest for a reference, absent: nothing is fed forward. `tracking` [s] is the time in which integrators follow what was
-    applied; the observer knows it at once.
+    applied; the observer knows it at once. `weights` are those it was designed by, `expected` what its observer expects, where known.
     """
 
     model: System
@@ -58,6 +58,8 @@ class LQG:
     coordinates: Coordinates
     tracking: float
     feedforward: Array | None = None
+    weights: Weights | None = None
+    expected: Disturbances | None = None
 
     def system(self, step: float | None = None) -> System:
         """The controller: inputs `error.<c>`, `pose.<c>`, `reference.<c>` (with `feedforward`), `applied.<actuator>`.
@@ -100,7 +102,7 @@ def with_observer(model: System, coordinates: Coordinates, weights: Weights, obs
     """
     regulator, integral = _regulator(model, coordinates, weights)
     tracking = max(1.0 / (2.0 * np.pi * float(np.min(weights.bandwidth))), model.step or 0.0)
-    return LQG(model, regulator, integral, observer, coordinates, tracking, feedforward)
+    return LQG(model, regulator, integral, observer, coordinates, tracking, feedforward, weights)
 
 
 def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tuple[Array, Array]:
@@ -174,7 +176,10 @@ def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array, *, sa
     if sampled and (doubled := _doubled(A, B, cost, effort, cross)) is not None:
         return doubled
     try:
-        found = (scipy.linalg.solve_discrete_are if sampled else scipy.linalg.solve_continuous_are)(A, B, cost, effort, s=cross)
+        with np.errstate(invalid="ignore"):  # of weights out of all proportion, whose solution is not finite
+            found = (scipy.linalg.solve_discrete_are if sampled else scipy.linalg.solve_continuous_are)(A, B, cost, effort, s=cross)
+        if not np.all(np.isfinite(found)):
+            raise np.linalg.LinAlgError
     except np.linalg.LinAlgError as error:
         what = "the Riccati equation has no stabilising solution: something that does not decay is neither moved nor seen"
         raise refuse("LQG", what, "Keep fewer modes, or damp all of them") from error
@@ -191,7 +196,10 @@ def _doubled(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
     through, moved, left = B @ back[:, : len(A)], A - B @ back[:, len(A) :], cost - cross @ back[:, len(A) :]
     identity = np.eye(len(A))
     for _ in range(_DOUBLINGS):
-        both = np.linalg.solve(identity + through @ left, np.concatenate((moved, through), axis=1))
+        try:
+            both = np.linalg.solve(identity + through @ left, np.concatenate((moved, through), axis=1))
+        except np.linalg.LinAlgError:
+            return None
         more = moved.T @ left @ both[:, : len(A)]
         left = left + more
         left = 0.5 * (left + left.T)

@@ -336,7 +336,7 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
 
 def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]:
     """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
-    driven = _driven(seen, frequency)
+    driven = driven_gains(seen, frequency)
     first = wanted = frequency / driven
     for trust in _trusts(seen, task, frequency, driven):
         design = _designer(seen, task, trust)
@@ -346,8 +346,16 @@ def _attempts_lqg(seen: View, task: Task, frequency: float) -> Iterator[Attempt]
             yield Attempt(seen, found, gains, ((),) * len(wanted))
 
 
-def _driven(seen: View, frequency: float) -> Array:
-    """Gains (k,) from all strokes together to the loops' poses at a frequency [Hz]."""
+def driven_gains(seen: View, frequency: float) -> Array:
+    """Gains (k,) from all strokes together to the loops' poses at a frequency [Hz].
+
+    >>> from flexstage.control.controllers.loops import platform_loops
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.tuning.view import view
+    >>> plant = integral_loop().plant
+    >>> driven_gains(view(plant, platform_loops(plant.coordinates), 0.0), 1.0).round(2).tolist()
+    [0.99]
+    """
     return np.linalg.norm(seen.loops.sense @ seen.systems[0].transfer(np.array([frequency]))[0], axis=1)
 
 
@@ -370,6 +378,7 @@ class _Designer:
 
     seen: View
     task: Task
+    expected: Disturbances
     observer: Array
     responses: Resolvent
 
@@ -388,7 +397,7 @@ class _Designer:
         """The controller with these weights (k,) [Hz], whose integrators follow what was applied as fast as loops do that pass 1 there."""
         model, coordinates = self.seen.systems[0], self.seen.loops.coordinates
         found = with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.task.feedforward)
-        return replace(found, tracking=1.0 / (2.0 * np.pi * frequency))
+        return replace(found, tracking=1.0 / (2.0 * np.pi * frequency), expected=self.expected)
 
 
 def _designer(seen: View, task: Task, trust: float) -> _Designer:
@@ -398,7 +407,7 @@ def _designer(seen: View, task: Task, trust: float) -> _Designer:
     key = (looser.strokes, *looser.gauges.items())
     if key not in seen.kept:
         observer = observer_gain(model, coordinates, looser)
-        seen.kept[key] = _Designer(seen, task, observer, resolvent(estimator(model, observer)))
+        seen.kept[key] = _Designer(seen, task, looser, observer, resolvent(estimator(model, observer)))
     return seen.kept[key]
 
 
@@ -428,7 +437,10 @@ def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted:
     for _ in range(_ROUNDS):
         if not np.all(np.abs(np.log(wanted / first)) < np.log(_FARTHEST)):
             return None, first
-        found = design(wanted, frequency)
+        try:
+            found = design(wanted, frequency)
+        except DesignError:  # weights by which the equation has no solution that rounding leaves
+            return None, first
         gains = np.log(np.abs(np.einsum("fkn,fnk->k", responses, _strokes(seen, found, estimates, at))))
         if np.all(np.abs(gains) < _AGREES):
             break

@@ -209,30 +209,33 @@ def _rounds(
 def _find_weights(seen: View, asked: Asked) -> Tuning:
     """Linear-quadratic control that is better than the one of the highest bandwidth, whose bandwidths are all the same."""
     wish = asked.wish
-    within = field(seen, wish, asked.floor)
-    tried, goal = bench(seen, within), Goal(None, wish.sensitivity, wish.spread)
-    searched = Regulated(tried, asked.expected or Disturbances(_EXPECTED, {}), asked.feedforward)
     begun, refused = _highest(seen, asked)
-    if begun is None:
+    if begun is None or not isinstance(begun.controller, LQG):
         raise DesignError([_none_found(asked, refused)])
-    against = outcome(tried, begun.controller.system(seen.step))
-    for controller in _weighed(searched, wish, against, begun.controller):
+    tried = bench(seen, field(seen, wish, asked.floor, fast=begun.bandwidth))
+    plain = _begun(tried, asked, begun)
+    best = _best_of(wish, plain, [each for each in (plain, _weighed(tried, asked, begun, begun.controller)) if each is not None])
+    if best is None:
+        raise DesignError([_none_found(asked, ())])
+    require(best.unmet)
+    return best.tuning
+
+
+def _weighed(tried: Bench, asked: Asked, begun: Tuning, known: LQG) -> _Candidate | None:
+    """What is found within the peak of S, or where it passes it between frequencies, then within a lower one."""
+    seen, wish = tried.seen, asked.wish
+    searched = Regulated(tried, asked.expected or Disturbances(_EXPECTED, {}), asked.feedforward)
+    against = outcome(tried, known.system(seen.step))
+    for tighter in (_TIGHTER[0], _TIGHTER[-1]):
+        sharper = replace(tried, field=_limited(tried.field, replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0))))
+        controller = weigh(replace(searched, tried=sharper), against, known, begun.bandwidth)
         judged = _judge(seen, wish, controller)
         if judged.stable and judged.peak <= wish.sensitivity:
             found = outcome(tried, controller.system(seen.step))
-            require(_unmet_of(wish, found))
             reason = _said(seen, wish, found.rejection[0], judged)
-            return Tuning(asked.kind, goal, controller, judged, ((),) * len(seen.loops.names), reason)
-    raise DesignError([_none_found(asked, ())])
-
-
-def _weighed(searched: Regulated, wish: Wish, against: Outcome, begun: Decentralised | LQG) -> Iterator[Decentralised | LQG]:
-    """What is found within the peak of S, then within a lower one; where both pass it between frequencies, what the search began from."""
-    for tighter in (_TIGHTER[0], _TIGHTER[-1]):
-        sharper = replace(wish, sensitivity=1.0 + tighter * (wish.sensitivity - 1.0))
-        tried = replace(searched.tried, field=_limited(searched.tried.field, sharper))
-        yield weigh(replace(searched, tried=tried), against)
-    yield begun
+            tuning = Tuning(asked.kind, _goal(wish), controller, judged, ((),) * len(seen.loops.names), reason)
+            return _candidate(tried, tuning, found, tuple(_unmet_of(wish, found)))
+    return None
 
 
 def _limited(within: Field, wish: Wish) -> Field:

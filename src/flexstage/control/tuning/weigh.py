@@ -12,15 +12,18 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, observer_gain, with_observer
 from flexstage.control.tuning.aim import Aim
+from flexstage.control.tuning.attempt import driven_gains
 from flexstage.control.tuning.judge import closed_growth
 from flexstage.control.tuning.outcome import Bench, Outcome, outcome
-from flexstage.control.tuning.search import SETTLED
+from flexstage.control.tuning.search import SETTLED, last_mode
 from flexstage.control.tuning.wish import Wish
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
 """Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
 _SLOWER, _SURER, _LOOSER = (0.01, 0.03, 0.1), (0.01, 1.0), (1e-4, 1e-3, 1e-2)
 """The same of starts taken where none of the others is stable with modes off: a regulator that leaves modes alone need not know them."""
+_BEGUN, _TRUSTED = (0.25, 0.5, 1.0), (0.1, 1.0, 10.0)
+"""The same of starts around a known controller: shares of its bandwidth, and times the noise that its observer expects strokes to have."""
 _FIRST = (0.4, 1.2, 0.8)
 """Edges of the first simplex: factors of e of bandwidths, noise and weights of the pose. The grid's steps are twice as far."""
 _ROUNDS, _SMALLER, _EVALUATIONS = 2, 0.35, 190
@@ -77,20 +80,26 @@ class Regulated:
         return None if max(growths) >= 0.0 else outcome(self.tried, system)
 
 
-def weigh(searched: Regulated, against: Outcome) -> LQG:
+def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """The weights that are better than a known outcome in what the aim is about: in the least of all its numbers, most.
 
     Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
-    Optimization and Applications 51 (2012) 259) from the best of a grid: the same every time.
+    Optimization and Applications 51 (2012) 259) from the best of a grid around the controller `begun` with, whose loops pass 1 at
+    `bandwidth` [Hz], and of one around the first mode where that lies beyond: the same every time.
     """
 
     def cost(point: Array) -> float:
         return _cost(searched, against, point)
 
-    first = float(searched.tried.seen.modes[0])
-    start = min(_grid(searched, first, _BANDWIDTHS, _TRUSTS, _POSES), key=cost)
-    if cost(start) >= _UNSTABLE:
-        start = min(_grid(searched, first, _SLOWER, _SURER, _LOOSER), key=cost)
+    seen = searched.tried.seen
+    first = float(seen.modes[0])
+    known = list(_grid_around(searched, begun, bandwidth))
+    if bandwidth > last_mode(seen):
+        start = min(known, key=cost)
+    else:
+        start = min([*_grid(searched, first, _BANDWIDTHS, _TRUSTS, _POSES), known[0]], key=cost)
+        if cost(start) >= _UNSTABLE:
+            start = min(_grid(searched, first, _SLOWER, _SURER, _LOOSER), key=cost)
     count = len(searched.firsts)
     edges = np.repeat(_FIRST, (count, 1, count))
     for number in range(_ROUNDS):
@@ -98,6 +107,20 @@ def weigh(searched: Regulated, against: Outcome) -> LQG:
         options = {"initial_simplex": simplex, "maxfev": _EVALUATIONS, "adaptive": True}
         start = scipy.optimize.minimize(cost, start, method="Nelder-Mead", options=options).x
     return searched.controller(start)
+
+
+def _grid_around(searched: Regulated, begun: LQG, bandwidth: float) -> Iterator[Array]:
+    """The weights of a known controller with next to none of the pose, then those of slower ones, all on the scale of the roll-off."""
+    seen, firsts = searched.tried.seen, list(searched.firsts)
+    weights, expected = begun.weights or Weights(bandwidth), begun.expected or searched.expected
+    stated = np.broadcast_to(weights.bandwidth, (len(seen.loops.names),))[firsts]
+    poses, driven = np.array(_POSES), driven_gains(seen, bandwidth)[firsts]
+    yield np.log([*stated, expected.strokes, *(poses[0] / driven**2)])
+    for share in _BEGUN:
+        slower = stated * share * driven / driven_gains(seen, share * bandwidth)[firsts]
+        for trust in _TRUSTED:
+            for pose in poses:
+                yield np.log([*slower, trust * expected.strokes, *(pose / driven**2)])
 
 
 def _grid(
