@@ -45,7 +45,7 @@ _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
 _LARGE = 600
 """Freedoms above which matrices are kept without their zeros."""
-_DENSE = 3000
+_DENSE = 6000
 """Freedoms above which no loaded state is worked out."""
 _SHAPES = 6
 """Shapes looked at of a large stage: of more that repeat, not all bodies are named."""

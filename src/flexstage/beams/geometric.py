@@ -17,7 +17,7 @@ from flexstage.parts.part import Part, inner, strut_of
 from flexstage.parts.shape import Shaped
 
 ENDS = 12
-_SLENDER, _STOUT = (2, 3, 3), (0, 2, 2)
+_SLENDER, _STOUT = (8, 8, 8), (0, 2, 2)
 """Numbers of inner shapes of the twist about x and of the bending about y and z: of leaves and rods, of all other parts."""
 _CROSS = np.zeros((3, 3, 3))
 _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]] = 1.0, -1.0
@@ -133,8 +133,8 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
     """Stations and weights (..., s), rotation and rate (..., s, 3, 12 + k) of sections, stiffness (..., k) of inner shapes.
 
     Bending by both ends is f (a + b x) with f the flexibility, twist f a. Inner shapes f p(x), p the next polynomials orthogonal to these
-    and to one another under f, move no end. With them column loads come out to 1e-3, with the ends' shapes alone those of a uniform beam
-    are 1 % off where one end is guided, 20 % where both are pinned.
+    and to one another under f, move no end. With them column loads are right to 1e-4; those of lateral buckling, in which bending in two
+    planes and twist are coupled, to 1 %, mostly to 1e-3. With the ends' shapes alone columns are 1 % off where one end is guided, 20 % where both are pinned.
     """
     points = beam.points
     half = points.position
