@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.arguments import CheckedFields, convert_arguments
+from flexstage.base.arguments import GAPS, CheckedFields, convert_arguments
 from flexstage.base.quantity import COMPLIANCE_MATRIX, STIFFNESS_MATRIX, Bound, Quantity
 from flexstage.control.electronics import Hardware
 from flexstage.control.plants import Plant
@@ -121,9 +121,10 @@ def nonsense(hint: Any, default: Any) -> Iterator[Any]:
         yield 3.5
     if bool not in kinds:
         yield True
-    if numbers:
+    finite = not any(GAPS in extras for _, extras in alternatives(hint))
+    if numbers and finite:
         yield from (NAN, np.array([1.0, NAN]))
-    if numbers and default != INFINITE:
+    if numbers and finite and default != INFINITE:
         yield INFINITE
     if names and Any not in names:
         yield from ((object(),), {"nonsense": object()}, {1: 1.0})

@@ -14,7 +14,7 @@ from typing import Annotated, Protocol
 
 import numpy as np
 
-from flexstage.base.arguments import CheckedFields, check_arguments
+from flexstage.base.arguments import GAPS, CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import ratio_units
 from flexstage.base.notebook import InNotebook
@@ -253,8 +253,8 @@ class Responses(InNotebook, CheckedFields):
     frequencies: Array
     outputs: tuple[Channel, ...]
     inputs: tuple[Channel, ...]
-    values: Array
-    coherence: Array | None = None
+    values: Annotated[Array, GAPS, INNER]
+    coherence: Annotated[Array | None, GAPS, INNER] = None
     window: str = ""
     averages: int | None = None
     name: Annotated[str, INNER] = ""
@@ -315,7 +315,7 @@ def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
 
 
 @check_arguments
-def in_memory(channels: Iterable[Channel], rate: float, values: Array) -> Record:
+def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array, GAPS]) -> Record:
     """The record of an array (n, channels), sampled at `rate` in Hz.
 
     >>> in_memory([Channel("S1", "um")], 10.0, np.zeros((5, 1))).duration
