@@ -40,9 +40,10 @@ quick: setup-dev ## a minute: closed forms, laws at 20 examples, the public surf
 test: setup-dev ## the tests, but for the examples of the documentation
 	$(PYTEST) --ignore=tests/docs
 
-check-all: setup-oracles ## the tests with full counts and sizes, on other processors' kernels, other programs beside ours; writes docs/validation
+check-all: setup-oracles ## the tests with full counts and sizes, with other kernels, versions of packages, and programs; writes docs/validation
 	FLEXSTAGE_TESTS=full $(PYTEST)
 	JOBS=$(JOBS) $(BIN)/python -m tools.processors
+	$(BIN)/python -m tools.versions
 	$(BIN)/python benchmarks/oracles.py
 	$(BIN)/python -m tools.validation --solids
 
