@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import binom
 
 from flexstage.experiment.record import Channel, InMemory, Record, Role
 
@@ -78,3 +79,8 @@ def record(
     names = [Channel(f"u{index + 1}", "V", Role.INPUT) for index in range(count)]
     names += [Channel(f"y{index + 1}", "um", Role.OUTPUT) for index in range(outputs.shape[1])]
     return Record(tuple(names), rate, InMemory(np.hstack([inputs, outputs])), name=f"seed {seed}")
+
+
+def binomial_limits(count: int, share: float = 0.683, once_in: float = 1e-3) -> tuple[float, float]:
+    """How many of `count` intervals hold, at least and at most, but once in so many tries, where each does with probability `share`."""
+    return float(binom.ppf(0.5 * once_in, count, share)), float(binom.ppf(1.0 - 0.5 * once_in, count, share))

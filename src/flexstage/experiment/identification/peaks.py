@@ -38,6 +38,8 @@ class Doubt(Enum):
     """A resonance that the recorded inputs do not drive: something else does."""
     WEAK = "weak"
     """A resonance that noise might be."""
+    UNSURE = "unsure"
+    """A resonance in outputs alone whose width does not differ from zero as surely as a mode's must."""
     FREE = "free"
     """An oscillation that was seen to fade, but by too little to tell its damping, nor whether an input began it."""
     NARROW = "narrow"
@@ -73,6 +75,8 @@ class Peak:
             return "an oscillation left to itself that fades too little in the record to tell its damping. Record longer."
         if self.doubt is Doubt.UNDRIVEN:
             return "the recorded inputs do not drive it: another force does, or an unsteady tone. Record what else shakes the stage."
+        if self.doubt is Doubt.UNSURE:
+            return "its damping is not determined surely enough: noise or a neighbour might make it. Record longer."
         if self.doubt is Doubt.WEAK:
             return "noise might be as strong. Record longer, or drive more."
         lines = f"one line, {self.resolution:.4g} Hz from the next"

@@ -25,6 +25,7 @@ _FADED = 0.08
 _HIGHEST = 18
 _RATIO, _MARGIN = 1.4, 0.4
 _SURE = 6.0
+_BY_CHANCE, _WORSE = 2.0, 3.0
 _SINGULAR = 1e-8
 
 
@@ -46,11 +47,10 @@ class Shaken:
 class Band:
     """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, turning with `low` Hz less; the part searched is `sweep`.
 
-    `weighed` (lags, p, p) are those of the band without a taper, of all blocks. Outputs are times `scale` (p,).
+    Outputs are times `scale` (p,).
     """
 
     covariances: Array
-    weighed: Array
     step: float
     low: float
     sweep: Sweep
@@ -69,25 +69,22 @@ def band_covariances(record: Record, low: float, high: float, tell: Tell | None 
     every = _divide(low, high)
     lags = 2 * _rows(len(chosen.channels), 1e-9) + _SKIPPED + 1
     parts: list[list[Array]] = [[] for _ in every]
-    weighed: list[Array] = [np.zeros(()) for _ in every]
     power = np.zeros((size // 2 + 1, len(chosen.channels)))
     for number in range(BLOCKS):
         values = chosen.samples.read(number * size, (number + 1) * size)
         lines = np.fft.rfft(values - np.mean(values, axis=0), axis=0) / np.sqrt(size)
         power += np.abs(lines) ** 2 * (2.0 / record.rate / BLOCKS)
         for place, sweep in enumerate(every):
-            found, whole = _covariances(lines[slice(*_lines(sweep, record.rate / size, len(lines)))], lags)
-            parts[place].append(found)
-            weighed[place] = weighed[place] + whole / BLOCKS
+            parts[place].append(_covariances(lines[slice(*_lines(sweep, record.rate / size, len(lines)))], lags))
         if tell is not None:
             tell((number + 1) / BLOCKS)
     bands = []
-    for sweep, each, whole in zip(every, parts, weighed, strict=True):
+    for sweep, each in zip(every, parts, strict=True):
         first, last = _lines(sweep, record.rate / size, size // 2 + 1)
         covariances = np.array(each)
         scale = 1.0 / np.sqrt(np.maximum(np.real(np.diagonal(np.mean(covariances[:, 0], axis=0))), 1e-300))
-        step, sizes = size / record.rate / (last - first), scale[:, None] * scale
-        bands.append(Band(covariances * sizes, whole * sizes, step, first * record.rate / size, sweep, scale))
+        step = size / record.rate / _folded(last - first)
+        bands.append(Band(covariances * scale[:, None] * scale, step, first * record.rate / size, sweep, scale))
     lines = np.fft.rfftfreq(size, 1.0 / record.rate)
     return bands, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
 
@@ -106,9 +103,14 @@ def searched_from(low: float, high: float, *, outputs: int, resolution: float) -
 
 
 def _divide(low: float, high: float) -> list[Sweep]:
-    """Bands of 1.4 from end to end, read two fifths of their width further on both sides."""
-    limits = np.geomspace(low, high, max(1, int(np.ceil(np.log(high / low) / np.log(_RATIO)))) + 1)
-    return [Sweep(a - _MARGIN * (b - a), b + _MARGIN * (b - a), float(a), float(b)) for a, b in itertools.pairwise(limits)]
+    """Bands between powers of 1.4 Hz, whatever is searched, read two fifths of their width further on both sides."""
+    first, last = (np.log(each) / np.log(_RATIO) for each in (low, high))
+    limits = _RATIO ** np.arange(np.floor(first), np.ceil(last) + 1.0)
+    return [
+        Sweep(a - _MARGIN * (b - a), b + _MARGIN * (b - a), max(float(a), low), min(float(b), high))
+        for a, b in itertools.pairwise(limits)
+        if b > low and a < high
+    ]
 
 
 def _rows(outputs: int, damping: float) -> int:
@@ -117,18 +119,24 @@ def _rows(outputs: int, damping: float) -> int:
 
 
 def _lines(sweep: Sweep, resolution: float, count: int) -> tuple[int, int]:
-    """First and last line of a band."""
-    return max(1, int(sweep.low / resolution)), min(count, int(np.ceil(sweep.high / resolution)))
+    """First and last line of a band; one that would end beyond the last line of all begins lower instead."""
+    first, last = int(sweep.low / resolution), int(np.ceil(sweep.high / resolution))
+    return max(1, first - max(0, last - count)), min(count, last)
 
 
-def _covariances(inside: Array, lags: int) -> tuple[Array, Array]:
-    """Of a band by lags: tapered at its ends, and as it is."""
-    count = len(inside)
-    taper = np.minimum(np.minimum(np.arange(count), count - 1 - np.arange(count)) / (_TAPER * count), 1.0)
-    power = inside[:, :, None] * np.conj(inside[:, None, :])
-    whole = np.fft.ifft(power, axis=0)[:lags]
-    found = np.fft.ifft(power * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None], axis=0)[:lags]
-    return found / (1.0 - np.arange(len(found)) / count)[:, None, None], whole
+def _covariances(inside: Array, lags: int) -> Array:
+    """Of a band by lags, its ends tapered and laid over one another: white noise stays white, its covariances vanish at all lags but 0."""
+    count, step = len(inside), _folded(len(inside))
+    taper = np.minimum(np.minimum(np.arange(count) + 0.5, count - 0.5 - np.arange(count)) / (count - step), 1.0)
+    power = inside[:, :, None] * np.conj(inside[:, None, :]) * (np.sin(0.5 * np.pi * taper) ** 2)[:, None, None]
+    power[: count - step] += power[step:]
+    found = np.fft.ifft(power[:step], axis=0)[:lags]
+    return found / (1.0 - np.arange(len(found)) / step)[:, None, None]
+
+
+def _folded(count: int) -> int:
+    """How many of a band's lines the taper leaves."""
+    return count - int(_TAPER * count)
 
 
 def hankel(covariances: Array, rows: int, first: int) -> Array:
@@ -158,10 +166,10 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
 
     H is weighted with the roots of the covariances of what comes and what went, W H V, so that its singular values are canonical
     correlations: what the floor hardly drives weighs as much as what it drives most. Van Overschee & De Moor, Subspace Identification for
-    Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. Modes and deviations are those of the highest order, which has
-    poles to spare for tails of modes beyond the band: the equations are projected onto the signal subspace of the whole record,
-    U^H W H(shifted) V = Lambda U^H W H V, and perturbed to first order by what each block has of covariances (Doehler & Mevel, MSSP 38
-    (2013) 346), blocks taken as independent.
+    Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. The equations are projected onto the signal subspace of the whole
+    record, U^H W H(shifted) V = Lambda U^H W H V, and perturbed to first order by what each block has of covariances (Doehler & Mevel, MSSP
+    38 (2013) 346), blocks taken as independent. In low orders
+    tails of modes beyond the band bend the modes, in high ones poles mix with them: each mode is of its own order (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
@@ -173,13 +181,13 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
 
 def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
     mean = np.mean(band.covariances, axis=0)
-    (weight, inverse), (before, _) = _roots(band.weighed, rows), _roots(np.conj(band.weighed.swapaxes(1, 2)), rows)
+    (weight, inverse), (before, _) = _roots(mean, rows), _roots(np.conj(mean.swapaxes(1, 2)), rows)
     left, values, right = np.linalg.svd(weight @ hankel(mean, rows, _SKIPPED) @ before)
     highest = min(len(values) // 2, _HIGHEST)
     found = inverse @ left[:, :highest] * np.sqrt(values[:highest])
     poles = tuple(_poles(band, found[:, :order], order, mean.shape[1]) for order in range(2, highest + 1))
     diagram, candidates = stabilisation(poles, highest_damping)
-    inside = [each for each in candidates if band.sweep.first <= each.pole.imag <= band.sweep.last]
+    inside = [each for each in candidates if band.sweep.first + each.pole.real <= each.pole.imag <= band.sweep.last - each.pole.real]
     if not inside:
         return diagram, []
     return diagram, _perturbed(band, weight @ left[:, :highest], before @ np.conj(right[:highest].T), inside)
@@ -196,43 +204,97 @@ def _poles(band: Band, observability: Array, order: int, outputs: int) -> Poles:
     return Poles(order, values[kept], shapes[kept] / np.linalg.norm(shapes[kept], axis=1, keepdims=True))
 
 
+@dataclass(frozen=True, eq=False)
+class _Estimate:
+    """A mode of one order: `pole` in Hz, `shape` (p,) of any size, and what the blocks' covariances change of them, (b,) and (b, p)."""
+
+    pole: complex
+    shape: Array
+    pole_changes: Array
+    shape_changes: Array
+
+    def poles(self) -> tuple[Array, Array]:
+        """Real and imaginary part of the pole (2,), and their changes (b, 2)."""
+        return np.array([self.pole.real, self.pole.imag]), np.stack([np.real(self.pole_changes), np.imag(self.pole_changes)], axis=1)
+
+    def shapes(self, largest: int) -> tuple[Array, Array]:
+        """Real and imaginary parts (2 p,) of the shape over one of its components, and their changes (b, 2 p)."""
+        shape = self.shape / self.shape[largest]
+        changes = (self.shape_changes - self.shape_changes[:, largest, None] * shape) / self.shape[largest]
+        return np.concatenate([np.real(shape), np.imag(shape)]), np.concatenate([np.real(changes), np.imag(changes)], axis=1)
+
+
 def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[Shaken]:
+    """The candidates as modes: each of the order at which it is known best."""
+    rows = len(left) // band.covariances.shape[2]
+    blocks = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
+    orders = [_of_order(band, left[:, :order], [(a[:, :order], b[:, :order]) for a, b in blocks], candidates) for order in _orders(left)]
+    tracks = [[found[number] for found in orders if number in found] for number in range(len(candidates))]
+    return [_select_order(track) for track in tracks if track]
+
+
+def _orders(left: Array) -> range:
+    return range(1, left.shape[1] + 1)
+
+
+def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], candidates: Sequence[Candidate]) -> dict[int, _Estimate]:
+    """The candidates, by their numbers, that are poles of the equations projected onto `left`, perturbed by each of the blocks."""
     outputs = band.covariances.shape[2]
-    rows = len(left) // outputs
-    every = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
-    own, shifted = (np.mean([each[index] for each in every], axis=0) for index in range(2))
+    own, shifted = (np.mean([each[index] for each in blocks], axis=0) for index in range(2))
     inner = np.conj(left.T) @ own
     turns, vectors = np.linalg.eig(np.linalg.solve(inner, np.conj(left.T) @ shifted))
     rest = np.linalg.solve(inner @ vectors, np.conj(left.T))
     poles = np.log(turns) / band.step
     poles = (np.real(poles) + 1j * (np.mod(np.imag(poles), 2.0 * np.pi / band.step) + 2.0 * np.pi * band.low)) / (2.0 * np.pi)
     shapes = own[:outputs] @ vectors / band.scale[:, None]
-    found: list[Shaken] = []
-    for place in _matches(poles, candidates):
-        moved = np.array([rest @ ((each[1] - turns[place] * each[0]) @ vectors[:, place]) for each in every])
+    found: dict[int, _Estimate] = {}
+    for number, place in _matches(poles, candidates).items():
+        moved = np.array([rest @ ((each[1] - turns[place] * each[0]) @ vectors[:, place]) for each in blocks])
         apart = turns[place] - turns
         turned = np.where(np.arange(len(turns)) == place, 0.0, moved / np.where(apart == 0.0, np.inf, apart))
-        largest = int(np.argmax(np.abs(shapes[:, place])))
-        shape = shapes[:, place] / shapes[largest, place]
-        change = np.array([each[0][:outputs] @ vectors[:, place] for each in every]) / band.scale - shapes[:, place] + turned @ shapes.T
-        change = (change - change[:, largest, None] * shape) / shapes[largest, place]
+        change = np.array([each[0][:outputs] @ vectors[:, place] for each in blocks]) / band.scale - shapes[:, place] + turned @ shapes.T
         step = moved[:, place] / turns[place] / (2.0 * np.pi * band.step)
-        found.append(
-            Shaken(
-                complex(poles[place]), shape, float(_deviation(np.real(step))), float(_deviation(np.imag(step))), _shape_deviation(change)
-            )
-        )
+        found[number] = _Estimate(complex(poles[place]), shapes[:, place], step, change)
     return found
 
 
-def _matches(poles: Array, candidates: Sequence[Candidate]) -> list[int]:
-    """Which pole is each candidate: the nearest that no other is, within two half-widths."""
-    found: list[int] = []
-    for candidate in candidates:
+def _select_order(track: Sequence[_Estimate]) -> Shaken:
+    """The mode of the order, of rising ones, whose variance and squared bias are least, by what higher orders say of the bias."""
+    chosen = int(np.argmin([np.sum(_risk(index, [each.poles() for each in track])[0]) for index in range(len(track))]))
+    width, deviation = np.sqrt(np.sum(_risk(chosen, [each.poles() for each in track]), axis=0))
+    best = track[chosen]
+    largest = int(np.argmax(np.abs(best.shape)))
+    parts = np.sum(_risk(chosen, [each.shapes(largest) for each in track]), axis=0).reshape(2, -1)
+    return Shaken(best.pole, best.shape / best.shape[largest], float(width), float(deviation), np.sqrt(np.mean(parts, axis=0)))
+
+
+def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Of values (q,) of one order: variance and squared bias by what higher orders say, and the square of a bias that chance may hide.
+
+    Of values v_i and block changes of all orders: the largest |v_i - v_j|^2 - (2 sigma_ij)^2 of orders j above i is the squared bias
+    (Goldenshluger & Lepski, Ann. Statist. 39 (2011) 1608), with sigma_ij the deviation of the difference. What is less may be chance or
+    bias: it counts as uniformly distributed, on the average of orders that are not thrice less certain.
+    """
+    value, changes = track[index]
+    own = _deviation(changes)
+    beyond, within = np.zeros(len(value)), [np.zeros((2, len(value)))]
+    for other, other_changes in track[index + 1 :]:
+        apart, chance = (other - value) ** 2, (_BY_CHANCE * _deviation(other_changes - changes)) ** 2
+        beyond = np.maximum(beyond, apart - chance)
+        is_sure = _deviation(other_changes) < _WORSE * own
+        within.append(np.stack([np.where(is_sure, np.minimum(apart, chance), 0.0), is_sure]))
+    hidden, count = np.sum(within, axis=0)
+    return own**2 + beyond, hidden / np.maximum(count, 1.0) / 3.0
+
+
+def _matches(poles: Array, candidates: Sequence[Candidate]) -> dict[int, int]:
+    """Which pole is each candidate, by its number: the nearest that no other is, within two half-widths."""
+    found: dict[int, int] = {}
+    for number, candidate in enumerate(candidates):
         away = np.abs(poles - candidate.pole)
-        away[found] = np.inf
+        away[list(found.values())] = np.inf
         if np.min(away) < -2.0 * candidate.pole.real:
-            found.append(int(np.argmin(away)))
+            found[number] = int(np.argmin(away))
     return found
 
 
@@ -244,8 +306,3 @@ def _deviation(changes: Array) -> Array:
     blocks = len(changes)
     spread = np.sqrt(np.sum((changes - np.mean(changes, axis=0)) ** 2, axis=0) / (blocks * (blocks - 1.0)))
     return spread * float(-scipy.special.stdtrit(blocks - 1.0, 0.025)) / NORMAL_95
-
-
-def _shape_deviation(changes: Array) -> Array:
-    """Of each part, real and imaginary: the root of their mean square."""
-    return np.sqrt(0.5 * (_deviation(np.real(changes)) ** 2 + _deviation(np.imag(changes)) ** 2))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,16 +10,19 @@ import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.experiment.cross_spectra import Tell
+from flexstage.experiment.identification.cluster import vector_assurance
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
-from flexstage.experiment.identification.peaks import Doubt, Peak
+from flexstage.experiment.identification.peaks import Doubt, Peak, tone_peaks
 from flexstage.experiment.identification.subspace import BLOCKS, Shaken, band_covariances, searched_from, shaken_modes
+from flexstage.experiment.identification.tones import remove_tones
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
-_EVIDENT, _WEAK = 6.1, 3.0
+_EVIDENT, _WEAK = 6.1, 4.0
 """Deviations by which a mode's width must differ from nought: noise reaches the first once in 1e9."""
 _HIGHEST, _LOWEST = 0.42, 6.0
 _FEWEST = 400
+_SAME, _LOCATED = 0.95, 0.1
 _UNSCALED = (
     "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes are over their largest component; "
     "scaling them takes a record with a known force or stroke."
@@ -30,31 +33,55 @@ def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None 
     """Modes of a stage that the floor shakes all along, from outputs alone: `shaken_modes`, band by band, with 95 % intervals.
 
     Forces on the stage need a density that is smooth within a band of 1.4 from end to end, in as many independent directions as modes lie
-    together. A mode is told if its width is 6.1 standard deviations from nought, which noise reaches once in 1e9. Participations are not
-    known: there are no inputs in what is found. Raises `DesignError` for several records, and for a record too short.
+    together. A mode is reported if its width is 6.1 standard deviations from zero, which noise reaches once in 1e9. Steady tones are taken
+    out before; a resonance narrower than the lines of a block are apart is not distinguished from one. Participations are not known: there
+    are no inputs in what is found. Raises `DesignError` for several records, and for a record too short.
     """
     require(_floor_findings(records))
-    record = records[0]
-    low = max(_LOWEST * BLOCKS / record.duration, search.band[0] if search.band else 0.0)
+    record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
+    resolution = BLOCKS / record.duration
+    low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
     high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
     where = record.source or record.name or "record"
     if low >= high:
         what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
         require([Finding(where, what, "Ask for another band, or record longer")])
-    began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=BLOCKS / record.duration)
+    began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
         what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
         require([Finding(where, what, "Record longer: modes in the floor's noise take minutes; or ask for a wider band")])
     bands, density = band_covariances(record, low, high, tell)
     every = [shaken_modes(band, search.highest_damping) for band in bands]
-    modes = sorted((mode for _, found in every for mode in found), key=lambda mode: abs(mode.pole))
-    weak = (mode for mode in modes if _WEAK <= _certainty(mode) < _EVIDENT)
-    found = _result(record, [mode for mode in modes if _certainty(mode) >= _EVIDENT], density, (low, high))
-    return replace(
-        found,
-        stabilisation=tuple(each for each, _ in every),
-        peaks=tuple(_weak(mode, record.outputs, BLOCKS / record.duration) for mode in weak),
-    )
+    modes = [
+        mode
+        for mode in _without_doubles(mode for _, found in every for mode in found)
+        if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
+    ]
+    narrow = [mode for mode in modes if -2.0 * mode.pole.real < resolution and mode.deviation < _LOCATED * resolution]
+    wide = [mode for mode in modes if -2.0 * mode.pole.real >= resolution]
+    unsure = [mode for mode in wide if _WEAK <= _certainty(mode) < _EVIDENT]
+    found = _result(record, [mode for mode in wide if _certainty(mode) >= _EVIDENT], density, (low, high))
+    size = np.sqrt(found.noise * (high - low))
+    peaks = [
+        *tone_peaks(tones, 1.0 / record.duration, record.outputs, np.where(size > 0.0, size, 1.0)),
+        *(_peak(mode, Doubt.NARROW, record.outputs, resolution) for mode in narrow),
+        *(_peak(mode, Doubt.UNSURE, record.outputs, resolution) for mode in unsure),
+    ]
+    return replace(found, stabilisation=tuple(each for each, _ in every), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
+
+
+def _without_doubles(modes: Iterable[Shaken]) -> list[Shaken]:
+    """Modes by rising frequency; of one that was found twice, in two bands or beside itself, the surer."""
+    kept: list[Shaken] = []
+    for mode in sorted(modes, key=_certainty, reverse=True):
+        if not any(_is_double(mode, other) for other in kept):
+            kept.append(mode)
+    return sorted(kept, key=lambda each: abs(each.pole))
+
+
+def _is_double(first: Shaken, second: Shaken) -> bool:
+    near = abs(first.pole - second.pole) < max(-first.pole.real, -second.pole.real)
+    return near and vector_assurance(first.shape, second.shape) > _SAME
 
 
 def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None = None) -> Identified:
@@ -148,9 +175,8 @@ def _none(modes: Sequence[Shaken]) -> list[str]:
     return [] if len(modes) else ["no mode stands out of what the floor and the gauges make: record longer, or shake more."]
 
 
-def _weak(mode: Shaken, outputs: Sequence[Channel], resolution: float) -> Peak:
+def _peak(mode: Shaken, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
     largest = np.abs(mode.shape) > 0.5
     named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
-    return Peak(
-        abs(mode.pole), Doubt.WEAK, float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0))), -2.0 * mode.pole.real, resolution, named
-    )
+    chance = float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
+    return Peak(abs(mode.pole), doubt, chance, None if doubt is Doubt.NARROW else -2.0 * mode.pole.real, resolution, named)
