@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import chain
 
 from flexstage.analysis.units import driven_units
-from flexstage.base.finding import DesignError, Finding
-from flexstage.base.memory import gigabytes
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.memory import available, gigabytes
 from flexstage.base.progress import duration, time_left
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
@@ -125,10 +125,13 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 
 
 def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, needed: frozenset[str]) -> Plan:
-    """A plan of the jobs of phases by name, each of them once."""
+    """A plan of the jobs of phases by name, each of them once; refused where one that is needed is far beyond memory or time."""
     whole = {name: _distinct(jobs) for name, jobs in phases.items()}
     todo = tuple(_phase(name, jobs, ways) for name, jobs in whole.items())
     known = sum(map(len, whole.values())) - sum(len(phase.todo) for phase in todo)
+    memory = available() if ways.limits.memory is None else ways.limits.memory
+    reductions = (job for phase in todo for job in phase.todo if job.key in needed and isinstance(job, Reduce))
+    require(each for each in (job.foreseen_refusal(memory, ways.limits.seconds) for job in reductions) if each is not None)
     return Plan(todo, workers(ways.limits), known, further, needed)
 
 

@@ -22,6 +22,9 @@ _LEFT, _MATTERS = 0.5, 0.1
 figure over the largest one of any component that one is raised for."""
 _AT_ORDER_TWO = 0.25
 """Order one is far off: on hinges and blocks order two left a tenth of the change from it, never a quarter."""
+_LOCKED = 0.5
+"""Change from order one above which it says nothing about order two: elements of order one lock where thin parts bend."""
+NOT_ESTIMATED = "FEA's error is not estimated: order one, which order two is compared with, locks where thin parts bend. Ask for --order 3"
 
 
 @dataclass(frozen=True)
@@ -39,9 +42,9 @@ DEFAULT = Resolution()
 class Converged(Generic[_Result]):
     """A result with the relative error estimated of each of its figures. An estimate, no bound; a figure that is not there is unknown.
 
-    It is the change from the order before, at order two a quarter of it.
-    `stopped` says why the order was not raised further although the accuracy asked was not reached; `raised` is the number of components
-    whose elements are of one order more.
+    It is the change from the order before, at order two a quarter of it, and not known of the `unestimated` figures, which changed by more
+    than half. `stopped` says why the order was not raised further although the accuracy asked was not reached; `raised` is the number of
+    components whose elements are of one order more.
     """
 
     result: Annotated[_Result, INNER]
@@ -49,11 +52,12 @@ class Converged(Generic[_Result]):
     order: int
     stopped: Annotated[str, INNER] = ""
     raised: Annotated[int, INNER] = 0
+    unestimated: Annotated[tuple[str, ...], INNER] = ()
 
     @property
     def error(self) -> float:
-        """The largest of the errors; infinite where none is known."""
-        return max(self.errors.values(), default=float("inf"))
+        """The largest of the errors; infinite where one of them is not estimated, or none is known."""
+        return float("inf") if self.unestimated else max(self.errors.values(), default=float("inf"))
 
 
 def converge(
@@ -80,13 +84,13 @@ def converge(
         try:
             result = work(reduction_of_order(order))
             now = figures(result)
-            found = Converged(result, estimates(before, now, order), order)
+            found = _converged(result, before, now, order)
             if found.error <= asked.accuracy:
                 return found
             if sizes is not None and order < orders[-1]:
                 for way in _raise_parts(figured, now, sizes(result), order, asked.accuracy):
                     result = work(way)
-                    found = Converged(result, estimates(figured(coarsen(way)), figures(result), order), order, raised=len(way.raised))
+                    found = _converged(result, figured(coarsen(way)), figures(result), order, len(way.raised))
                     if found.error <= asked.accuracy:
                         return found
         except DesignError as error:  # of a higher order than one that went: what it needs is not there
@@ -96,6 +100,11 @@ def converge(
         before = now
     assert found is not None  # noqa: S101  there is at least one order
     return found
+
+
+def _converged(result: _Result, before: Mapping[str, float], now: Mapping[str, float], order: int, raised: int = 0) -> Converged[_Result]:
+    errors = estimates(before, now, order)
+    return Converged(result, errors, order, raised=raised, unestimated=tuple(name for name in changes(before, now) if name not in errors))
 
 
 def _raise_parts(
@@ -170,11 +179,13 @@ def reduction_of_order(order: int) -> Reduction:
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
     """Relative errors estimated of the figures at an order, from those of the order below.
 
-    >>> estimates({"a": 1.0}, {"a": 2.0}, order=2)
+    None at order two where order one is off by more than half.
+
+    >>> estimates({"a": 1.0, "b": 4.0}, {"a": 2.0, "b": 1.0}, order=2)
     {'a': 0.125}
     """
-    share = _AT_ORDER_TWO if order == 2 else 1.0
-    return {name: share * change for name, change in changes(before, after).items()}
+    share, most = (_AT_ORDER_TWO, _LOCKED) if order == 2 else (1.0, np.inf)
+    return {name: share * change for name, change in changes(before, after).items() if change <= most}
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:

@@ -79,9 +79,13 @@ def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
 
 def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
     """Stiffness, modes and stress of the whole stage."""
+    from flexstage.solid.resolution import NOT_ESTIMATED  # takes long to import
+
     stage = found.result
     worst = max(found.errors, key=lambda name: found.errors[name], default=None)
-    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.error:.2g} % ({worst})"
+    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
+    if found.unestimated:
+        error += f"; of {', '.join(found.unestimated)} {NOT_ESTIMATED}"
     text = (
         f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
         f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest error estimated, from a coarser "

@@ -78,6 +78,13 @@ def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
         yield matrix_table(f"Compliance of {name}", hinge.compliance)
 
 
+def _largest_error(name: str, found: Converged[dict[str, SolidUnit]]) -> float | None:
+    """The largest error of a unit's figures, where all are estimated."""
+    if any(figure.startswith(f"{name}: ") for figure in found.unestimated):
+        return None
+    return max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=None)
+
+
 def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table:
     """Every distinct unit alone: K_a, K_l, gain, loss, and the highest stress at the full stroke.
 
@@ -94,7 +101,7 @@ def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table:
             f"{number(unit.gain)} of {number(unit.ideal_gain)}",
             percent(unit.loss if abs(unit.loss) > 1e-6 else 0.0),
             *_weakest(unit.stress),
-            _error(max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=None)),
+            _error(_largest_error(name, found)),
         )
         for name, unit in found.result.items()
     ]

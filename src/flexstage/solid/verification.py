@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -34,7 +34,7 @@ from flexstage.solid.fea.ties import stated_links
 from flexstage.solid.hinges import STANDARD_HINGES, Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.plan import verification_plan, work_ahead
 from flexstage.solid.read import STANDARD_SOLIDS, STANDARD_WAYS, Solids, remember, solids
-from flexstage.solid.resolution import DEFAULT, Converged, Resolution, converge
+from flexstage.solid.resolution import DEFAULT, NOT_ESTIMATED, Converged, Resolution, converge
 from flexstage.solid.stage import SolidStage, solid_stage, stage_figures, stiffness_figures
 from flexstage.solid.units import SolidUnit, solid_units
 from flexstage.spatial.frame import COMPONENTS
@@ -292,13 +292,22 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Con
                 mapped=simple.get(figure),
                 calibrated=second[figure],
                 calibration=touched,
-                reason=_why_unestimated(error),
+                reason=_why_unestimated(error, f"{name}: {figure}", found),
             )
         if unit.loss > 1e-4:
             gain = _finite(found.errors.get(f"{name}: gain"))
             error = None if gain is None else gain * (1.0 - unit.loss) / unit.loss
             values = (theory[name].loss, unit.loss, error)
-            yield Row(f"unit {name}", "loss", "1", *values, None, better[name].loss, touched, reason=_why_unestimated(error))
+            yield Row(
+                f"unit {name}",
+                "loss",
+                "1",
+                *values,
+                None,
+                better[name].loss,
+                touched,
+                reason=_why_unestimated(error, f"{name}: gain", found),
+            )
 
 
 def _mapped_unit(unit: UnitResult) -> dict[str, float]:
@@ -327,7 +336,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
         extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
         error = _finite(found.errors.get(figure))
         values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
-        reason = _why_unestimated(error) if "theory" in extra else "theory gives no finite value"
+        reason = _why_unestimated(error, figure, found) if "theory" in extra else "theory gives no finite value"
         yield Row("stage", figure, unit, *values, touched, reason=reason)
     own = Moving(fea.modes, fea.read.model)
     pairs = {name: pair_modes(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
@@ -336,6 +345,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
         best = {name: pair[index] for name, pair in pairs.items() if index in pair}
         alike = {name: pair.frequency for name, pair in best.items() if pair.reliable}
         error = _finite(found.errors.get(figure))
+        unestimated = _why_unestimated(error, figure, found)
         yield Row(
             group="stage",
             figure=f"{figure} ({fea.modes.names[index]})",
@@ -347,7 +357,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
             calibrated=alike.get("calibrated"),
             calibration=touched,
             modal_assurance=best["theory"].assurance if "theory" in best else None,
-            reason=_why_unestimated(error) if "theory" in alike else _why_unpaired(best.get("theory")),
+            reason=unestimated if "theory" in alike else _why_unpaired(best.get("theory")),
         )
 
 
@@ -362,8 +372,11 @@ def _finite(error: float | None) -> float | None:
     return error if error is not None and np.isfinite(error) else None
 
 
-def _why_unestimated(error: float | None) -> str | None:
-    return None if error is not None else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any] | None = None) -> str | None:
+    if error is not None:
+        return None
+    is_locked = found is not None and figure in found.unestimated
+    return NOT_ESTIMATED if is_locked else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
 
 
 def _mapped_model(mechanism: Mechanism) -> LinearModel | None:

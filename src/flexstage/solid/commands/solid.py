@@ -46,7 +46,7 @@ from flexstage.solid.fea.remote import Limits, Pool
 from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
 from flexstage.solid.read import Solids, solids
-from flexstage.solid.resolution import Converged, Resolution
+from flexstage.solid.resolution import NOT_ESTIMATED, Converged, Resolution
 from flexstage.solid.tables import (
     block_table,
     calibration_table,
@@ -418,7 +418,10 @@ def _accuracy_cautions(what: str, found: Converged[Any], asked: Resolution) -> t
 
 
 def _accuracy_text(found: Converged[Any]) -> str:
-    size = f"{100.0 * found.error:.2g} %" if found.errors else "unknown"
+    size = f"{100.0 * max(found.errors.values()):.2g} %" if found.errors else "unknown"
+    if found.unestimated:
+        locked, number = ", ".join(found.unestimated[:3]), len(found.unestimated)
+        return f"of {number} figures ({locked}{', ...' if number > 3 else ''}) {NOT_ESTIMATED}; of the others it is {size}"
     more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
     return f"the error estimated of finite elements is {size} at order {found.order}{more}"
 

@@ -11,6 +11,9 @@ ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), 
 """How the mesh is varied where the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
+NOTCH_MIDDLE, NOTCH_REACH = 0.7, 1.6
+"""Elements in the middle plane of a notch are this share of those on the faces of other hinges, so far along it on both sides, in geometric
+means of radius and thickness: there strain changes most."""
 WARPS = 12
 """Motions of an interface face that are linear or quadratic over it, and not rigid."""
 

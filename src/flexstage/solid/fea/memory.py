@@ -24,8 +24,8 @@ _COPIES = 4.0
 _LANCZOS = 40
 _DRAWN, _PER_MESHED = 0.5, 1.4e-4
 """Seconds to draw; seconds an element to mesh."""
-_PER_FREEDOM, _PER_PROJECTED = 3.3e-5, 1.7e-7
-"""Seconds an unknown, and an unknown and coordinate."""
+_PER_FREEDOM, _PER_PROJECTED, _SLOWER = 3.3e-5, 1.7e-7, 2e5
+"""Seconds an unknown, and an unknown and coordinate; above so many unknowns they grow by the root of them, as factors fill."""
 _COARSER, _COARSEST = 1.25, 12.0
 
 
@@ -122,9 +122,10 @@ def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
     Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
 
     >>> round(reduction_seconds(Counts.of(1000.0), 2, 24), 1), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
-    (0.8, 18)
+    (0.8, 22)
     """
-    return mesh_seconds(counts) + freedoms(counts, order) * (_PER_FREEDOM + _PER_PROJECTED * columns)
+    size = freedoms(counts, order)
+    return mesh_seconds(counts) + size * (_PER_FREEDOM + _PER_PROJECTED * columns) * max(1.0, size / _SLOWER) ** 0.5
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:

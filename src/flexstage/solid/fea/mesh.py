@@ -18,7 +18,7 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cad import Cad, cad, cut_component, half_extents, region
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
-from flexstage.solid.fea.fineness import ATTEMPTS, Fineness
+from flexstage.solid.fea.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, Fineness
 from flexstage.solid.fea.mirror import Mirrors
 from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, bends_both_ways, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
@@ -35,9 +35,6 @@ _ROUND = 0.85
 """Elements within round necks are this share of those of the same neck alone, as its faces are coarser."""
 _NOTCH = 5.0 / 3.0
 """Elements of notches, which are of one order more, are as much larger than those on the faces of other hinges."""
-_AMID, _REACH = 0.7, 1.6
-"""Elements in the middle plane of a notch are this share of those on the faces of other hinges, so far along it on both sides, in geometric
-means of radius and thickness: there strain changes most."""
 _SLENDER = 0.4
 """Share for straight necks: as wide as thick, they cost little."""
 _ROOT = 2.0 / 15.0
@@ -221,7 +218,7 @@ def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
         size = _ROOT * neck * thinnest(form)
         yield _root_points(form, size), size
     if _is_notch(form):
-        size = _AMID * neck * thinnest(form)
+        size = NOTCH_MIDDLE * neck * thinnest(form)
         yield _middle_points(form, size), size
     yield from core_points(form, _ROUND * neck)
 
@@ -229,7 +226,7 @@ def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
 def _middle_points(form: Shaped, size: float) -> Array:
     """Points (n, 3) in the middle plane of a notch around its thinnest line, in its frame [m]."""
     thickness, width = (float(np.real(value)) for value in (form.throat.height, form.throat.width))
-    reach = _REACH * np.sqrt(0.5 * span(form) * thickness)
+    reach = NOTCH_REACH * np.sqrt(0.5 * span(form) * thickness)
     along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / size))) for half in (reach, 0.5 * width))
     return np.array([(x, 0.0, z) for x in along for z in across])
 

@@ -10,11 +10,13 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
+from flexstage.base.progress import duration
 from flexstage.parts.piezo import Piezo
+from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
-from flexstage.solid.fea.fineness import ATTEMPTS, WARPS, Fineness, Hold, Reduction
+from flexstage.solid.fea.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, WARPS, Fineness, Hold, Reduction
 from flexstage.solid.fea.memory import Counts, mesh_seconds, needed, reduction_seconds, refusal
 from flexstage.solid.fea.piece import Form, Piece, span, thinnest
 from flexstage.solid.fea.store import to_bytes
@@ -22,6 +24,10 @@ from flexstage.solid.fea.worker import Call, Job
 
 _PER_PIECE, _PER_FEWEST = 450.0, 12.0
 """Elements of usual meshes: so many a piece, and so many times the fewest."""
+_LEAF, _NOTCH, _LEAST_THIN = 3.0, 5.5, 0.6
+"""Elements over each triangle of the middle plane of a leaf and of the fine part of a notch, as counted; the least share of them."""
+_SURELY = 0.85
+"""Share of the usual elements that meshes of leaves and notches had at least: within a sixth of what was counted from 0.2 to 1 mm."""
 _TRIANGLE = 0.433
 """Area of an equilateral triangle of side one."""
 
@@ -37,7 +43,25 @@ def fewest_elements(component: Component, fineness: Fineness) -> float:
     >>> round(fewest_elements(part, Fineness(neck=0.1)) / fewest_elements(part, Fineness(neck=1.0)))
     100
     """
-    return sum(_surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2) for piece in component.pieces)
+    return sum(max(_narrow_elements(piece, fineness), _LEAST_THIN * _thin_elements(piece.form, fineness)) for piece in component.pieces)
+
+
+def _narrow_elements(piece: Piece, fineness: Fineness) -> float:
+    """One at every triangle of the lateral surface, were the piece as wide as its least dimension."""
+    return _surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2)
+
+
+def _thin_elements(form: Form, fineness: Fineness) -> float:
+    """Elements of usual meshes in what is thin over a width: a layer of prisms in a leaf, several about the middle plane of a notch."""
+    if not isinstance(form, Shaped) or form.throat.is_round:
+        return 0.0
+    size, width = fineness.neck * thinnest(form), float(np.real(form.throat.width))
+    if form.slender:
+        return _LEAF * span(form) * width / (_TRIANGLE * size**2)
+    if not form.has_arc:
+        return 0.0
+    along = 2.0 * NOTCH_REACH * np.sqrt(0.5 * span(form) * thinnest(form))
+    return _NOTCH * along * width / (_TRIANGLE * (NOTCH_MIDDLE * size) ** 2)
 
 
 def _size(piece: Piece, fineness: Fineness) -> float:
@@ -83,8 +107,13 @@ class ComponentJob(StoredJob):
         return content(self.component)
 
     def expected(self, fineness: Fineness) -> Counts:
-        """What its mesh usually consists of."""
-        return Counts.of(_PER_PIECE * len(self.component.pieces) + _PER_FEWEST * fewest_elements(self.component, fineness))
+        """What its mesh usually consists of, with elements of one order more in its notches."""
+        forms = [piece.form for piece in self.component.pieces]
+        thin = [_thin_elements(form, fineness) for form in forms]
+        narrow = (_PER_FEWEST * _narrow_elements(piece, fineness) for piece in self.component.pieces)
+        total = _PER_PIECE * len(thin) + sum(map(max, narrow, thin))
+        finer = sum(number for number, form in zip(thin, forms, strict=True) if number and isinstance(form, Shaped) and form.has_arc)
+        return Counts.of(total).enriched(finer / total, fineness.order)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +160,21 @@ class Reduce(ComponentJob):
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
         """Why it does not fit, with an order or a fineness that does."""
         return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
+
+    def foreseen_refusal(self, memory: float, seconds: float) -> Finding | None:
+        """Why its usual mesh is beyond a memory [bytes] or a time, by far more than usual meshes differ; with its thinnest wide piece."""
+        scaled = self._usual.coarser(_SURELY**-0.5)
+        found = self.refusal(scaled, memory)
+        if found is None and self.seconds(scaled) > seconds:
+            what = f"its reduction at order {self.reduction.fineness.order} takes about {duration(self.seconds(scaled))}"
+            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Ask for a lower order (--order 2)")
+        thin = max(self.component.pieces, key=lambda piece: _thin_elements(piece.form, self.reduction.fineness))
+        if found is None or not isinstance(thin.form, Shaped):
+            return found
+        width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.height))
+        ratio = f"{thin.name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
+        more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
+        return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def work(self, call: Call) -> bytes:
         """Ask for what the surface alone takes, or one side of it, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
