@@ -21,7 +21,7 @@ from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve, retain_modes
 from flexstage.control.study.retained import control_and_modes
-from flexstage.control.study.setup import ControllerSetup, LoopSetup
+from flexstage.control.study.setup import AmplifierSetup, ControllerSetup, GaugeSetup, LoopSetup
 from flexstage.control.study.study import loop_study
 from flexstage.control.system import select
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Probe
@@ -121,7 +121,10 @@ def test_margins_and_bandwidth_of_a_shipped_case_are_those_with_all_modes(name):
 def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the_sampled_plant(rate, accuracy, monkeypatch):
     """|dL S| at its resonance, from two discretised plants; with slow samples most modes are above half their rate, and broad."""
     setup = LoopSetup(
-        rate=rate, controller=ControllerSetup(kind=ControllerKind.PID, proportional=300.0, integral=3e3, derivative=0.3, filter=500.0)
+        rate=rate,
+        amplifier=AmplifierSetup(bandwidth=1.5e3),
+        gauges=GaugeSetup(bandwidth=2e3),
+        controller=ControllerSetup(kind=ControllerKind.PID, proportional=300.0, integral=3e3, derivative=0.3, filter=500.0),
     )
     given = resolve(random_stage(3), setup)
     names = mode_names(given.whole)
