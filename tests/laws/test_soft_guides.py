@@ -240,6 +240,7 @@ def test_linear_quadratic_control_does_not_depend_on_a_soft_guide(late):
         tuned = tune(one, platform_loops(one.coordinates), Task(Kind.LQG, Goal(), expected=noise))
         found.append([tuned.bandwidth, tuned.judgement.peak])
         assert tuned.judgement.peak <= 2.0
+        assert tuned.judgement.growth < -0.2 * tuned.bandwidth  # observers too are not slower by decades than the loop
         assert tuned.controller.tracking == pytest.approx(1.0 / (2.0 * np.pi * tuned.bandwidth), rel=0.02)
     np.testing.assert_allclose(found[1:3], [found[0]] * 2, rtol=0.02)
     np.testing.assert_allclose(found[3], found[0], rtol=0.04)
