@@ -28,8 +28,10 @@ from tests.laws.shared import lumped
 from tests.laws.strategies import actuated_platforms, rosettes
 
 STAGES = st.one_of(actuated_platforms(), rosettes())
+TENTH = 0.1
+"""The share of the compliance that is defined to count."""
 DOUBTFUL = 1e-6
-"""How near to the threshold rounding decides."""
+"""How near to it rounding decides."""
 
 
 def defined(model: LinearModel) -> tuple[Array, bool]:
@@ -45,8 +47,8 @@ def defined(model: LinearModel) -> tuple[Array, bool]:
     for frequency in np.sort(omega):
         up_to = half @ seen[:, omega <= frequency * (1.0 + 1e-9)]
         own = np.linalg.eigvalsh(up_to @ up_to.T)
-        near |= len(found) < 6 and bool(np.any(np.abs(own - THRESHOLD) < DOUBTFUL))
-        found += [frequency / (2.0 * np.pi)] * (int(np.sum(own > THRESHOLD)) - len(found))
+        near |= len(found) < 6 and bool(np.any(np.abs(own - TENTH) < DOUBTFUL))
+        found += [frequency / (2.0 * np.pi)] * (int(np.sum(own > TENTH)) - len(found))
     return np.array(found), near
 
 
@@ -148,7 +150,7 @@ def test_a_local_mass_of_a_thousandth_changes_platform_frequencies_by_less_than_
     values = (2.0 * np.pi * plain.frequencies) ** 2
     parts = participation(compliance_root(model, platform_rows(model)), plain.platform_shapes, values)
     own = np.linalg.eigvalsh(np.cumsum(np.moveaxis(parts[:, None] * parts[None], -1, 0), axis=0))[: plain.platform[-1] + 1]
-    if np.any(np.abs(own - THRESHOLD) < 0.03):
+    if np.any(np.abs(own - TENTH) < 0.03):
         return
     rate = 2.0 * np.pi * ratio * plain.platform_frequencies[number]
     heavier = modes(with_local(model, 1e-3, rate)).platform_frequencies
@@ -187,7 +189,7 @@ def test_two_mass_chains(inner: float, soft: float) -> None:
     high, low = half + np.sqrt(half**2 - determinant), half - np.sqrt(half**2 - determinant)
     # mu phi^2 of the platform: (mu, phi) with inner motion v = (mu - 1 - s) / m for u = 1 and phi^2 = 1 / (1 + m v^2)
     share = high / (1.0 + (high - 1.0 - soft) ** 2 / inner) / (1.0 + soft)
-    expected = 1.0 / np.sqrt(high if share > THRESHOLD else low)
+    expected = 1.0 / np.sqrt(high if share > TENTH else low)
     found = modes(chains(inner, soft))
     np.testing.assert_allclose(found.platform_frequencies, expected * np.sqrt(np.arange(1.0, 7.0)) / (2.0 * np.pi), rtol=1e-9)
     lower = found.frequencies[:, None] * 2.0 * np.pi / np.sqrt(np.arange(1.0, 7.0) / high)
