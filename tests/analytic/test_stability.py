@@ -15,6 +15,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Restricted
+import itertools
 
 Z = (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)
@@ -74,7 +75,7 @@ def on_rods(random: np.random.Generator, pieces: int) -> fs.Mechanism:
         places = [tuple(end + length * (share - 1.0) * along) for share in np.arange(1, pieces) / pieces]
         names = ["ground", *(f"middle{rod}{place}" for place in range(pieces - 1)), "platform"]
         bodies |= {name: fs.Body(reference=at) for name, at in zip(names[1:-1], places, strict=True)}
-        for place, joins in enumerate(zip(names[:-1], names[1:], strict=True)):
+        for place, joins in enumerate(itertools.pairwise(names)):
             at = tuple(end + length * ((place + 0.5) / pieces - 1.0) * along)
             links[f"rod{rod}{place}"] = fs.Link(joins, "rod", at, tuple(along), bends=across)
     gravity = tuple(10.0 * random.normal(size=3))

@@ -5,32 +5,35 @@ The path of reference is followed here by arc length in equal small steps, and n
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import flexstage as fs
 from flexstage.base.finding import LowerBoundError
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.nonlinear.condense import system
-from flexstage.models.nonlinear.critical import critical
+from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.graph import advance, assemble
+from flexstage.models.nonlinear.graph import System, advance, assemble
 from flexstage.models.nonlinear.hold import nothing
+from flexstage.models.nonlinear.path import trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Loads
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
-from flexstage.parts.part import Part
 from flexstage.parts.rod import Rod
 
 STEEL = Material(young=200e9, poisson=0.3, density=0.0)
 DOWN = "platform.fz"
 
 
-def legs(part: Part, azimuths: np.ndarray, slopes: np.ndarray, *, radius: float = 2e-3, height: float = 0.0) -> Mechanism:
+def legs(part: Leaf | Rod, azimuths: np.ndarray, slopes: np.ndarray, *, radius: float = 2e-3) -> Mechanism:
     """A platform on legs that rise towards it: an arch of two, a dome of three or four; upright columns at a slope of 90 degrees."""
-    length = float(part.length)  # type: ignore[attr-defined]
-    body = Body(mass=0.02, inertia=Inertia(1e-6, 1e-6, 1e-6), centre=(0.0, 0.0, height), reference=(0.0, 0.0, 0.0))
+    length = float(part.length)
+    body = Body(mass=0.02, inertia=Inertia(1e-6, 1e-6, 1e-6), centre=(0.0, 0.0, 0.0), reference=(0.0, 0.0, 0.0))
     links: dict[str, Link] = {}
     for number, (azimuth, slope) in enumerate(zip(azimuths, slopes, strict=True)):
         out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
@@ -54,13 +57,13 @@ def random_legs(seed: int) -> Mechanism:
     return legs(rod, 0.5 * np.pi * np.arange(4), np.full(4, 0.5 * np.pi), radius=10e-3)
 
 
-def lowest(model: Nonlinear, system_: object) -> tuple[int, float]:
+def lowest(model: Nonlinear, here: System) -> tuple[int, float]:
     """Negative eigenvalues, and the lowest over the scale of translations and rotations."""
-    matrix = system_.stiffness[0]  # type: ignore[attr-defined]
+    matrix = here.stiffness[0]
     scale = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
     values = np.linalg.eigvalsh(0.5 * (matrix + matrix.T) / scale / scale[:, None])
     inside = 0
-    for bent in system_.bent:  # type: ignore[attr-defined]
+    for bent in here.bent:
         own = system(bent.tangent)[:, 0]
         own[:, -6:] *= -1.0
         inside += int(np.sum(np.linalg.eigvalsh(0.5 * (own + np.swapaxes(own, -1, -2))) < 0.0)) - 6 * len(own)
@@ -124,3 +127,64 @@ def test_the_critical_load_is_the_first_event_of_small_steps_whatever_the_size_o
         return
     assert np.ptp(found) < 1e-3 * np.abs(found[0])
     assert first_event(model, 1e-6 if seed % 5 == 4 else 5e-5, 10000) == pytest.approx(found[0], rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", [2, 3, *(pytest.param(each, marks=pytest.mark.full) for each in range(6, 40))])
+def test_units_change_no_critical_load(seed: int):
+    """Lengths by 1.6, the modulus by 0.37: loads by 0.37 * 1.6^2."""
+    drawn = random_legs(seed)
+    length, stiff = 1.6, 0.37
+    part = drawn.parts["leg"]
+    sizes = {name: length * getattr(part, name) for name in ("length", "thickness", "width", "diameter") if hasattr(part, name)}
+    links = {name: replace(link, at=tuple(length * np.array(link.at))) for name, link in drawn.links.items()}
+    steel = replace(STEEL, young=stiff * STEEL.young)
+    scaled = replace(drawn, materials={"steel": steel}, parts={"leg": replace(part, **sizes)}, links=links)
+    one, other = (factors(nonlinear(each), np.array([1.0]))[0] for each in (drawn, scaled))
+    assert other == pytest.approx(stiff * length**2 * one, rel=1e-7)
+
+
+def halved(drawn: Mechanism) -> Mechanism:
+    """The same stage with every leg in two halves and a body without mass between them."""
+    part = drawn.parts["leg"]
+    assert isinstance(part, Rod)
+    bodies, links = dict(drawn.bodies), dict[str, Link]()
+    for name, link in drawn.links.items():
+        bodies[f"{name}middle"] = Body(mass=0.0, inertia=Inertia(0.0, 0.0, 0.0), centre=link.at, reference=link.at)
+        shift = 0.25 * float(part.length) * np.array(link.along) / np.linalg.norm(link.along)
+        for joins, side in ((("ground", f"{name}middle"), -1.0), ((f"{name}middle", "platform"), 1.0)):
+            links[f"{name}{side:+.0f}"] = replace(link, joins=joins, at=tuple(np.array(link.at) + side * shift))
+    return replace(drawn, parts={"leg": replace(part, length=0.5 * part.length)}, bodies=bodies, links=links)
+
+
+@pytest.mark.parametrize("seed", [2, 4, *(pytest.param(each, marks=pytest.mark.full) for each in range(7, 60) if each % 5 > 1)])
+def test_a_rod_in_two_halves_has_the_same_critical_load(seed: int):
+    drawn = random_legs(seed)
+    one, other = (factors(nonlinear(each), np.array([1.0]))[0] for each in (drawn, halved(drawn)))
+    assert np.isnan(one) == np.isnan(other)
+    assert other == pytest.approx(one, rel=1e-5, nan_ok=True)
+
+
+def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load():
+    """A dome bears 0.95 of its limit load; beyond it the equilibrium of the dome that has snapped through is refused."""
+    stage = random_legs(2)
+    (limit,) = factors(nonlinear(stage), np.array([1.0]))
+    assert fs.stance(stage, loads={DOWN: 0.95 * limit}).sag.at("platform", "z") < 0.0
+    assert equilibrium(nonlinear(stage), {DOWN: 1.5 * limit}).converged
+    with pytest.raises(fs.DesignError, match=r"at 0\.66\d* of its loads it snaps or buckles"):
+        fs.stance(stage, loads={DOWN: 1.5 * limit})
+
+
+def test_a_trace_with_long_steps_has_the_events_of_one_with_short_steps():
+    """A dome through its snap: a limit point, and another one where it takes load again; nothing else."""
+    model, load = nonlinear(random_legs(2)), {DOWN: -1.0}
+    long, short = (trace(model, load, step=step, points=count) for step, count in ((0.05, 4), (0.005, 40)))
+    assert [each.kind for each in long.events] == [Kind.LIMIT, Kind.LIMIT]
+    assert [each.value for each in long.events] == pytest.approx([each.value for each in short.events], rel=5e-3)
+    assert not long.motions[[0, -1]].any()
+
+
+def test_a_double_eigenvalue_is_counted_twice():
+    """A square of columns sways both ways at once: the determinant keeps its sign, two motions lower the potential."""
+    model = nonlinear(random_legs(4))
+    (load,) = factors(model, np.array([1.0]))
+    assert unstable_motions(equilibrium(model, {DOWN: np.array([0.999, 1.001]) * load})).tolist() == [0, 2]

@@ -101,3 +101,22 @@ def test_what_hangs_bears_any_weight() -> None:
     hangs = replace(STAGE, gravity=(0.0, 0.0, -1e-9), paths={}, requirements={"buckling.factor": "at least 3"})
     assert np.isinf(critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cases[0].factor)
     assert not critical_factors(hangs, load_cases(hangs)[:1], most=100.0).cautions
+
+
+def test_a_preload_is_a_load_that_grows() -> None:
+    """A cantilever pressed by a spring whose force turns by half the tip's angle buckles at P = pi^2 E I / L^2, whatever its preload."""
+    rod, soft = fs.Rod("steel", 0.2, 2e-3), fs.Spring(stiffness=1e-3, preload=0.5)
+    column = fs.Mechanism(
+        "column",
+        {"steel": fs.Material(young=200e9, poisson=0.3, density=0.0)},
+        parts={"rod": rod, "spring": soft},
+        bodies={"platform": fs.Body(reference=(0.2, 0.0, 0.0))},
+        links={
+            "rod": fs.Link(("ground", "platform"), "rod", (0.1, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0)),
+            "spring": fs.Link(("platform", "ground"), "spring", (0.2, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0)),
+        },
+        gravity=(0.0, 0.0, 0.0),
+    )
+    (found,) = critical_factors(column).cases
+    assert (found.load, found.place, found.kind) == (STATED, REST, "bifurcation")
+    assert 0.5 * found.factor == pytest.approx(np.pi**2 * 200e9 * np.pi * 2e-3**4 / 64.0 / 0.2**2, rel=1e-3)

@@ -20,11 +20,13 @@ from flexstage.base.number import first_design
 from flexstage.base.quantity import DISPLACEMENT, RATIO
 from flexstage.base.record import INNER
 from flexstage.base.unit import quantity_of_unit, show
+from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import Critical, NothingGivesWayError, critical, require_continuation, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT
+from flexstage.parts.part import push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 REST = "at rest"
@@ -158,7 +160,7 @@ def load_cases(mechanism: Mechanism) -> tuple[LoadCase, ...]:
 def _own(mechanism: Mechanism) -> Iterator[str]:
     if np.any(np.asarray(mechanism.gravity) != 0.0):
         yield WEIGHT
-    if mechanism.forces:
+    if mechanism.forces or any(np.any(push_of(link.part) or 0.0) for link in expand(mechanism).links.values()):
         yield STATED
 
 

@@ -133,8 +133,9 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
     """Stations and weights (..., s), rotation and rate (..., s, 3, 12 + k) of sections, stiffness (..., k) of inner shapes.
 
     Bending by both ends is f (a + b x) with f the flexibility, twist f a. Inner shapes f p(x), p the next polynomials orthogonal to these
-    and to one another under f, move no end. With them column loads are right to 1e-4; those of lateral buckling, in which bending in two
-    planes and twist are coupled, to 1 %, mostly to 1e-3. With the ends' shapes alone columns are 1 % off where one end is guided, 20 % where both are pinned.
+    and to one another under f, move no end. With them column loads are right to 1e-4, and those of lateral buckling, in which bending in
+    two planes and twist are coupled, to 1 %, mostly to 1e-3. With the ends' shapes alone columns are 1 % off where one end is guided, 20 %
+    where both are pinned.
     """
     points = beam.points
     half = points.position

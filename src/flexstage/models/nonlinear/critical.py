@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -195,29 +195,37 @@ def require_continuation(start: State, end: State) -> None:
     Raises `DesignError` at the load of the first limit point or bifurcation on the way, where the path ends, and where it leads to another
     equilibrium. A state that is not stable, or whose path begins at one that is not, is let through.
     """
-    course, begin = _course_between(start, end)
-    if begin.motions or not np.isfinite(begin.slope) or int(unstable_motions(end)):
+    if int(unstable_motions(end)):
         return
     advice = "Load it less, or ask flexstage buckle what gives way"
     try:
-        followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope, bounded=False)
+        followed = follow_between(start, end, 1e-6)
     except LowerBoundError as error:
         what = f"equilibrium was followed to {error.bound:.3g} of the way from the unloaded stage: a state beyond is not its continuation"
         raise refuse("stage", what, advice) from None
-    if followed.event is not None and followed.factor < 1.0:
+    if followed is None:
+        return
+    if followed.event is not None:
         what = f"at {followed.factor:.4g} of its loads it snaps or buckles: the equilibrium beyond is not the continuation of the unloaded"
         raise refuse("stage", what, advice)
-    found = search(course.model, followed.last.found.pose, end.loads, end.hold, USUAL)
-    if found.status[0] != Status.CONVERGED or _apart(course.model, found.pose, end.pose) > _SAME:
+    found = search(end.model, followed.last.found.pose, end.loads, end.hold, USUAL)
+    if found.status[0] != Status.CONVERGED or _apart(end.model, found.pose, end.pose) > _SAME:
         raise refuse("stage", "the equilibrium found under its loads is not the continuation of the unloaded stage", advice)
 
 
-def _course_between(start: State, end: State) -> tuple[Course, Point]:
-    """The course from the loads and held coordinates of a state to those of another one, and its first point."""
+def follow_between(start: State, end: State, tolerance: float) -> Followed | None:
+    """Follow the path from a state to the loads and held coordinates of another one, its first critical point included.
+
+    `None` where it begins at a state that is not stable, or where the loads move nothing. Raises `LowerBoundError` as `follow_to_event`.
+    """
     gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
     kept = kept_rows(start.model, start.held, start.held)
     course = Course(start.model, start.loads, start.hold, gain, end.hold.value - start.hold.value, _NEAR, kept)
-    return course, first_point(course, start.pose, 0.0)
+    begin = first_point(course, start.pose, 0.0)
+    if begin.motions or not np.isfinite(begin.slope):
+        return None
+    followed = follow_to_event(course, begin, 1.0, tolerance, length=1.0 / begin.slope, bounded=False)
+    return followed if followed.factor <= 1.0 else replace(followed, event=None)
 
 
 def _apart(model: Nonlinear, one: Pose, other: Pose) -> float:
