@@ -128,5 +128,5 @@ def ratio_units(rows: tuple[str, ...], columns: tuple[str, ...]) -> tuple[tuple[
 def _ratio(row: str, column: str) -> str:
     if row == column:
         return "1"
-    bottom = f"({column})" if " " in column else column
+    bottom = f"({column})" if " " in column or "/" in column else column
     return row if column == "1" else f"{row}/{bottom}"
