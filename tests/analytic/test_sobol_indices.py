@@ -52,13 +52,14 @@ def test_stated_standard_errors_are_the_scatter_of_the_indices():
     assert 0.3 < scatter / np.mean([each.errors[0, 0] for each in found]) < 1.2
 
 
-def test_correlation_ratios_are_without_bias():
-    """Half of the variance is a step at the middle, the rest is chance: the ratio is 1/2 in the mean of responses, however few designs."""
-    plan = Plan(Sampling.MONTE_CARLO, 1, count=64, seed=3)
-    at = shares(plan, 0, 64)
-    step = np.where(at > np.median(at), 1.0, -1.0)
-    values = step + np.random.default_rng(0).standard_normal((64, 4000))
-    names, units = (("a",), tuple(f"y{n}" for n in range(4000))), (("",), ("",) * 4000)
-    found = effects(Results(np.arange(64), at, values, {}, names, units, 64, {}, ""), plan).first[0]
-    noise = np.mean(np.var(values - step, axis=0))
-    assert np.mean(found) == pytest.approx(1.0 / (1.0 + noise), abs=0.005)
+def test_correlation_ratios_are_freed_of_chance_as_in_one_way_analysis_of_variance():
+    """Epsilon squared, 1 - MS_within / MS_total (Kelley, PNAS 21 (1935) 554), over bins of equal counts."""
+    plan = Plan(Sampling.LATIN_HYPERCUBE, 1, count=96, seed=2)
+    at = shares(plan, 0, plan.designs)
+    value = at + np.random.default_rng(1).standard_normal(at.shape)
+    found = effects(Results(np.arange(len(at)), at, value, {}, (("a",), ("y",)), (("",), ("",)), len(at), {}, ""), plan)
+    bins = np.sum(np.isfinite(found.places[0]))
+    groups = [value[rows, 0] for rows in np.array_split(np.argsort(at[:, 0]), bins)]
+    within = sum(np.sum((each - np.mean(each)) ** 2) for each in groups) / (len(at) - bins)
+    assert bins > 2
+    assert found.first[0, 0] == pytest.approx(1.0 - within / np.var(value, ddof=1), rel=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,6 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.lumped import lumped
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.part import Restricted
-import itertools
 
 Z = (0.0, 0.0, 1.0)
 STEEL = fs.Material(young=200e9, poisson=0.0, density=1e-3)

@@ -183,3 +183,12 @@ def test_a_constant_input_is_named():
     values[:, 1] = 3.0
     with pytest.raises(DesignError, match="u1: the input is constant"):
         h1(spectra(replace(record, samples=InMemory(values)), Segments(1.0)))
+
+
+@pytest.mark.parametrize("size", [64, 65])
+def test_lines_add_up_to_the_mean_square(size: int) -> None:
+    """Parseval's theorem, the last line included: of an even number of samples it stands once, of an odd one twice."""
+    values = np.random.default_rng(size).standard_normal((size, 1)) + 3.0 * (-1.0) ** np.arange(size)[:, None]
+    one = in_memory([Channel("y", "um", Role.OUTPUT)], RATE, values)
+    found = spectra(one, Segments(size / RATE, 0.0, Window.BOXCAR))
+    assert np.sum(found.yy[:, 0, 0].real) * RATE / size == pytest.approx(np.var(values), rel=1e-12)

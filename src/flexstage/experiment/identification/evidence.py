@@ -20,7 +20,8 @@ from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
 
 _SEGMENTS = 24.0
 _PER_INPUT = 3.0
-_LONGEST = 32_768
+_LONGEST, _WHOLE = 32_768, 1 << 20
+_ONCE, _DRIVEN, _FEWEST, _SHORTEST = 1.7, 1e-3, 8, 64
 _HIGHEST = 0.42
 _LOWEST_LINES = 3
 _RUNNING = 10
@@ -112,7 +113,9 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
     band = (float(first), float(_HIGHEST * records[0].rate))
     inside = known.band(*band)
     responses = h1(known)
-    noise = noise_density(known)
+    is_single = known.averages <= len(known.inputs)
+    drive = np.real(np.trace(known.xx, axis1=1, axis2=2))
+    noise = _single_noise(known, responses) if is_single else noise_density(known)
     names = [channel.name for channel in known.inputs]
     size = _scale(inside.yy, records[0].rate)
     input_scale, output_scale = _divisor(_scale(inside.xx, records[0].rate)), _divisor(size)
@@ -127,6 +130,7 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
             column += block_count(kept, parts)
 
     weights = 1.0 / np.sqrt(np.maximum(noise, 1e-12 * np.max(noise, axis=0) + 1e-300))
+    weights = weights * np.sqrt(drive / np.max(drive))[:, None] if is_single else weights
     source = records[0].source or records[0].name or "record"
     return Evidence(
         where=source,
@@ -143,6 +147,12 @@ def _of_records(records: tuple[Record, ...], known: Spectra, tell: Tell | None) 
         rounding=_rounding(known.outputs, size),
         resolution=max(1.0 / record.duration for record in records),
     )
+
+
+def _single_noise(known: Spectra, responses: Responses) -> Array:
+    """Noise density (f, p) of outputs where no averages tell it: by what neighbouring lines differ, even over all lines."""
+    rough = _roughness(responses.frequencies, responses.values) * np.real(np.diagonal(known.xx, axis1=1, axis2=2))[1:-1, None]
+    return np.repeat(np.median(rough, axis=(0, 2))[None], len(responses.frequencies), axis=0)
 
 
 def _scale(density: Array, rate: float) -> Array:
@@ -171,15 +181,38 @@ def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines
 def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
     """Long segments resolve sharp resonances, many average noise: as many as `wanted`, and three for each input.
 
+    One sweep has no averages to make: each frequency is driven once. Its segment is the whole record, without a window.
+
     >>> from flexstage.experiment.example import one_mode_record
     >>> choose_segments([one_mode_record(seconds=48.0)]).seconds
     2.0
     """
     inputs = len({channel.name for record in records for channel in record.inputs})
     shortest = min(record.duration for record in records)
+    if all(_is_swept_once(record, Segments(record.duration / wanted, 0.0)) for record in records):
+        return Segments(min(shortest, _WHOLE / records[0].rate), 0.0, Window.BOXCAR)
     needed = max(wanted, _PER_INPUT * inputs) / len(records)
     seconds = min(shortest / max(4.0, needed), _LONGEST / records[0].rate)
     return Segments(max(seconds, min(shortest, 16.0 / records[0].rate)))
+
+
+def _is_swept_once(record: Record, segments: Segments) -> bool:
+    """Whether the one input drives each frequency in one segment alone: their powers P give (sum P)^2 / sum P^2 = 1."""
+    size = round(segments.seconds * record.rate)
+    if len(record.inputs) != 1 or size < _SHORTEST:
+        return False
+    window = segments.window.samples(size)[:, None]
+    source = record.select([record.inputs[0].name])
+    power = np.array(
+        [np.abs(np.fft.rfft(window * (block - np.mean(block)), axis=0)[1:, 0]) ** 2 for block in source.blocks(size) if len(block) == size]
+    )
+    total = np.sum(power, axis=0)
+    driven = total > _DRIVEN * np.max(total)
+    if len(power) < _FEWEST or not np.any(driven):
+        return False
+    often = total[driven] ** 2 / np.sum(power[:, driven] ** 2, axis=0)
+    lines = np.bincount(np.argmax(power[:, driven], axis=0))  # of a blow one segment has all
+    return bool(np.median(often) < _ONCE and np.max(lines) < 0.5 * np.sum(lines))
 
 
 def whole_segment(records: Sequence[Record]) -> Segments:

@@ -94,7 +94,7 @@ def searched_from(low: float, high: float, *, outputs: int, resolution: float) -
 
     Covariances of N lines repeat after N lags. `resolution` [Hz] is that of a block.
 
-    >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=0.02)
+    >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=1.0)
     (1.4, inf)
     """
     needed = 2 * (2 * _rows(outputs, np.inf) + _SKIPPED)
