@@ -94,10 +94,10 @@ def first_event(model: Nonlinear, step: float, count: int) -> float:
             rate = np.linalg.solve(here.stiffness[0], (here.residual - assemble(model, pose, loads(load + 1.0), held).residual)[0])
             own = np.linalg.solve(here.stiffness[0], -here.residual[0])
             if correction:
-                change = -float((scale * moved) @ (scale * own)) / float((scale * moved) @ (scale * rate))
+                change = float(-(scale * moved) @ (scale * own) / ((scale * moved) @ (scale * rate)))
             else:
-                sign = -1.0 if last is None else np.sign((scale * rate) @ last)
-                change, own = sign * step / np.linalg.norm(scale * rate), 0.0 * own
+                sign = -1.0 if last is None else float(np.sign((scale * rate) @ last))
+                change, own = float(sign * step / np.linalg.norm(scale * rate)), 0.0 * own
             moved, load = moved + own + change * rate, load + change
             pose, _ = advance(model, pose, here.bent, (own + change * rate)[None], np.ones(1))
             if np.linalg.norm(scale * own) < 1e-11 and correction:
@@ -135,9 +135,10 @@ def test_units_change_no_critical_load(seed: int):
     drawn = random_legs(seed)
     length, stiff = 1.6, 0.37
     part = drawn.parts["leg"]
+    assert isinstance(part, Leaf | Rod)
     sizes = {name: length * getattr(part, name) for name in ("length", "thickness", "width", "diameter") if hasattr(part, name)}
     links = {name: replace(link, at=tuple(length * np.array(link.at))) for name, link in drawn.links.items()}
-    steel = replace(STEEL, young=stiff * STEEL.young)
+    steel = replace(STEEL, young=stiff * 200e9)
     scaled = replace(drawn, materials={"steel": steel}, parts={"leg": replace(part, **sizes)}, links=links)
     one, other = (factors(nonlinear(each), np.array([1.0]))[0] for each in (drawn, scaled))
     assert other == pytest.approx(stiff * length**2 * one, rel=1e-7)
@@ -150,7 +151,8 @@ def halved(drawn: Mechanism) -> Mechanism:
     bodies, links = dict(drawn.bodies), dict[str, Link]()
     for name, link in drawn.links.items():
         bodies[f"{name}middle"] = Body(mass=0.0, inertia=Inertia(0.0, 0.0, 0.0), centre=link.at, reference=link.at)
-        shift = 0.25 * float(part.length) * np.array(link.along) / np.linalg.norm(link.along)
+        along = np.array(link.along, dtype=float)
+        shift = 0.25 * float(part.length) * along / np.linalg.norm(along)
         for joins, side in ((("ground", f"{name}middle"), -1.0), ((f"{name}middle", "platform"), 1.0)):
             links[f"{name}{side:+.0f}"] = replace(link, joins=joins, at=tuple(np.array(link.at) + side * shift))
     return replace(drawn, parts={"leg": replace(part, length=0.5 * part.length)}, bodies=bodies, links=links)

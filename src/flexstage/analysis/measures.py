@@ -458,7 +458,7 @@ def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None
     return works
 
 
-def value_or_bound(work: Callable[[Bench, Measure], Array], bench: Bench, asked: Measure) -> Array:
+def value_or_bound(work: Callable[[Bench, Measure], Any], bench: Bench, asked: Measure) -> Any:
     """The value of a measure, or its lower bound if no more is known."""
     try:
         return work(bench, asked)

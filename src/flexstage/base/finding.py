@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class DesignError(ValueError):
         self.findings = tuple(findings)
         super().__init__("\n".join(str(finding) for finding in self.findings))
 
-    def __reduce__(self) -> tuple[type[DesignError], tuple[tuple[Finding, ...]]]:
+    def __reduce__(self) -> tuple[type[DesignError], tuple[Any, ...]]:
         return type(self), (self.findings,)
 
 
@@ -40,7 +41,7 @@ class LowerBoundError(DesignError):
         super().__init__(findings)
         self.bound = bound
 
-    def __reduce__(self) -> tuple[type[DesignError], tuple[tuple[Finding, ...], float]]:
+    def __reduce__(self) -> tuple[type[DesignError], tuple[Any, ...]]:
         return type(self), (self.findings, self.bound)
 
 

@@ -233,12 +233,12 @@ def point_at(course: Course, found: Found, factor: float, *, step: Array, start:
         rate = _solved(system, load_rate(course, found.pose, factor, system))
         slope = np.copysign(1.0 / np.linalg.norm(course.scale * rate), 1.0 if start is None else step @ (course.scale * rate))
         along = slope * rate
-    motions, reference, stiffness = int(count_descents(model, system, course.kept)[0]), None, np.nan
-    if start is None or start.reference is not None:
-        scale = stiffness_scale(model, system) if start is None else start.reference.scale
-        own = weakest_flexure(model, system)[0]
-        whole = lowest_stiffness(model, system, course.kept, scale)[0]
-        reference = Reference(scale, whole, own) if start is None else start.reference
+    motions, stiffness = int(count_descents(model, system, course.kept)[0]), np.nan
+    reference = None if start is None else start.reference
+    if start is None or reference is not None:
+        scale = stiffness_scale(model, system) if reference is None else reference.scale
+        own, whole = weakest_flexure(model, system)[0], lowest_stiffness(model, system, course.kept, scale)[0]
+        reference = reference or Reference(scale, whole, own)
         stiffness = (-1.0 if motions else 1.0) * abs(whole / reference.stage * own / reference.flexure)
     steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
     return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
