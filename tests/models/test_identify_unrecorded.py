@@ -195,7 +195,7 @@ def test_intervals_from_outputs_alone_hold_as_often_as_they_state() -> None:
         )
         frequency = (found.frequencies - known.frequencies[mode]) / found.frequency_deviations
         damping = (found.damping - known.damping[mode]) / found.damping_deviations
-        scores += list(zip(frequency, damping, shape[1 - largest, every], strict=True))
+        scores.extend(np.stack([frequency, damping, shape[1 - largest, every]], axis=1))
     held, (least, most) = np.sum(np.abs(scores) < 1.0, axis=0), binomial_limits(len(scores))
     assert len(scores) >= 54
     assert np.all((held >= least) & (held <= most)), held

@@ -277,12 +277,12 @@ def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Arra
     """
     value, changes = track[index]
     own = _deviation(changes)
-    beyond, within = np.zeros(len(value)), [np.zeros((2, len(value)))]
+    beyond, within = np.zeros(len(value)), list[Array]([np.zeros((2, len(value)))])
     for other, other_changes in track[index + 1 :]:
         apart, chance = (other - value) ** 2, (_BY_CHANCE * _deviation(other_changes - changes)) ** 2
         beyond = np.maximum(beyond, apart - chance)
         is_sure = _deviation(other_changes) < _WORSE * own
-        within.append(np.stack([np.where(is_sure, np.minimum(apart, chance), 0.0), is_sure]))
+        within.append(np.stack([np.where(is_sure, np.minimum(apart, chance), 0.0), np.where(is_sure, 1.0, 0.0)]))
     hidden, count = np.sum(within, axis=0)
     return own**2 + beyond, hidden / np.maximum(count, 1.0) / 3.0
 

@@ -183,11 +183,9 @@ def _header(head: list[str], delimiter: str | None, columns: int, path: Path) ->
 
 def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterator[list[str]]:
     """Fields of the lines next above the numbers, upwards, as long as they name all columns; lines without letters are passed over."""
+    signs: list[str | None] = [delimiter, ",", ";", "\t", *([None] if delimiter in (None, "\t") else [])]
     for line in reversed([each for each in head if _LETTER.search(each)]):
-        divided = (
-            [found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each)
-            for each in dict.fromkeys((delimiter, ",", ";", "\t", *([None] if delimiter in (None, "\t") else [])))
-        )
+        divided = ([found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each) for each in dict.fromkeys(signs))
         named = next((each for fields in divided if _are_names(each := _without_last_empty(fields, columns), columns)), None)
         if named is None:
             return
