@@ -19,6 +19,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.sparse import Rows, Sparse
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.telescope_mount import telescope_mount
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models import ideal as ideals
 from flexstage.models import lumped as lumpeds
@@ -284,3 +285,13 @@ def test_a_part_that_hangs_on_nothing_is_found():
     stage = stage_of([*range(1, 80), -1], helix(80)[::-1])
     with pytest.raises(DesignError, match="singular"):
         lumpeds.lumped(replace(stage, links={name: link for name, link in stage.links.items() if name != "r40"}))
+
+
+@pytest.mark.full
+def test_load_factors_without_zeros_are_found_where_few_eigenvalues_are_apart():
+    """Of a stage in which two motions soften and all others are next to zero, Lanczos' method returns those that converge."""
+    stage = telescope_mount()
+    dense = stabilities.stability(stage, lumped(stage)).dead
+    with patch.object(stabilities, "_LARGE", 0), patch.object(stabilities, "_pieces", stabilities._pieces.__wrapped__):
+        sparse = stabilities.stability.__wrapped__(stage, lumped(stage)).dead
+    assert sparse == pytest.approx(dense, rel=1e-6)

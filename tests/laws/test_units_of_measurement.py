@@ -26,8 +26,7 @@ UNITS = {"[length]": 1.6, "[mass]": 0.7, "[time]": 1.25, "[current]": 1.1, "[ang
 """How many of the new units one of SI is. Temperatures stay in kelvin: the error budget is that of 1 K by default."""
 SI = dict.fromkeys(UNITS, 1.0)
 VARIANTS = ("double-triangle-a", "double-triangle-refitted", "xy-stage-floating", "tip-tilt-four")
-NOT_YET = ("telescope-mount",)
-"""Its load factors are eigenvalues that ARPACK does not find in these units."""
+
 OTHERS = (Mechanism, LinearModel, State)
 """What is no result."""
 
@@ -93,7 +92,7 @@ ROUNDING = 1e-12
 """Numbers in SI that are rounding in every result: lengths, angles and what is small beside them."""
 
 
-@pytest.mark.parametrize("name", [name for name in CASES if name not in NOT_YET and (FULL or name not in VARIANTS)])
+@pytest.mark.parametrize("name", [name for name in CASES if FULL or name not in VARIANTS])
 def test_an_analysis_is_the_same_in_other_units(name: str) -> None:
     stage = fs.case(name)
     one, other = (fs.analyse(in_other_units(stage, units)) for units in (SI, UNITS))

@@ -43,7 +43,7 @@ _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
-_LARGE = 600
+_LARGE = 900
 """Freedoms above which matrices are kept without their zeros."""
 _DENSE = 6000
 """Freedoms above which no loaded state is worked out."""

@@ -327,6 +327,8 @@ def _no_number(value: Any) -> MismatchError:
 
 
 def _array(demand: Demand, value: Any) -> Any:
+    if getattr(value, "__array_ufunc__", _array) is None:  # a matrix of its own kind that is used as an array, such as a sparse one
+        return value
     array = _as_array(value) if isinstance(value, list | tuple) else value
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fciu":
         raise MismatchError(value, "an array of numbers", "Give a numpy array in SI units")

@@ -30,7 +30,7 @@ _USABLE = 1e-6
 _STEPS = 12
 _SOFT = 1e-8
 """What rigid strains give in the factor, beside one for the others; refinement takes it away."""
-_RATIO = 1e-10
+_RATIO, _RESTARTS = 1e-10, 100
 _MASSLESS = 1e-13
 _LEAST = 32
 """Modes computed of a large stage; those of the last cluster, which may go on, are left out."""
@@ -243,14 +243,21 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
 
 
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
-    """The least mu (k,) of T x = mu K x, ascending, and their shapes (n, k) of unit energy x^T K x; the start is always the same."""
+    """The least mu (k,) of T x = mu K x, ascending, and their shapes (n, k) of unit energy x^T K x; the start is always the same.
+
+    Fewer than `count` where those beyond the least lie too close together to converge, as many near zero do.
+    """
     size = taken.rows.shape[1]
     stiffness, inverse = (
         scipy.sparse.linalg.LinearOperator((size, size), matvec=each, dtype=float)
         for each in (lambda motion: solver.stiffness @ motion, solver.solve)
     )
-    found = scipy.sparse.linalg.eigsh(
-        taken.matrix, min(count, size - 1), stiffness, Minv=inverse, v0=1.0 + 0.5 * np.cos(np.arange(size)), which="SA", tol=_RATIO
-    )[1]
+    ways = {"which": "SA", "tol": _RATIO, "maxiter": _RESTARTS, "v0": 1.0 + 0.5 * np.cos(np.arange(size))}
+    try:
+        found = scipy.sparse.linalg.eigsh(taken.matrix, min(count, size - 1), stiffness, Minv=inverse, **ways)[1]
+    except scipy.sparse.linalg.ArpackNoConvergence as error:
+        found = error.eigenvectors
+        if not found.shape[1]:
+            raise refuse("stage", "its least load factor is not found: no eigenvalue converges", "Look at its loads one by one") from None
     values, turn = scipy.linalg.eigh(found.T @ (taken @ found), found.T @ (solver.stiffness @ found))
     return cast("Array", values), found @ turn
