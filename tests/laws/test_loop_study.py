@@ -18,6 +18,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.cases.registry import case
 from flexstage.control.closed import loop
 from flexstage.control.coordinates import coordinates
 from flexstage.control.error_tables import _error_and_crosstalk, noise_table
@@ -340,3 +341,9 @@ def test_a_loop_on_finite_elements_of_a_guide_is_the_loop_of_theory_as_far_as_th
     theory, solid = loop_study(stage, asked), loop_study(stage, asked, solid=fea_modes(stage))
     assert solid.settled.highest == pytest.approx(theory.settled.highest, rel=0.05)
     assert solid.bandwidths.rejection == pytest.approx(theory.bandwidths.rejection, rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "motions"), [("mirror-mount", 0), ("leaf-guide", 1)])
+def test_a_stage_without_motion_or_drive_has_no_loop(name: str, motions: int) -> None:
+    with pytest.raises(DesignError, match=f"{motions} ideal motions and 0 actuators"):
+        resolve(case(name), LoopSetup())

@@ -27,7 +27,7 @@ _PER_PIECE, _PER_FEWEST = 450.0, 12.0
 _LEAF, _NOTCH, _LEAST_THIN = 3.0, 5.5, 0.6
 """Elements over each triangle of the middle plane of a leaf and of the fine part of a notch, as counted; the least share of them."""
 _SURELY = 0.85
-"""Share of the usual elements that meshes of leaves and notches had at least: within a sixth of what was counted from 0.2 to 1 mm."""
+"""Share of the usual elements that meshes of leaves and notches had at least."""
 _TRIANGLE = 0.433
 """Area of an equilateral triangle of side one."""
 
