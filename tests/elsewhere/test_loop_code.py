@@ -362,8 +362,8 @@ def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkey
         (write_controller, "controller.txt", r"does not end in \.c\. Call it controller\.c"),
         (write_controller, "2 axes.c", r'its functions could not be called "2 axes"\. Call it stage_2_axes\.c'),
         (write_controller, "Math.c", r"its header Math\.h would stand before a system's.*Call it stage_Math\.c"),
-        (write_fmu, "controller.zip", r"does not end in \.fmu"),
-        (write_plant, "plant.m", r"does not end in \.mat"),
+        (lambda path, given: write_fmu(path, controller_code(given)), "controller.zip", r"does not end in \.fmu"),
+        (lambda path, _: write_plant(path, integral_loop().plant), "plant.m", r"does not end in \.mat"),
     ],
 )
 def test_bad_names_are_refused(tmp_path, write, name, message):

@@ -249,7 +249,7 @@ def test_unstable_loops_are_told_with_the_time():
     ("change", "message"),
     [
         ({"reference": np.zeros((5, 2))}, r"reference: it is \(5, 2\)"),
-        ({"reference": np.full((5, 6), np.nan)}, "reference: a number is not finite"),
+        ({"reference": np.full((5, 6), np.nan)}, "reference at index 0, 0: found nan, expected a finite number"),
         ({"named": {"ground.q": np.zeros(5)}}, "ground.q: the loop has no input of this name. Near to it are"),
         ({"named": {"noise.S1": np.zeros(4)}}, r"noise.S1: it is \(4,\), where the reference has 5 samples"),
     ],

@@ -345,7 +345,7 @@ def strut(**place):
         ({"start": (0.0, 0.0, 0.0)}, "links.strut: it has no to."),
         ({"at": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.03)}, "it has both at and to"),
         ({"at": (0.0, 0.0, 0.0)}, 'it has no along. Write for example along = "x"'),
-        ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "links.strut.to: the direction is zero"),
+        ({"start": (0.0, 0.0, 0.0), "end": (0.0, 0.0, 0.0)}, "from and to are 0 mm apart, and part wire is 30 mm long"),
     ],
 )
 def test_ends_that_cannot_be(place, said):

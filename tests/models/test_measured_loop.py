@@ -47,7 +47,7 @@ from flexstage.models.lumped import lumped
 from tests.conftest import FULL
 from tests.models.synthetic_records import record, truth
 
-COPIES = 200 if FULL else 24
+COPIES = 200 if FULL else 60
 SHAKEN = VibrationSetup(criterion=Criterion("VC-D"))
 SETUP = LoopSetup(floor=Floor(x=SHAKEN, y=SHAKEN, z=SHAKEN))
 

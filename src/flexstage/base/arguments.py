@@ -44,6 +44,10 @@ GAPS = Demand(finite=False)
 """Annotation of an array in which samples may be missing: it may hold NaN."""
 
 
+UNLIMITED = Demand(finite=False)
+"""Annotation of a number that may be infinite, where it limits nothing."""
+
+
 WRITTEN = "WRITTEN"
 """Class attribute of a description, and of results that are made of one: a noun, and how a call writes it (`fs.lumped(stage)`)."""
 
@@ -201,7 +205,7 @@ def _annotated_rule(inner: Any, extras: tuple[Any, ...], demand: Demand) -> Rule
         return partial(_direction, _rule(inner, demand))
     if COMPLIANCE_MATRIX in extras or STIFFNESS_MATRIX in extras:
         return partial(_row, [partial(_row, [partial(_number, demand)] * 6)] * 6)
-    return _rule(inner, replace(demand, finite=False) if GAPS in extras else demand)
+    return _rule(inner, replace(demand, finite=False) if any(isinstance(each, Demand) for each in extras) else demand)
 
 
 def _union_rule(hints: tuple[Any, ...], demand: Demand) -> Rule:

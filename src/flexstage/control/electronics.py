@@ -9,7 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
-from flexstage.base.arguments import CheckedFields, check_arguments
+from flexstage.base.arguments import UNLIMITED, CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Table
 from flexstage.base.quantity import CURRENT, FREQUENCY, TIME
@@ -60,7 +60,7 @@ class GaugeSettings(CheckedFields):
     [m, rad] its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
     """
 
-    bandwidth: float | None = None
+    bandwidth: Annotated[float, UNLIMITED] | None = None
     noise_density: float | None = None
     resolution: float | None = None
     filter_order: int = 0

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.arguments import check_arguments
+from flexstage.base.arguments import GAPS, check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.simulation.actuation import Actuation
@@ -22,7 +23,7 @@ _NONE: Mapping[str, Array] = {}
 
 
 @check_arguments
-def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Array] = _NONE) -> Simulated:
+def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annotated[Array, GAPS]] = _NONE) -> Simulated:
     """The loop's answer to a reference (n, f) [m, rad] and disturbances (n,) each, from rest, sample by sample.
 
     `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before it is

@@ -192,7 +192,11 @@ def _covariance(found: Fit, scatter: Array | None = None) -> Array:
 
 
 def _wald(values: Array, covariance: Array) -> float:
-    scale = np.sqrt(np.maximum(np.real(np.diagonal(covariance)), 1e-300))
+    """Wald's statistic of values against zero; zero where the information does not bound one of them."""
+    variances = np.real(np.diagonal(covariance))
+    if np.any(variances <= 0.0):
+        return 0.0
+    scale = np.sqrt(variances)
     inverse = np.linalg.pinv(covariance / np.outer(scale, scale), rcond=1e-10, hermitian=True)
     return float(2.0 * np.real(np.vdot(values / scale, inverse @ (values / scale))))
 

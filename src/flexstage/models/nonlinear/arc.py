@@ -219,9 +219,12 @@ def first_point(course: Course, pose: Pose, factor: float) -> Point:
 
 
 def critical_point(course: Course, pose: Pose, factor: float, into: Array | None) -> Point:
-    """A limit point to begin from, or a bifurcation and the motion `into` (n,) of its branch."""
+    """A limit point to begin from, or a bifurcation and the motion `into` (n,) of its branch.
+
+    Just before a limit the path goes on to where the factor grows; just past it, where a motion is unstable, to where it falls.
+    """
     point = first_point(course, pose, factor)
-    along = point.along if into is None else into / np.linalg.norm(course.scale * into)
+    along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(course.scale * into)
     return replace(point, along=along, slope=0.0, steepest=np.inf, stiffness=np.nan, reference=None)
 
 

@@ -180,10 +180,11 @@ def follow_to_event(
             if bent is None and _excess(point) < 0.0:
                 bent = _zero(course, last, point, _excess, 1e-4) or point
             last = point
-            if last.factor >= most:
-                return Followed(last, None, _bend(bent, last), last.factor)
-            if bounded and bent is not None and last.factor > _WELL * bent.factor:
+            ends = last.factor >= most
+            if bounded and bent is not None and (last.factor > _WELL * bent.factor or (ends and _bend(bent, last) is not None)):
                 raise _not_followed(last, "", bent)
+            if ends:
+                return Followed(last, None, _bend(bent, last), last.factor)
         else:
             break
     raise _not_followed(last, "no equilibrium is found next to the last one", bent)
