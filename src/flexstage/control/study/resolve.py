@@ -105,8 +105,9 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: Stance | None = None,
     require(setup_findings(setup))
     asked = solid is None and there is None and setup.model is Model.LUMPED
     kinematics, loaded = ideal(mechanism), load_effect(mechanism) if asked else None
-    if not kinematics.coordinates or not kinematics.actuators:
-        what = f"the platform has {len(kinematics.coordinates)} ideal motions and {len(kinematics.actuators)} actuators"
+    drives = len(kinematics.actuators) + len(kinematics.thrusts)
+    if not kinematics.coordinates or not drives:
+        what = f"the platform has {len(kinematics.coordinates)} ideal motions and {drives} actuators"
         raise refuse("loop", f"{what}: there is nothing to control", "Free a motion in the design, and add an actuator that drives it")
     model = solid.model if solid is not None else there.linear if there is not None else felt(mechanism, setup.model)
     if model is None:
