@@ -83,6 +83,15 @@ def test_what_is_left_of_a_tone_is_less_than_the_noise(noise: float) -> None:
     assert np.std((quiet.values - made.values)[:, 8]) < (1e-5 if noise == 0.0 else 0.01 * noise) * np.std(made.values[:, 8])
 
 
+@pytest.mark.parametrize("offset", [-1.8, -1.2, 0.5])
+def test_a_tone_near_the_end_of_a_stretch_of_lines_is_taken_out(offset: float) -> None:
+    """Levels are medians of 64 lines each: a tone within two lines of the last one raises the level of one side alone."""
+    made = record(truth(seed=1107), 107, seconds=30.0)
+    frequency = (78 * 64 + offset) * made.rate / made.length
+    [tone] = remove_tones(shaken(made, frequency, 3.0, (5,)))[1]
+    np.testing.assert_allclose(tone.frequency, frequency, atol=1e-3)
+
+
 def test_a_record_without_tones_stays_as_it_is() -> None:
     for seed in range(2 * SEEDS):
         assert remove_tones(record(truth(seed=1000 + seed), seed, seconds=30.0))[1] == ()

@@ -203,13 +203,17 @@ def _local_residual(drive: Array, outputs: Array) -> Array:
 
 
 def _prominent_lines(power: Array) -> list[int]:
-    """Numbers of lines that stand out in one of the powers (f, p), the loudest first, none beside another."""
+    """Numbers of lines that stand out in one of the powers (f, p), the loudest first, none beside another.
+
+    The level is interpolated between chunks of lines: a step in it would rank a neighbour of a tone before the tone.
+    """
     count = len(power) // _CHUNK
     if count < 1:
         return []
     level = np.median(power[: count * _CHUNK].reshape(count, _CHUNK, -1), axis=1) / np.log(2.0)
-    chunk = np.minimum(np.arange(len(power)) // _CHUNK, count - 1)
-    ratio = np.max(power / np.maximum(level[chunk], 1e-300), axis=1)
+    middles = (np.arange(count) + 0.5) * _CHUNK
+    smooth = [np.interp(np.arange(len(power)), middles, column) for column in np.log(np.maximum(level, 1e-300)).T]
+    ratio = np.max(power / np.exp(np.stack(smooth, axis=1)), axis=1)
     chosen: list[int] = []
     for line in np.argsort(-ratio)[: 8 * _MOST]:
         if ratio[line] < _LOUD or len(chosen) == _MOST:
