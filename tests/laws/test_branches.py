@@ -52,7 +52,8 @@ def test_a_limit_is_not_told_as_a_branch():
     assert found.kind is Kind.LIMIT
     after = beyond(found, load, step=1e-4, points=3)
     assert (np.diff(after.values) < 0.0).all()
-    assert after.motions[1:].all()
+    assert after.values.max() == pytest.approx(found.factor, rel=1e-6)
+    assert (after.motions[1:] == 1).all()
 
 
 def test_an_imperfect_bifurcation_is_no_critical_load():
