@@ -2,9 +2,9 @@
 
     python -m tools.compare_outputs BASE [--only PATTERN]
 
-The commands of compare_outputs.toml run on both sides with one BLAS kernel and one thread. JSON, MAT, HDF5, the text of tables and all
-other files must be equal bit by bit. What is left out, and what is meant to differ, is stated in the tables below; all else is told, a
-line a difference. Outputs are kept in the user's cache: those of a commit for good, those of the working tree until a file of src changes.
+The commands of compare_outputs.toml run on both sides with the same kernels and one thread. JSON, MAT, HDF5, tables, the text of pages and
+all other files must be equal bit by bit. Intended differences are stated in the tables below; every other difference, and what is left out,
+has a line. Outputs are kept in the user's cache: those of a commit for good, those of the working tree until a file of src changes.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import os
 import re
 import shlex
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import time
@@ -26,6 +28,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+from typing import TextIO
 
 import numpy as np
 from filelock import FileLock
@@ -36,160 +40,18 @@ from tools.differences import DIFFERENT, EQUAL, RENAMED, SKIPPED, WITHIN, Meant,
 ROOT = Path(__file__).resolve().parents[1]
 
 
-# What is meant to differ: regular expression at BASE -> what it is in the working tree.
-WORDS: Mapping[str, str] = {r"--reading": "--model", r"^reading = ": "model = "}  # of command lines and of the files that they read
-TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
-    r"(?<!gauge's )\breading\b(?! that is no| closes no|, then each|\[)": "model",  # not those of the C code
-    r"(for all|What|connect) readings": r"\1 models",
-    "The theories a stage can be read by": "Models of theory",
-    "theory that the stage is read by as": "of the stage as",
-    "^flexstage result 1$": "flexstage result 2",
-    r"\bAmplifying\b": "AmplifierSetup",  # classes in schemas
-    r"\bControlling\b": "ControllerSetup",
-    r"\bGauging\b": "GaugeSetup",
-    r"\bShaking\b": "VibrationSetup",
-    r"\bCommanded\b(?! less)": "TrajectorySetup",
-    "&quot;": "&#34;",
-    "&#x27;": "&#39;",
-    r"(^|>)Room($|<)": r"\1Clearance\2",
-    "Forces, strength and room": "Forces, strength and clearance",
-    r"^(# [a-z0-9-]+: .*\.)$": "#:schema ./flexstage.schema.json\n\\1",
-    r"^(# flexstage check \S+ .*)$": "\\1\n# flexstage schema > flexstage.schema.json lets an editor check this file while you type.",
-}
-PATHS: Mapping[str, str] = {  # in JSON, MAT and HDF5
-    r"\breading$": "model",
-    r"^(frequency|gain|loss)(?=\.(rows|columns|unit|values))": r"\1_slopes",
-    r"^([a-z-]+\.)?method$": r"\1provenance",
-    r"\bplatform_modes": "platform",
-    r"^((?:[a-z-]+\.)?)gain_matrix": r"\1gain",
-    r"\bin_plane_tensor_free$": "free",
-    r"\bin_plane_tensor$": "held",
-    r"\bin_plane_tensor_free": "free.tensor",
-    r"\bin_plane_tensor": "held.tensor",
-    r"\bcentre_of_stiffness_m": "centre_m",
-    r"\bprincipal_free\.": "free.",
-    r"\bprincipal\.": "held.",
-    r"\b(held|free)\.stiffness_n_per_m": r"\1.principal_n_per_m",
-    r"\bstiffest_direction_rad": "angle_rad",
-    r"^(workspace\.)?room\b": r"\1clearance",
-    r"\bredundant$": "redundant[].constraints",
-    r"\bsingle_axis_corrected": "corrected",
-    r"\bsingle_axis": "single",
-    r"\b(single|corrected)\.limiting\.(\w+)$": r"\1.coordinates.\2.limiting",
-    r"\bgauge_range": "gauges",
-    r"\bgauges\.fits\.": "gauges.gauges.",
-    r"\b(gauges\.gauges\.[^.]+)$": r"\1.fits",
-    r"\bpose_resolution": "resolution",
-    r"\b(resolution|platform_lines)(?=\.(rows|columns|unit|values))": r"\1.table",
-    r"\bpolytope\.vertices": "polytope.poses.values",
-    r"(?<!units\.)\b(drive|stack_lines)\.(?!actuators)": r"\1.actuators.",
-    r"(axial|lateral)_stiffness_n_per_m": r"\1_n_per_m",
-    r"\bstress\.least_safety": "stress.least",
-    r"\bstress\.strokes": "stress.worst_strokes",
-    r"\bleast_factor": "least",
-    r"\bbuckling\.ends\.(.+)$": r"buckling.links.\1.ends",
-    r"\bstage\.dead_load": "stage.dead",
-    r"\bstage\.worst_strokes": "stage.worst",
-    r"\bmaximum_load_n": "maximum_n",
-    r"\btensile_limit_n": "tensile_n",
-    r"\bloads(\.actuators\..*\.)(least|largest)_compression": r"bearing\1\2",
-    r"\bloads(\.actuators\..*\.(usage|pull))": r"bearing\1",
-    r"mapped_stiffness_n_per_m": "series_n_per_m",
-    r"^test\[\]": "files[]",
-    r"^(files\[\])\.seconds": r"\1.duration_s",
-    r"^(files\[\])\.samples": r"\1.length",
-    r"^close$": "close_modes",
-    r"^shapes\b": "shape_matrix",
-    r"^spectra\.(window|overlap)": r"spectra.segments.\1",
-    r"^spectra\.independent_averages": "spectra.independent",
-    r"^spectra\.(mean_multiple_coherence)": r"\1",
-    r"^((?:compared\.)?modes\[\])\.theory_over_experiment": r"\1.difference",
-    r"^((?:compared\.)?modes\[\])\.fea_over_experiment": r"\1.fea_difference",
-    r"^((?:compared\.)?(?:modes|further)\[\]\.(?:fea_)?)modal_assurance": r"\1assurance",
-    r"^((?:compared\.)?repeated\[\])\.modes": r"\1.numbers",
-    r"^((?:compared\.)?repeated\[\])\.largest_angle_rad": r"\1.angle_rad",
-    r"^chi_square\.before": "chi_square_before",
-    r"^chi_square\.after": "chi_square",
-    r"^chi_square\.data": "freedoms",
-    r"^chi_square\.(probability)": r"\1",
-    r"\bplatform_shapes": "twists",
-    r"^(units\.[^.]+\.)(stroke|command|output)_m$": r"\1\2s_m",
-    r"^(units\.[^.]+\.)?stress\.(?!names\.)(.+)\.von_mises_pa$": r"\1stress.names.\2.highest_pa",
-    r"^(units\.[^.]+\.)?stress\.(?!names\.)(.+)\.yield_pa$": r"\1stress.names.\2.yield_stress_pa",
-    r"^(units\.[^.]+\.)?stress\.(?!names\.)([^.]+)\.safety$": r"\1stress.names.\2.safety",
-    r"^parts\.([^.]+)\.over_beam_theory$": r"over_beam_theory.\1",
-    r"^parts\.([^.]+)\.(links|roots|compliance|stiffness|separable|errors?|order|elements|freedoms)\b": r"hinges.\1.\2",
-    r"\bground_source$": "ground.source",
-    r"^(drift\.)?ground$": r"\1ground.material",
-    r"^scatter\[\]\.(shape|size|within)": r"scatter[].distribution.\1",
-    r"^yield\.lines\[\]\.(kept|copies|share|interval)": r"yield.lines[].yield.\1",
-    r"^failures\[\]\.copy": "failures[].design",
-    r"^plant\.(coordinates|actuators|gauges)$": r"plant.coordinates.\1",
-    r"^plant\.coordinates\.coordinates$": "plant.coordinates.names",
-    r"^plant\.(rate_hz|delay_s)$": r"plant.hardware.\1",
-    r"^plant\.modes_hz$": "plant.frequencies_hz",
-    r"^plant\.modes_left_out$": "plant.left_out",
-    r"^plant\.highest": "highest",
-    r"^controller\.state_space": "controller.system",
-    r"^(controller\.loops\.\w+)\.(?!notches)": r"\1.law.",
-    r"^(controller\.loops\..*\.law\.(?:integral|gain))$": r"\1_per_s",
-    r"^(controller\.loops\..*\.law\.(?:derivative|tracking|tracking_time))$": r"\1_s",
-    r"^(controller\.loops\..*\.law\.filter)$": r"\1_hz",
-    r"^((?:controller|disk_margin|stability)\b.*\.frequency)$": r"\1_hz",
-    r"^stability\.(growth_all_modes)$": r"\1_per_s",
-    r"^(stability\.least\.growth)$": r"\1_per_s",
-    r"^reasons\.disk$": "reasons.disk_margin",
-    r"^(reasons\.)?margins\.": r"\1margins.loops.",
-    r"^bandwidths\.": "bandwidths.coordinates.",
-    r"^hysteresis\.": "hysteresis.actuators.",
-    r"^static_errors\.(mapped|lumped)_gains": "static_errors.other_gains",
-    r"^noise\.(simulated_)": r"\1",
-    r"^runs\[\]\.course$": "runs[].course.name",
-    r"^runs\[\]\.moved$": "runs[].course.moved",
-    r"^runs\[\]\.(saturated|slewing)\.(\w+)$": r"runs[].simulated.actuators.\2.\1",
-    r"^runs\[\]\.out_of_range\.(\w+)$": r"runs[].simulated.gauges.\1.out_of_range",
-    r"^(range_v|stroke_m|rms|largest|validation|width|drift|branches|inner)$": r"hysteresis.\1",
-    r"^model\.": "hysteresis.plays.",
-}
-GONE: Mapping[str, str] = {  # paths that stand at BASE only, and where the same is now
-    r"^stiffness\.(reasons\.)?dead_load$": "of the lumped model alone",
-    r"\bcrosstalk\.": "the entries of `transfer` beside its diagonal",
-    r"^(workspace\.)?strokes\.": "`limits`, actuator by actuator",
-    r"\bmap_error\.worst": "the first column of its `table`",
-    r"\bprincipal(_free)?$": "null, where `held` or `free` is",
-    r"^parameters\[\]": "`parameters` by address",
-    r"\b(?:room|clearance)\.intrusions\.": "a list",
-    r"^trials$": "`hysteresis.trials`, a record each",
-}
-COME: Mapping[str, str] = {  # paths that stand in the working tree only
-    r"\bprovenance$": "each result says where it comes from",
-    r"^(workspace\.)?limits\.": "strokes, actuator by actuator",
-    r"\bcorner\.command|\bpolytope\.poses\.(rows|columns|unit)": "names of rows and columns",
-    r"\b(platform_lines\.coordinates|stress\.links|units\.[^.]+\.unit|actuators)$": "names of rows and columns",
-    r"\b(resolution\.inverse|clearance\.extreme|buckling\.stage\.(strokes_m|stiffens))": "fields of the result that were not told",
-    r"^(budget\.)?ground\.": "which material the ground was taken as",
-    r"\bclearance\.intrusions\[\]": "a list",
-    r"^(workspace\.)?bearing$": "null, where `loads` is",
-    r"^parameters\.": "`parameters` by address",
-    r"\bvariables\[\]\.(logarithmic|levels|step|parameters)$": "fields of a variable that were not told",
-    r"^(margins|peaks)\.cut$|^bandwidths\..*\.(complementary|half_rejection)_hz$|\.other_model$": "fields of the loop that were not told",
-    r"^plant\.coordinates\.(units|length_m)$|\bcourse\.duration_s$|^hysteresis\.(known_from|actuators\..*\.improvement)$": "the same",
-    r"^hysteresis\.trials\[\]": "a record each",
-}
-RULES: tuple[Rule, ...] = (  # numbers whose arithmetic or its order changed; searched() gives those of searches
-    Rule(r"(room|clearance)\.intrusions$", "was by body, is a list", np.inf),
-    Rule(r"^printed/01-schema", "designs name the packages that they need", np.inf),
-    Rule(r"^printed/02-schema", "classes have other names, and are sorted by them", np.inf),
-    Rule(r"^test-.*provenance$", "a digest of what was identified", np.inf),
-    Rule(
-        r"^(test-[a-z-]+|records)/.*\.json:",
-        "the background is summed once: the search ends within its tolerance",
-        1e-6,
-    ),
-    Rule(r"\bbuckling\.", "products of a beam's shapes are summed as products of matrices"),
-)
+# What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
+WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read
+TEXTS: Mapping[str, str] = {}  # of terminal, HTML and other text
+PATHS: Mapping[str, str] = {}  # in JSON, MAT, HDF5 and tables
+ALONE: Mapping[str, str] = {}  # paths of one side only, and why
+RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed
 
-KERNEL = os.environ.get("OPENBLAS_CORETYPE", "Haswell")
+FIXED = {each: os.environ.get(each, kernel) for each, kernel in (("OPENBLAS_CORETYPE", "Haswell"), ("FLEXSTAGE_KERNEL", "avx2"))}
+"""Kernels of BLAS and of flexstage on both sides, unless the environment names others."""
+KERNELS = "-".join(FIXED.values())
+WAIT = 60.0
+"""Longest wait for an answer of a server [s]."""
 
 
 @dataclass(frozen=True)
@@ -258,22 +120,61 @@ class Side:
         with whole(folder) as begun:
             if begun is not None:
                 (begun / "out").mkdir()
+                (begun / "cache").mkdir()
+                (begun / "cache" / "native").symlink_to(self.kept / "native")  # kernels are built once a side
                 for name, text in task.files.items():
                     (begun / "out" / name).write_text(text, encoding="utf-8")
                 for number, line in enumerate(task.commands, 1):
-                    self._run(line, begun, f"{number:02}-{line.split()[0]}")
+                    self._run(line, begun, f"{number:02}-{line.split()[0].lstrip('-')}")
                 shutil.rmtree(begun / "cache", ignore_errors=True)
         return folder / "out"
 
     def _run(self, line: str, folder: Path, name: str) -> None:
-        """Run one command; what it says and its exit code become files as well."""
-        fixed = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "PYTHONNOUSERSITE"), "1")
+        """Run one command; what it writes to its streams and its exit code become files as well."""
+        fixed = FIXED | dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "PYTHONNOUSERSITE"), "1")
         fixed |= {"PYTHONPATH": str(self.source / "src"), "FLEXSTAGE_CACHE": str(folder / "cache")}
-        fixed |= {"OPENBLAS_CORETYPE": KERNEL, "COLUMNS": "120", "TERM": "dumb", "LC_ALL": "C.UTF-8", "TZ": "UTC"}
+        fixed |= {"COLUMNS": "120", "TERM": "dumb", "LC_ALL": "C.UTF-8", "TZ": "UTC"}
+        line, _, lines = line.partition(" < ")
         words = [str(self.python), "-m", "flexstage", *shlex.split(line)]
-        done = subprocess.run(words, cwd=folder / "out", env=os.environ | fixed, capture_output=True, encoding="utf-8", check=False)
-        (folder / "out" / f"{name}.stdout").write_text(done.stdout, encoding="utf-8")
-        (folder / "out" / f"{name}.stderr").write_text(f"exit code {done.returncode}\n{done.stderr}", encoding="utf-8")
+        out = folder / "out"
+        with Popen(words, cwd=out, env=os.environ | fixed, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, encoding="utf-8") as running:
+            try:
+                said = talk(running, (out / lines).read_text(encoding="utf-8")) if lines else ""
+                answers, errors = running.communicate()
+            except BaseException:
+                running.kill()
+                raise
+        (out / f"{name}.stdout").write_text(answers, encoding="utf-8")
+        (out / f"{name}.stderr").write_text(f"exit code {running.returncode}\n{said}{errors}", encoding="utf-8")
+
+
+def talk(server: Popen[str], lines: str) -> str:
+    """Send lines to a server that names its port first, then interrupt it; all that it said.
+
+    A line with "?" has an answer, whose lines end with a blank but for the last. "QUERY ~ PATTERN" is repeated until the answer matches.
+    """
+    said = [server.stderr.readline() if server.stderr else ""]
+    if (port := re.search(r":(\d+):", said[0])) is None:
+        return said[0]
+    with socket.create_connection(("127.0.0.1", int(port[1])), WAIT) as connection, connection.makefile("rw", encoding="latin-1") as stream:
+        for line in lines.splitlines():
+            query, _, pattern = line.partition(" ~ ")
+            answer = _ask(stream, query)
+            while pattern and not re.fullmatch(pattern, answer.strip()):
+                answer = _ask(stream, query)
+            said.append(f"{line}\n{'' if pattern else answer}")
+    server.send_signal(signal.SIGINT)
+    return "".join(said)
+
+
+def _ask(stream: TextIO, query: str) -> str:
+    """The answer to a line, empty where it is no query."""
+    stream.write(f"{query}\n")
+    stream.flush()
+    answer = stream.readline() if "?" in query else ""
+    while answer.endswith(" \n"):
+        answer += stream.readline()
+    return answer
 
 
 def _command(*words: str | Path) -> str:
@@ -291,7 +192,7 @@ def base_side(commit: str, cache: Path) -> Side:
     if (source / needed).read_bytes() != (ROOT / needed).read_bytes():
         _command("make", "-C", source, "setup-runtime")
         python = source / ".venv" / "bin" / "python"
-    return Side(source, python, cache / commit / KERNEL)
+    return Side(source, python, cache / commit / KERNELS)
 
 
 def head_side(cache: Path) -> Side:
@@ -306,7 +207,7 @@ def head_side(cache: Path) -> Side:
     with whole(tree / "source") as begun:
         if begun is not None:
             shutil.copytree(ROOT / "src", begun / "src", ignore=shutil.ignore_patterns("__pycache__"))
-    return Side(tree / "source", Path(sys.executable), tree / KERNEL)
+    return Side(tree / "source", Path(sys.executable), tree / KERNELS)
 
 
 def main() -> int:
@@ -315,9 +216,10 @@ def main() -> int:
     parser.add_argument("base", metavar="BASE", help="commit to compare with")
     parser.add_argument("--only", default="", metavar="PATTERN", help="runs whose names this regular expression finds")
     asked = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs, and the servers they start, ignore it else
     cache = user_cache_path("flexstage", appauthor=False) / "compare-outputs"
     old, new = base_side(_command("git", "rev-parse", f"{asked.base}^{{commit}}")[:12], cache), head_side(cache)
-    meant = Meant(TEXTS, PATHS, RULES, GONE, COME)
+    meant = Meant(TEXTS, PATHS, RULES, ALONE)
     states, told = dict[str, Counter[str]](), defaultdict[str, list[str]](list)
     with ThreadPoolExecutor(2) as pool:
         begun = [(each.name, pool.submit(old.outputs, each), pool.submit(new.outputs, each.spelled(WORDS))) for each in tasks(asked.only)]
@@ -325,8 +227,8 @@ def main() -> int:
             found = list(compared_folders(name, first.result(), second.result(), meant))
             states[name] = Counter(state for _, (state, _) in found)
             for where, (state, text) in found:
-                if state == DIFFERENT:
-                    told[text].append(where)
+                if state in (DIFFERENT, SKIPPED):
+                    told[f"{state}: {text}"].append(where)
             print(f"{name}: {_verdict(states[name])}", file=sys.stderr, flush=True)
     for text, places in told.items():
         print(f"{places[0]}{f' (and {len(places) - 1} more)' if len(places) > 1 else ''}: {text}")

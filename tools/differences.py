@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import difflib
 import hashlib
 import json
@@ -12,20 +13,24 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
 from scipy.io import loadmat
 
-# What is left out, by name: paths of documents, words of texts, and files inside of others.
-LEFT_PATHS = {"versions": r"(^|[._@])version$|^@?made(\[\])?$"}
+# What is left out, by reason: paths of documents, words of texts, and files inside of others.
+LEFT_PATHS = {"version": r"(^|[._@])version$", "date": r"^@?made(\[\])?$"}
 LEFT_WORDS = {
     "date": r"\d{4}-\d\d-\d\dT[\d:.]+\S*",
     "version": r"(?<=flexstage )\d+\.\d+\.\d+\S*|^\d+\.\d+\.\d+$",
     "digest": r"(?<= of )[0-9a-f]{10,16}$|^[0-9a-f]{16}$|^[0-9a-f]+·10[⁰-⁹¹²³]+$",  # cut off, as number, or of a document
+    "folder of a run": r"(?<=kept in )\S+",
+    "free port": r"(?<=127\.0\.0\.1:)\d+",
+    "time that a server ran": r"(?<=ran for )\S+ s",
 }
 LEFT_MEMBERS = r"\.(so|dll|dylib)$"
 
@@ -44,24 +49,17 @@ class Rule:
     frequencies: str = ""
 
 
-def searched(run: str, because: str) -> tuple[Rule, ...]:
-    """Rules for the result of a search that may end elsewhere: its objectives and constraints count, not how they were reached."""
-    counts = r"(before|optimum|rounded)\.(objectives|limits\[\])|(margins|disk_margin|stability)\."
-    return Rule(rf"^{run}/.*:({counts})", because, 1e-6), Rule(f"^{run}/", because, np.inf)
-
-
 @dataclass(frozen=True)
 class Meant:
-    """What is meant to differ: regular expressions of words in texts and of paths in documents, each to what it is now, and rules.
+    """Stated differences: regular expressions of words in texts and of paths in documents, each with its replacement, and rules.
 
-    `gone` and `come`: paths of one side alone, each with what was done.
+    `alone`: paths of one side only, each with the reason.
     """
 
     texts: Mapping[str, str] = field(default_factory=dict)
     paths: Mapping[str, str] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
-    gone: Mapping[str, str] = field(default_factory=dict)
-    come: Mapping[str, str] = field(default_factory=dict)
+    alone: Mapping[str, str] = field(default_factory=dict)
 
 
 Document = Mapping[str, list[Any]]
@@ -100,15 +98,52 @@ def read(path: Path) -> Document | list[str]:
         case ".fmu":
             with zipfile.ZipFile(path) as members:
                 return document({each: members.read(each) for each in members.namelist() if not re.search(LEFT_MEMBERS, each)})
+        case ".npz":
+            with np.load(path) as arrays:
+                return document(dict(arrays))
+        case ".csv":
+            columns = zip_longest(*csv.reader(data.decode().splitlines()), fillvalue="")
+            return document({f"{place} {name}": _column(cells) for place, (name, *cells) in enumerate(columns, 1)})
+        case ".xlsx":
+            return document(_workbook(path))
         case ".html":
             page = _Page()
             page.feed(data.decode())
-            return _plain(page.words)
+            return page.words
         case _ if b"\0" in data:
             lines = [(line.decode("latin-1"), hashlib.sha256(line).hexdigest()) for line in data.split(b"\n")]
-            return _plain(line if line.isprintable() else digest for line, digest in lines)
+            return [line if line.isprintable() else digest for line, digest in lines]
         case _:
-            return _plain(data.decode(errors="replace").splitlines())
+            return data.decode(errors="replace").splitlines()
+
+
+def _column(cells: Sequence[Any]) -> np.ndarray | list[str]:
+    """A column of a table: numbers, NaN where a cell is empty, or texts."""
+    try:
+        return np.array([float(each or "nan") for each in cells])
+    except ValueError:
+        return [*map(str, cells)]
+
+
+def _workbook(path: Path) -> Mapping[str, Any]:
+    """Columns of each sheet below its head of two rows, by letter."""
+    space = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
+    found: dict[str, dict[str, list[str]]] = {}
+    with zipfile.ZipFile(path) as files:
+        names, strings = (_xml(files, each) for each in ("workbook", "sharedStrings"))
+        texts = ["".join(each.itertext()) for each in strings.iterfind("si", space)]
+        for number, sheet in enumerate(names.iterfind("sheets/sheet", space), 1):
+            cells = found.setdefault(sheet.get("name", ""), defaultdict(list))
+            for cell in _xml(files, f"worksheets/sheet{number}").iterfind(".//c", space):
+                value, place = cell.findtext("v", "", space), cell.get("r", "")
+                column = place.rstrip("0123456789")
+                place = f"{column}.head" if int(place.removeprefix(column)) < 3 else column
+                cells[place].append(texts[int(value)] if cell.get("t") == "s" else value)
+    return {name: {place: _column(each) for place, each in cells.items()} for name, cells in found.items()}
+
+
+def _xml(files: zipfile.ZipFile, name: str) -> ElementTree.Element:
+    return ElementTree.fromstring(files.read(f"xl/{name}.xml"))  # noqa: S314 (flexstage has written it)
 
 
 def _hdf(path: Path) -> Mapping[str, Any]:
@@ -200,16 +235,14 @@ def compared(where: str, old: Document, new: Document, meant: Meant) -> Iterator
     """Two documents, path by path; `where` is "run/file"."""
     renamed = {path: path if path in new else respelled(path, meant.paths) for path in old}
     said = {renamed[path]: [_said(each, meant.texts) for each in leaves] for path, leaves in old.items()}
-    said |= {now: said[now][0] for path, now in renamed.items() if now != path and _is_spread(said[now], new.get(now, []), now)}
     untouched = {now for path, now in renamed.items() if now == path and repr(said[now]) == repr(old[path])}
     old = said
     for path in (each for each in old if each in new):
         rule = next((each for each in meant.rules if re.search(each.where, f"{where}:{path}")), None)
         state, text = _judged(path, old, new, rule)
         yield RENAMED if state == EQUAL and path not in untouched else state, text
-    one_sided = {path: meant.gone for path in old if path not in new} | {path: meant.come for path in new if path not in old}
-    stated = {path for path, reasons in one_sided.items() if any(re.search(each, path) for each in reasons)}
-    yield from ((WITHIN, path) for path in stated)
+    stated = {path for path in old.keys() ^ new.keys() if any(re.search(each, path) for each in meant.alone)}
+    yield from ((WITHIN, path) for path in sorted(stated))
     gone = {path: repr([*map(bits, each)]) for path, each in old.items() if path not in new and path not in stated}
     come = {path: repr([*map(bits, each)]) for path, each in new.items() if path not in old and path not in stated}
     moved = dict(_moves(gone, come))
@@ -228,15 +261,11 @@ def _said(value: Any, words: Mapping[str, str]) -> Any:
     return respelled(value, words) if isinstance(value, str) else value
 
 
-def _is_spread(old: list[Any], new: Sequence[Any], path: str) -> bool:
-    """Whether the entries of the one list that stood here have a place each now."""
-    alone = "[]" in path and len(old) == 1 and isinstance(old[0], list) and len(old[0]) == len(new)
-    return alone and all(isinstance(one, list) == isinstance(other, list) for one, other in zip(old[0], new, strict=True))
-
-
 def _judged(path: str, old: Document, new: Document, rule: Rule | None) -> Finding:
-    if any(re.search(each, path) for each in LEFT_PATHS.values()) or (rule is not None and np.isinf(rule.within)):
-        return SKIPPED, path
+    reason = rule.because if rule is not None and np.isinf(rule.within) else ""
+    reason = next((reason for reason, each in LEFT_PATHS.items() if re.search(each, path)), reason)
+    if reason:
+        return SKIPPED, f"{path} ({reason})"
     if len(old[path]) != len(new[path]):
         return DIFFERENT, f"{path}: {len(old[path])} of them -> {len(new[path])}"
     pairs = [each for each in zip(old[path], new[path], strict=True) if bits(each[0]) != bits(each[1])]
@@ -278,8 +307,10 @@ def _top(path: str, other: Document) -> str:
 
 def compared_texts(old: Sequence[str], new: Sequence[str], meant: Meant) -> Iterator[Finding]:
     """Two texts, by what was put for what; five differences are told of each."""
+    left = [reason for reason, each in LEFT_WORDS.items() if [*_found(each, old)] != [*_found(each, new)]]
+    old, new = _plain(old), _plain(new)
     if old == new:
-        yield EQUAL, ""
+        yield (SKIPPED, ", ".join(left)) if left else (EQUAL, "")
         return
     old = [part for line in old for part in respelled(line, meant.texts).split("\n")]
     if " ".join(old) == " ".join(new):  # lines may break elsewhere
@@ -296,9 +327,13 @@ def compared_texts(old: Sequence[str], new: Sequence[str], meant: Meant) -> Iter
         yield DIFFERENT, f"and {len(blocks) - 5} more differences of this text"
 
 
+def _found(pattern: str, lines: Sequence[str]) -> Iterator[str]:
+    return (found for line in lines for found in re.findall(pattern, line))
+
+
 def compared_folders(name: str, old: Path, new: Path, meant: Meant) -> Iterator[tuple[str, Finding]]:
     """All files that a task has on both sides: where, and what was found."""
-    at_old, at_new = ({each.name for each in folder.iterdir()} for folder in (old, new))
+    at_old, at_new = ({str(each.relative_to(folder)) for each in folder.rglob("*") if each.is_file()} for folder in (old, new))
     for each in sorted(at_old | at_new):
         where = f"{name}/{each}"
         if each not in at_old & at_new:
@@ -309,8 +344,7 @@ def compared_folders(name: str, old: Path, new: Path, meant: Meant) -> Iterator[
             yield where, (DIFFERENT, f"{first[0]} at BASE: {' / '.join(first[1:])[:200]}")
         if isinstance(first, list) and isinstance(second, list):
             rule = next((each for each in meant.rules if re.search(each.where, f"{where}:")), None)
-            skipped = rule is not None and np.isinf(rule.within)
-            found = [(SKIPPED, "")] if skipped else compared_texts(first, second, meant)
+            found = [(SKIPPED, rule.because)] if rule is not None and np.isinf(rule.within) else compared_texts(first, second, meant)
         else:
             one, other = (document({"lines": each}) if isinstance(each, list) else each for each in (first, second))
             found = compared(where, one, other, meant)
