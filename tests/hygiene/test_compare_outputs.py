@@ -141,6 +141,12 @@ def test_texts_that_are_left_out_are_told() -> None:
     assert list(compared_texts(old, old, Meant())) == [(EQUAL, "")]
 
 
+def test_with_a_rule_the_words_of_a_text_count() -> None:
+    rule = Rule(":", "sums in another order")
+    for new, state in ((["gain -1.2e-17 m", "9"], WITHIN), (["gain 3 m", "8"], WITHIN), (["gain 3 mm", "8"], DIFFERENT)):
+        assert [each for each, _ in compared_texts(["gain 3.4·10⁻¹⁷ m", "8"], new, Meant(), rule)] == [state]
+
+
 def test_a_server_is_asked_until_it_answers_and_then_interrupted() -> None:
     server = """
 import socket, sys
