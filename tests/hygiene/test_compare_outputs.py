@@ -137,7 +137,7 @@ def test_a_changed_number_of_a_table_is_told(tmp_path: Path, name: str) -> None:
 def test_texts_that_are_left_out_are_told() -> None:
     lines = ["exit code 0", "stage at 127.0.0.1:{}: axes x", "The stage ran for {} s."]
     old, new = ([each.format(number) for each in lines] for number in (1234, 4321))
-    assert list(compared_texts(old, new, Meant())) == [(SKIPPED, "free port, time that a server ran")]
+    assert list(compared_texts(old, new, Meant())) == [(SKIPPED, "free port, time of a computation")]
     assert list(compared_texts(old, old, Meant())) == [(EQUAL, "")]
 
 
