@@ -38,7 +38,9 @@ from platformdirs import user_cache_path
 from tools.differences import DIFFERENT, EQUAL, RENAMED, SKIPPED, WITHIN, Meant, Rule, compared_folders, respelled
 
 ROOT = Path(__file__).resolve().parents[1]
-
+CACHE = user_cache_path("flexstage", appauthor=False) / "compare-outputs"
+NATIVE = CACHE / "native"
+"""Compiled kernels of all sides; their names are those of their sources."""
 
 # What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
 WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read
@@ -121,7 +123,7 @@ class Side:
             if begun is not None:
                 (begun / "out").mkdir()
                 (begun / "cache").mkdir()
-                (begun / "cache" / "native").symlink_to(self.kept / "native")  # kernels are built once a side
+                (begun / "cache" / "native").symlink_to(NATIVE)
                 for name, text in task.files.items():
                     (begun / "out" / name).write_text(text, encoding="utf-8")
                 for number, line in enumerate(task.commands, 1):
@@ -181,9 +183,9 @@ def _command(*words: str | Path) -> str:
     return subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True, cwd=ROOT).stdout.strip()
 
 
-def base_side(commit: str, cache: Path) -> Side:
+def base_side(commit: str) -> Side:
     """A commit, laid out beside; with an environment of its own where it needs other packages."""
-    source, python, needed = cache / commit / "source", Path(sys.executable), "requirements/runtime.txt"
+    source, python, needed = CACHE / commit / "source", Path(sys.executable), "requirements/runtime.txt"
     with whole(source) as begun:
         if begun is not None:
             _command("git", "archive", "--output", begun / "all.tar", commit)
@@ -192,15 +194,15 @@ def base_side(commit: str, cache: Path) -> Side:
     if (source / needed).read_bytes() != (ROOT / needed).read_bytes():
         _command("make", "-C", source, "setup-runtime")
         python = source / ".venv" / "bin" / "python"
-    return Side(source, python, cache / commit / KERNELS)
+    return Side(source, python, CACHE / commit / KERNELS)
 
 
-def head_side(cache: Path) -> Side:
+def head_side() -> Side:
     """The working tree as it is now, copied, so that it may be changed meanwhile; of earlier ones, outputs of the last day are kept."""
     digest = hashlib.sha256()
     for path in sorted(each for each in (ROOT / "src").rglob("*") if each.is_file() and each.suffix != ".pyc"):
         digest.update(f"{path} {path.stat().st_size}\n".encode() + path.read_bytes())
-    tree = cache / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}" / digest.hexdigest()[:12]
+    tree = CACHE / f"tree-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:12]}" / digest.hexdigest()[:12]
     for each in tree.parent.glob("*"):
         if each != tree and each.stat().st_mtime < time.time() - 86400.0:
             shutil.rmtree(each)
@@ -217,8 +219,7 @@ def main() -> int:
     parser.add_argument("--only", default="", metavar="PATTERN", help="runs whose names this regular expression finds")
     asked = parser.parse_args()
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs, and the servers they start, ignore it else
-    cache = user_cache_path("flexstage", appauthor=False) / "compare-outputs"
-    old, new = base_side(_command("git", "rev-parse", f"{asked.base}^{{commit}}")[:12], cache), head_side(cache)
+    old, new = base_side(_command("git", "rev-parse", f"{asked.base}^{{commit}}")[:12]), head_side()
     meant = Meant(TEXTS, PATHS, RULES, ALONE)
     states, told = dict[str, Counter[str]](), defaultdict[str, list[str]](list)
     with ThreadPoolExecutor(2) as pool:
