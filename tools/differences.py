@@ -276,9 +276,17 @@ def _judged(path: str, old: Document, new: Document, rule: Rule | None) -> Findi
     off = max(turned(*each, np.ravel(old[shapes]).tolist()) if shapes else deviation(*each) for each in pairs)
     if rule is not None and off <= rule.within:
         return WITHIN, path
-    first = " -> ".join(" ".join(str(each).split()) for each in pairs[0])
+    first = " -> ".join(" ".join(str(each).split()) for each in _first_entries(*pairs[0]))
     by = f", by {off:.2g} at most" if np.isfinite(off) else ""
     return DIFFERENT, f"{path}: {len(pairs)} of {len(old[path])} differ{by}{f': {first}' if len(first) < 120 else ''}"
+
+
+def _first_entries(old: Any, new: Any) -> tuple[Any, Any]:
+    """Of arrays of one shape the first entries that differ, of all else the values."""
+    if not (isinstance(old, np.ndarray) and isinstance(new, np.ndarray) and old.shape == new.shape):
+        return old, new
+    differ = [(one, other) for one, other in zip(old.ravel().tolist(), new.ravel().tolist(), strict=True) if repr(one) != repr(other)]
+    return differ[0] if differ else (old, new)
 
 
 def _moves(gone: Mapping[str, str], come: Mapping[str, str]) -> Iterator[tuple[str, str]]:
