@@ -236,6 +236,7 @@ def main() -> int:
     for verdict, runs in groupby(sorted(states, key=lambda each: _verdict(states[each])), lambda each: _verdict(states[each])):
         print(f"{verdict}: {', '.join(runs)}")
     counts = sum(states.values(), Counter[str]())
+    print(f"{sum(os.times()[2:4]):.0f} s of processor time in commands that ran now", file=sys.stderr)
     print(f"compared {counts.total()}:", ", ".join(f"{counts[state]} {state}" for state in (EQUAL, RENAMED, WITHIN, DIFFERENT, SKIPPED)))
     return int(counts[DIFFERENT] > 0)
 
