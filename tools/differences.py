@@ -30,7 +30,7 @@ LEFT_WORDS = {
     "digest": r"(?<= of )[0-9a-f]{10,16}$|^[0-9a-f]{16}$|^[0-9a-f]+·10[⁰-⁹¹²³]+$",  # cut off, as number, or of a document
     "folder of a run": r"(?<=kept in )\S+",
     "free port": r"(?<=127\.0\.0\.1:)\d+",
-    "time of a computation": r"(?<=ran for )\S+ s|(?<=; about ).+(?= by the first)",
+    "time of a computation": r"(?<=ran for )\S+ s|(?<=; about ).+(?= by the first)|(?<=a design takes ).+(?=, usually)",
 }
 NUMBER = r"[-−]?\d+(\.\d+)?(e[-+]?\d+)?(·10[⁻⁰-⁹¹²³]+)?"
 LEFT_MEMBERS = r"\.(so|dll|dylib)$"
