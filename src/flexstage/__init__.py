@@ -7,9 +7,9 @@ read the same table from `__init__.pyi`.
 
 from importlib import import_module
 
-from flexstage.base.lazy import lazy_attributes
-
-__version__ = "0.2.0"
+from flexstage.base.lazy import Late, lazy_attributes
+from flexstage.base.notebook import RenderHook
+from flexstage.base.version import __version__ as __version__
 
 WINGS = ("solid", "experiment", "control", "studies")
 HOMES = {
@@ -87,6 +87,7 @@ HOMES = {
     "show.sheets": "to_csv to_pandas to_xarray",
     "show.workbook": "to_xlsx",
 }
+RenderHook.tables, RenderHook.views = Late("flexstage.show.notebook"), Late("flexstage.show.viewer.view")
 _of_core, _names = lazy_attributes(__name__, HOMES)
 
 

@@ -19,7 +19,7 @@ from flexstage.analysis.complete import Model, analyse
 from flexstage.base.digest import digest
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.show.figures.export import _THEME  # pyright: ignore[reportPrivateUsage]
+from flexstage.show.figures.style import THEME
 from flexstage.show.report import report
 from tests.show.stages import HOSTILE, NAMES, analysed, hostile, reported
 
@@ -180,4 +180,4 @@ def _required(stage: Mechanism, requirements: dict[str, str]) -> Mechanism:
 def test_every_colour_that_figures_take_from_the_page_is_there_in_light_and_dark() -> None:
     """A colour of the light page on the dark one cannot be read."""
     style = resources.files("flexstage.show").joinpath("static/report.css").read_text(encoding="utf-8")
-    assert {name: len(re.findall(rf"--{name}: ", style)) >= 2 for name in _THEME.values()} == dict.fromkeys(_THEME.values(), True)
+    assert {name: len(re.findall(rf"--{name}: ", style)) >= 2 for name in THEME.values()} == dict.fromkeys(THEME.values(), True)

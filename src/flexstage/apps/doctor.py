@@ -17,8 +17,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import flexstage
 from flexstage.apps import quadmath
+from flexstage.base.version import __version__
 
 _TIME_LIMIT = 120.0
 _EXTRAS = ("", "solid", "tables")
@@ -61,9 +61,9 @@ def _examine_installed() -> Iterator[Row]:
     except PackageNotFoundError:
         wanted, lines, found = "", [], "not installed"
     yield Row("Python", platform.python_version(), wanted, Verdict.GOOD)  # an older one would not have come so far
-    good = found == flexstage.__version__
+    good = found == __version__
     remedy = "" if good else "install it again: pip install --force-reinstall --no-deps flexstage, or make setup-runtime in a checkout"
-    yield Row("flexstage", found, flexstage.__version__, Verdict.GOOD if good else Verdict.BAD, remedy)
+    yield Row("flexstage", found, __version__, Verdict.GOOD if good else Verdict.BAD, remedy)
     try:
         from packaging.requirements import Requirement
     except ImportError:

@@ -1,14 +1,22 @@
-"""What shows itself in a notebook: the one place where a value below `show` asks for its picture or tables."""
+"""Notebook display: the hook by which `show`, above all values, offers its renderer."""
 
 from __future__ import annotations
 
-from importlib import import_module
+from flexstage.base.lazy import Late
+
+
+class RenderHook:
+    """The modules that show values, offered by `flexstage` itself when it is imported and loaded when a value is shown.
+
+    `tables` has `to_html(value)`, `views` has `view(mechanism, *, motion)`.
+    """
+
+    tables: Late
+    views: Late
 
 
 class InNotebook:
-    """A value that notebooks show as `flexstage.show.notebook` lays it out.
-
-    That module is named in a text and loaded when a value is shown: it stands above all values, and draws with matplotlib.
+    """A value that notebooks show as the renderer lays it out.
 
     >>> import numpy as np
     >>> from flexstage.base.labelled import Matrix
@@ -17,4 +25,4 @@ class InNotebook:
     """
 
     def _repr_html_(self) -> str:
-        return import_module("flexstage.show.notebook").to_html(self)
+        return RenderHook.tables.to_html(self)

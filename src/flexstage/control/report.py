@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import flexstage
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.control.figures.front import FrontLine, front_figure
 from flexstage.control.playing import response_motions
 from flexstage.control.sections import error_section, frequency_section, headline, loop_section, measured_section, time_section
@@ -32,7 +32,7 @@ def loop_report(found: LoopStudy) -> str:
         ("physics", digest(mechanism, physics=True)[:16]),
         ("model", found.model_name),
         ("rate", f"{found.settled.rate:g} Hz"),
-        ("flexstage", flexstage.__version__),
+        ("flexstage", __version__),
     )
     data = stage_data(mechanism)
     data = replace(data, motions=(*response_motions(found, data), *data.motions))
@@ -52,7 +52,7 @@ def loop_report(found: LoopStudy) -> str:
 
 def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
     """Controllers side by side as a page of HTML: which wins for what, the front between what they trade, motion by motion."""
-    origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", flexstage.__version__))
+    origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
     data = stage_data(mechanism)
     best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
     lines = [

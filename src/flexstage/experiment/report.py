@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import flexstage
 from flexstage.analysis.complete import read
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.experiment.comparison import Compared
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.record import Responses
@@ -98,7 +98,7 @@ def _page(
 ) -> str:
     sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
     named = ", ".join(each for each in sources if each) or "record"
-    origin = [("record", named), ("model", "measured"), ("flexstage", flexstage.__version__)]
+    origin = [("record", named), ("model", "measured"), ("flexstage", __version__)]
     if mechanism is not None:
         origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
     title = (mechanism.name if mechanism is not None else "") or named

@@ -13,8 +13,6 @@ from fractions import Fraction
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
-import numpy as np
-
 from flexstage.base.dimension import Dimension, dimension_of
 from flexstage.base.expression import (
     FUNCTIONS,
@@ -37,12 +35,11 @@ from flexstage.base.unit import parse, quantity_of_dimension, quantity_of_unit, 
 from flexstage.mechanism.mechanism import Mechanism, NamedNumber
 
 NUMBERS = "numbers"
-_PREFIX = f"{NUMBERS}."
+PREFIX = f"{NUMBERS}."
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,59}")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _SIGN = re.compile(r"[-+*/(]")
 _NOT_FINITE = ("nan", "inf", "infinity")
-_ALIKE = 1e-9
 
 
 def scope_of(mechanism: Mechanism) -> dict[str, Amount]:
@@ -114,7 +111,7 @@ def read_numbers(table: Mapping[str, Any]) -> Numbers:
     texts: dict[str, str] = {}
     for name, raw in table.items():
         try:
-            number = _plain_number(raw, _PREFIX + name)
+            number = _plain_number(raw, PREFIX + name)
         except DesignError as error:
             findings += error.findings
             continue
@@ -154,7 +151,7 @@ def _evaluate(
         try:
             expressions[name] = parse_expression(text)
         except ExpressionError as error:
-            findings.append(Finding(_PREFIX + name, error.what, error.advice))
+            findings.append(Finding(PREFIX + name, error.what, error.advice))
     findings += cycle_findings(expressions)
     found = dict(values)
     for name in _order(expressions):
@@ -162,7 +159,7 @@ def _evaluate(
             amount = evaluate(expressions[name], _scope(table, found))
             found[name] = NamedNumber(amount.value, shown_unit(amount))
         except ExpressionError as error:
-            findings.append(Finding(_PREFIX + name, error.what, error.advice))
+            findings.append(Finding(PREFIX + name, error.what, error.advice))
         except UnknownAmountError:
             continue  # of what it is worked out of the fault is told
     return found, findings
@@ -192,7 +189,7 @@ def _scope(table: Mapping[str, Any], found: Mapping[str, NamedNumber]) -> Scope:
 
 
 def _with_prefix(texts: Mapping[str, str]) -> dict[str, str]:
-    return {_PREFIX + name: text for name, text in texts.items()}
+    return {PREFIX + name: text for name, text in texts.items()}
 
 
 def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
@@ -206,10 +203,10 @@ def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
     moved = {name}
     ordered: list[str] = []
     for number in TopologicalSorter(_references(known)).static_order():
-        if known.get(_PREFIX + number, frozenset()) & moved:
+        if known.get(PREFIX + number, frozenset()) & moved:
             moved.add(number)
-            ordered.append(_PREFIX + number)
-    return (*ordered, *(address for address, names in known.items() if names & moved and not address.startswith(_PREFIX)))
+            ordered.append(PREFIX + number)
+    return (*ordered, *(address for address, names in known.items() if names & moved and not address.startswith(PREFIX)))
 
 
 def depth(mechanism: Mechanism, name: str) -> int:
@@ -218,7 +215,7 @@ def depth(mechanism: Mechanism, name: str) -> int:
     >>> depth(Mechanism("", formulas={"numbers.half": "arm/2", "numbers.quarter": "half/2"}), "quarter")
     2
     """
-    text = mechanism.formulas.get(_PREFIX + name)
+    text = mechanism.formulas.get(PREFIX + name)
     return 0 if text is None else 1 + max((depth(mechanism, each) for each in parse_expression(text).names), default=0)
 
 
@@ -244,7 +241,7 @@ def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
 def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
     """Findings about names that are worked out of themselves."""
     for circle in cycles(expressions):
-        yield Finding(_PREFIX + circle[0], f"it is worked out of itself: {' -> '.join(circle)}", "Give one of them a number")
+        yield Finding(PREFIX + circle[0], f"it is worked out of itself: {' -> '.join(circle)}", "Give one of them a number")
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
@@ -254,49 +251,12 @@ def spelling_findings(name: str) -> Iterator[Finding]:
     numbers.t: t is a unit, so that "2 t" would mean two things. Call the number otherwise, for example t_1.
     """
     if not _NAME.fullmatch(name):
-        yield Finding(_PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
+        yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
     elif is_unit(name):
         what = f'{name} is a unit, so that "2 {name}" would mean two things'
-        yield Finding(_PREFIX + name, what, f"Call the number otherwise, for example {name}_1")
+        yield Finding(PREFIX + name, what, f"Call the number otherwise, for example {name}_1")
     elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
-        yield Finding(_PREFIX + name, f"{name} has a meaning of its own in formulas", f"Call the number otherwise, for example {name}_1")
-
-
-def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about named numbers and formulas that a description in Python may have: files are so by their reading.
-
-    >>> print(*formula_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "ells")})))
-    numbers.arm: "ells" is not a known unit. Give it a unit, such as mm, or 1 for a ratio.
-    """
-    from flexstage.mechanism.address import get, quantity_of  # which writes values by formulas
-
-    for name, number in mechanism.numbers.items():
-        yield from spelling_findings(name)
-        yield from _unit_findings(name, number)
-    expressions: dict[str, Expression] = {}
-    for address, text in mechanism.formulas.items():
-        try:
-            expressions[address] = parse_expression(text)
-        except ExpressionError as error:
-            yield Finding(address, error.what, error.advice)
-    circles = tuple(cycle_findings({key.removeprefix(_PREFIX): each for key, each in expressions.items() if key.startswith(_PREFIX)}))
-    yield from circles
-    if circles or any(tuple(_unit_findings(*item)) for item in mechanism.numbers.items()):
-        return
-    scope = scope_of(mechanism)
-    for address in expressions:
-        try:
-            wanted = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope, address)
-            found = get(mechanism, address)
-        except DesignError as error:
-            yield from error.findings
-            continue
-        number = mechanism.numbers.get(address.removeprefix(_PREFIX)) if address.startswith(_PREFIX) else None
-        if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
-            yield Finding(address, f"its formula gives it in {unit}, and its unit is {number.unit}", f"Write {unit}")
-        if found is None or not np.allclose(found, wanted, rtol=_ALIKE, atol=0.0):
-            what = f'its formula "{mechanism.formulas[address]}" gives {_si(wanted)}, and its value is {_si(found)} (SI)'
-            yield Finding(address, what, "Set the value by the formula, or take the formula out")
+        yield Finding(PREFIX + name, f"{name} has a meaning of its own in formulas", f"Call the number otherwise, for example {name}_1")
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -309,21 +269,10 @@ def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for name in mechanism.numbers:
         if name not in used:
             yield Finding(
-                _PREFIX + name, "no formula refers to it, so that it changes nothing", "Write it where it is meant, or take it out"
+                PREFIX + name, "no formula refers to it, so that it changes nothing", "Write it where it is meant, or take it out"
             )
-
-
-def _si(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else "other values"
-
-
-def _unit_findings(name: str, number: NamedNumber) -> Iterator[Finding]:
-    try:
-        quantity_of_unit(number.unit)
-    except ValueError as error:
-        yield Finding(_PREFIX + name, str(error), "Give it a unit, such as mm, or 1 for a ratio")
 
 
 def _references(known: Mapping[str, frozenset[str]]) -> dict[str, frozenset[str]]:
     """The names that each named number is worked out of."""
-    return {address.removeprefix(_PREFIX): names for address, names in known.items() if address.startswith(_PREFIX)}
+    return {address.removeprefix(PREFIX): names for address, names in known.items() if address.startswith(PREFIX)}

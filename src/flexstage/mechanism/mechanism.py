@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Annotated, Any, ClassVar, TypeAlias
 
 from flexstage.base.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
-from flexstage.base.notebook import InNotebook
+from flexstage.base.notebook import InNotebook, RenderHook
 from flexstage.base.number import Number, Table, Vector
 from flexstage.base.quantity import (
     ACCELERATION,
@@ -276,8 +275,8 @@ class Mechanism(InNotebook, Description):
     temperatures: Mapping[str, Annotated[Number, TEMPERATURE]] = field(default_factory=lambda: Table({}), metadata=WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
-        """The stage as it turns and moves, for a notebook or a page of its own: `flexstage.view`, which stands above all descriptions."""
-        return import_module("flexstage.show.viewer.view").view(self, motion=motion)
+        """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""
+        return RenderHook.views.view(self, motion=motion)
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-import flexstage
 from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors
 from flexstage.analysis.misalign import Misaligned, Misalignments
 from flexstage.analysis.stroke import Beyond, Stroke
 from flexstage.base.digest import digest
 from flexstage.base.labelled import NOISE_RULE, Matrix, quiet
 from flexstage.base.number import Array
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import Kind
 from flexstage.models.nonlinear.path import Path
@@ -257,6 +257,6 @@ def _flags(said: tuple[str, ...]) -> Array:
 
 def _page(mechanism: Mechanism, kind: str, provenance: str, told: tuple[Headline, tuple[Section | None, ...]], data: StageData) -> str:
     headline, sections = told
-    origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)
     return page(head, [each for each in sections if each is not None], {"stage": data})

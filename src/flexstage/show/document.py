@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-import flexstage
 from flexstage.analysis.cautions import Caveats, caveats
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.deflection import Deflection
@@ -16,6 +15,7 @@ from flexstage.base.digest import digest
 from flexstage.base.document import Document, plain
 from flexstage.base.finding import Finding
 from flexstage.base.record import SideBySide, walk
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
@@ -39,7 +39,7 @@ def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: 
     return {
         "format": FORMAT,
         "kind": kind,
-        "version": flexstage.__version__,
+        "version": __version__,
         "name": None if mechanism is None else mechanism.name,
         "model": None if model is None else model.value,
         "physics_digest": None if mechanism is None else digest(mechanism, physics=True),
@@ -58,7 +58,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
     found = list(errors)
     body: Document = {"sound": not found, "findings": found}
     if mechanism is None:
-        return {"format": FORMAT, "kind": "check", "version": flexstage.__version__, **body, "cautions": [], "defaults": [], "warnings": []}
+        return {"format": FORMAT, "kind": "check", "version": __version__, **body, "cautions": [], "defaults": [], "warnings": []}
     document = envelope("check", mechanism, None, body)
     return {**document, "warnings": document["cautions"]}
 

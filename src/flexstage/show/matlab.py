@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-import flexstage
 from flexstage.analysis.complete import Analysis
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
@@ -18,6 +17,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.base.sheet import NUMBERS, Sheet, parts
 from flexstage.base.text import printable
+from flexstage.base.version import __version__
 from flexstage.models.linear.damping import damping_law
 from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.port import ports
@@ -103,7 +103,7 @@ def mat_variables(analysis: Analysis) -> dict[str, Any]:
     variables: dict[str, Any] = {
         "name": printable(analysis.mechanism.name),
         "model": analysis.model.value,
-        "flexstage_version": flexstage.__version__,
+        "flexstage_version": __version__,
         "physics_digest": digest(analysis.mechanism, physics=True),
         **_matrix_variables("R_s", kinematics.gauge_mapping),
     }

@@ -34,6 +34,7 @@ from flexstage.show.tables.statics import principal_table, stiffness_table
 from flexstage.show.tables.workspace import stroke_table
 
 _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
+    Table: lambda table: (table,),
     Kinematics: lambda result: (mobility_table(result), mapping_table(result) if result.actuated else None),
     Statics: lambda result: (stiffness_table(result), principal_table(result)),
     LostMotion: lambda result: (loss_table(result), budget_table(result)),

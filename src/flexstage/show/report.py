@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import flexstage
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.difference import Comparison
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.show.page import Head, page
 from flexstage.show.scene.stage import scene
 from flexstage.show.sections.accuracy import drift_section, error_section
@@ -73,7 +73,7 @@ def _head(analysis: Analysis) -> Head:
         ("model", analysis.model.value),
         ("physics", digest(analysis.mechanism, physics=True)[:16]),
         ("document", digest(analysis.mechanism)[:16]),
-        ("flexstage", flexstage.__version__),
+        ("flexstage", __version__),
     )
     kind = f"Analysis of a flexure stage, {analysis.model.value} model"
     return Head(analysis.mechanism.name or "stage", kind, origin, headline(analysis))

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
+from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.record import Field, values_of
@@ -73,7 +74,7 @@ Content: TypeAlias = str | Cell
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(InNotebook):
     """A table for people: title, columns, rows, notes under it and where its numbers come from."""
 
     title: str
@@ -86,11 +87,6 @@ class Table:
         """Heads (with units) and cells as plain text, row by row."""
         heads = [f"{column.head} [{column.unit}]" if column.unit else column.head for column in self.columns]
         return [heads, *([cell.text for cell in row] for row in self.rows)]
-
-    def _repr_html_(self) -> str:
-        from flexstage.show.render import to_html
-
-        return to_html(self)
 
 
 def make_table(

@@ -11,12 +11,12 @@ from datetime import datetime
 from itertools import chain, count
 from typing import Any
 
-import flexstage
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.sheet import Sheet, parts, plain_cell
 from flexstage.base.text import printable
+from flexstage.base.version import __version__
 from flexstage.show.table import first_design
 
 PROVENANCE = "provenance"
@@ -55,7 +55,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     grids = {path: _grid(part) for path, part in parts(result)}
     names = sheet_names([*grids, PROVENANCE])
     with xlsxwriter.Workbook(content, {"in_memory": True, "nan_inf_to_errors": False}) as book:
-        book.set_properties({"created": _WRITTEN, "comments": f"flexstage {flexstage.__version__}"})
+        book.set_properties({"created": _WRITTEN, "comments": f"flexstage {__version__}"})
         head, unit = book.add_format({"bold": True, "bottom": 1}), book.add_format({"italic": True, "font_color": "#667382"})
         for name, grid in zip(names, (*grids.values(), _about(result, about or {})), strict=True):
             _write(book.add_worksheet(name), grid, head, unit)
@@ -131,7 +131,7 @@ def _matrix_grid(matrix: Matrix) -> _Grid:
 def _about(result: Any, about: Mapping[str, Any]) -> _Grid:
     own = getattr(result, PROVENANCE, None)
     said = {
-        "flexstage": flexstage.__version__,
+        "flexstage": __version__,
         "units": "SI, below the heads or in their names",
         **about,
         **({PROVENANCE: own} if own else {}),

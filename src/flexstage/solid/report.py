@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import flexstage
 from flexstage.base.digest import digest
 from flexstage.base.finding import Finding
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.page import Head, Headline, Section, page
 from flexstage.show.sections.caveats import caveat_section
@@ -35,7 +35,7 @@ def solid_report(
         ("model", "solid"),
         ("physics", digest(mechanism, physics=True)[:16]),
         ("document", digest(mechanism)[:16]),
-        ("flexstage", flexstage.__version__),
+        ("flexstage", __version__),
     )
     head = Head(mechanism.name or "stage", "A flexure stage as solids", origin, said)
     first, *rest = sections

@@ -13,7 +13,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import flexstage
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.register import offered_packages
@@ -91,7 +90,7 @@ def _sum(text: str) -> str:
 def _program() -> str:
     """Digest of all that a verification is worked out by: the code of flexstage, what it computes with, and packages that add to it."""
     state = hashlib.sha256(" ".join([SOLVER_VERSION, version("numpy"), version("scipy"), *offered_packages()]).encode())
-    home = str(Path(flexstage.__file__).parent)
+    home = str(Path(__file__).parents[1])
     files = sorted(f"{folder}/{name}" for folder, _, names in os.walk(home) for name in names if name.endswith(".py"))
     for name in files:
         with open(name, "rb") as stream:  # noqa: PTH123 (of nine hundred files)

@@ -6,8 +6,8 @@ import platform
 
 import typer
 
-import flexstage
 from flexstage.apps.cli import installation
+from flexstage.base.version import __version__
 from flexstage.show.command.terminal import print_result
 
 
@@ -22,4 +22,4 @@ def doctor() -> None:
 
 def version() -> None:
     """Print the version of flexstage."""
-    print_result(f"flexstage {flexstage.__version__}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")
+    print_result(f"flexstage {__version__}, Python {platform.python_version()}, {platform.system()} {platform.machine()}")

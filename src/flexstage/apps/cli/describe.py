@@ -9,11 +9,11 @@ from typing import Annotated
 
 import typer
 
-import flexstage
 from flexstage.analysis.cautions import caveats, model_findings
 from flexstage.apps.cli.words import File
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.version import __version__
 from flexstage.cases.registry import shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
@@ -161,7 +161,7 @@ def catalogue(
     require_writable([("--json", json)])
     known = shipped_catalogue() if section is None else find_section(shipped_catalogue(), section)
     if json is not None:
-        body = {"format": FORMAT, "kind": "catalogue", "version": flexstage.__version__, **catalogue_body(known)}
+        body = {"format": FORMAT, "kind": "catalogue", "version": __version__, **catalogue_body(known)}
         write(json, as_text(body) + "\n", "--json")
     if json != STDOUT:
         show(catalogue_tables(known))

@@ -10,7 +10,7 @@ from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
-from flexstage.apps.studio.protocol import Amount, Channel, Problem
+from flexstage.apps.studio.protocol import Problem
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.jobs import Line
 from flexstage.base.threads import one_thread
@@ -44,30 +44,6 @@ TASKS: Mapping[str, str] = {
 """Tasks by name: module and function, imported when first asked for."""
 TELLING = frozenset({"travelled"})
 """Those that tell how far they are: their last argument hears it."""
-
-
-@dataclass(frozen=True)
-class Reading:
-    """What a text says: problems alone, or a design with its numbers, channels and links; `values` are its numbers by address."""
-
-    problems: tuple[Problem, ...]
-    name: str = ""
-    amounts: tuple[Amount, ...] = ()
-    actuators: tuple[Channel, ...] = ()
-    axes: tuple[Channel, ...] = ()
-    gauges: tuple[Channel, ...] = ()
-    inputs: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
-    links: Mapping[str, int | None] | None = None
-    paths: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Written:
-    """A text with a number set, and what was set; empty where the other text with that number is not quite this design."""
-
-    text: str
-    stated: str
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 from flexstage.analysis.course import path_findings
 from flexstage.analysis.requirements import requirements
 from flexstage.analysis.workspace.stroke import stroke_limits
-from flexstage.apps.studio.engine import Reading
+from flexstage.apps.studio.answers import Reading
 from flexstage.apps.studio.protocol import Amount, Channel, Problem
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import first_design

@@ -17,7 +17,6 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-import flexstage
 from flexstage import show
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.history import Stored
@@ -25,6 +24,7 @@ from flexstage.apps.studio.journal import Journal
 from flexstage.apps.studio.session import Session
 from flexstage.apps.studio.wire import FOLLOWING, Teller, decode
 from flexstage.base.finding import DesignError, refuse
+from flexstage.base.version import __version__
 
 HOST = "127.0.0.1"
 LARGEST = 8_000_000
@@ -154,7 +154,7 @@ class Studio:
         self._pages[page] = outbox
         self.session.enter(page)
         writer = asyncio.create_task(outbox.send(connection))
-        outbox.put(say.Welcome(say.VERSION, flexstage.__version__, page, len(self._pages)))
+        outbox.put(say.Welcome(say.VERSION, __version__, page, len(self._pages)))
         for message in tuple(self.session.shown.values()):
             outbox.put(message)
         try:

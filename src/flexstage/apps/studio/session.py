@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.engine import Outcome, Reading, failure, problem
+from flexstage.apps.studio.answers import Reading
+from flexstage.apps.studio.engine import Outcome, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.apps.studio.engine import Written
+from flexstage.apps.studio.answers import Written
 from flexstage.apps.studio.reading import design, keep
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.unit import show

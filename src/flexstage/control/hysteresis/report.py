@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import flexstage
+from flexstage.base.version import __version__
 from flexstage.control.hysteresis.figures import stack_figure
 from flexstage.control.hysteresis.stack_test import StackTest
 from flexstage.control.hysteresis.tables import plays_table, stack_table
@@ -33,7 +33,7 @@ def hysteresis_report(test: StackTest) -> str:
         section("Model", [plays_table(test)]),
     ]
     named = test.source or "record"
-    origin = (("record", named), ("model", "measured"), ("flexstage", flexstage.__version__))
+    origin = (("record", named), ("model", "measured"), ("flexstage", __version__))
     width, error = (percent(each, 3) for each in (test.hysteresis.width, test.hysteresis.rms))
     said = Headline(f"Loops are {width} of the stroke wide; the model follows them to {error}, rms.")
     return page(Head(named, "Hysteresis of a stack", origin, said), [each for each in sections if each is not None])

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import flexstage
 from flexstage.base.text import printable
+from flexstage.base.version import __version__
 from flexstage.control.serve import recorder, waves
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.errors import Code, CommandError
@@ -148,7 +148,7 @@ def _shown(value: float) -> str:
 def _identify(session: Session, words: Sequence[str]) -> list[str]:
     _nothing(words)
     name = printable(session.stage.name).replace(",", " ")
-    return [f"flexstage,virtual controller,{name},{flexstage.__version__}"]
+    return [f"flexstage,virtual controller,{name},{__version__}"]
 
 
 def _syntax(_: Session, words: Sequence[str]) -> list[str]:
@@ -158,7 +158,7 @@ def _syntax(_: Session, words: Sequence[str]) -> list[str]:
 
 def _versions(_: Session, words: Sequence[str]) -> list[str]:
     _nothing(words)
-    return [f"flexstage: {flexstage.__version__}"]
+    return [f"flexstage: {__version__}"]
 
 
 def _help(_: Session, words: Sequence[str]) -> list[str]:

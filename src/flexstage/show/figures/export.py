@@ -5,12 +5,11 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Sequence
-from functools import lru_cache
 from html import escape
 from typing import Any
 
 from flexstage.base.text import printable
-from flexstage.show.figures.style import ABOUT, ALONG, DRIVE, GAUGE, GRID, INK, MUTED, PAPER, style_context
+from flexstage.show.figures.style import short, style_context
 
 _STYLE = re.compile(r' style="([^"]+)"')
 _PICTURE = re.compile(r"<svg .*?</svg>", re.DOTALL)
@@ -20,8 +19,6 @@ _CLASS = re.compile(r' class="([\w-]+)"(?=[^<>]*>)')
 _REFERENCE = re.compile(r'(?: id="|href="#|url\(#)([\w-]+)(?=[^<>]*>)')
 SCENERY = "scenery"
 """Artists with this `gid` say their own `markup`, which comes under everything else of a figure."""
-
-_THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge", ALONG: "along", ABOUT: "about"}
 
 
 def to_svg(figure: Any, name: str, description: str) -> str:
@@ -86,15 +83,6 @@ def share_styles(page: str) -> tuple[str, str]:
     return told, "".join(f".{name}{rule}" for rule, name in classes.items())
 
 
-def theme_colour(colour: str) -> str:
-    """A colour as the page's variable, where it has one.
-
-    >>> theme_colour("#b9c2cc"), theme_colour(INK)
-    ('#b9c2cc', 'var(--ink,#1f2a37)')
-    """
-    return f"var(--{_THEME[colour]},{colour})" if colour in _THEME else colour
-
-
 def head(size: Sequence[float], description: str) -> str:
     """How a picture of that size [pt] begins; `description` is read to those who cannot see it.
 
@@ -104,26 +92,6 @@ def head(size: Sequence[float], description: str) -> str:
     width = round(float(size[0]) * 96.0 / 72.0)
     box = " ".join(short(each) for each in (0.0, 0.0, *size))
     return f'<svg viewBox="{box}" role="img" aria-label="{escape(description)}" style="--width:{width}px;max-width:{width}px">'
-
-
-def short(value: float, decimals: int = 1) -> str:
-    """A number as short as it goes.
-
-    >>> short(-0.04), short(12.0), short(-0.5), short(1.444, 2)
-    ('0', '12', '-.5', '1.44')
-    """
-    return decimal(round(value * 10**decimals), decimals)
-
-
-@lru_cache(maxsize=1 << 12)
-def decimal(value: int, decimals: int) -> str:
-    """An integer number of units of the last decimal, as short as it goes.
-
-    >>> decimal(-5, 1), decimal(120, 1)
-    ('-.5', '12')
-    """
-    text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
-    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def _classes(body: str, name: str) -> tuple[str, str]:

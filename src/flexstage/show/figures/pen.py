@@ -17,7 +17,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.transforms import Affine2D
 
 from flexstage.base.number import Array
-from flexstage.show.figures.export import decimal, short, theme_colour
+from flexstage.show.figures.style import decimal, short, theme_colour
 
 _HATCH = 72
 _ANCHORS = {"left": "start", "center": "middle", "right": "end"}

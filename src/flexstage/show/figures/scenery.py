@@ -15,8 +15,8 @@ from matplotlib.path import Path
 
 from flexstage.base.number import Array
 from flexstage.base.text import printable
-from flexstage.show.figures.export import SCENERY, head, theme_colour
-from flexstage.show.figures.style import INK, PAPER
+from flexstage.show.figures.export import SCENERY, head
+from flexstage.show.figures.style import INK, PAPER, theme_colour
 
 Colour: TypeAlias = tuple[float, ...]
 """Red, green, blue and opacity from 0 to 1."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 INK = "#1f2a37"
@@ -15,6 +16,8 @@ DRIVE = "#8a5200"
 GAUGE = "#9c1f42"
 ALONG, ABOUT = "#1d5fd1", "#b3261e"
 """Motions: along an axis, about one."""
+THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge", ALONG: "along", ABOUT: "about"}
+"""Colours that are variables of a page."""
 SERIES = ("#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377", "#997700", "#bbbbbb")
 """Paul Tol's vibrant scheme (personal.sron.nl/~pault), one dark yellow added."""
 
@@ -146,3 +149,32 @@ def text_width(texts: Iterable[str], size: float = 8.0) -> float:
     0.53
     """
     return max((len(text) for text in texts), default=0) * 0.6 * size / 72.0
+
+
+def theme_colour(colour: str) -> str:
+    """A colour as the page's variable, where it has one.
+
+    >>> theme_colour("#b9c2cc"), theme_colour(INK)
+    ('#b9c2cc', 'var(--ink,#1f2a37)')
+    """
+    return f"var(--{THEME[colour]},{colour})" if colour in THEME else colour
+
+
+def short(value: float, decimals: int = 1) -> str:
+    """A number as short as it goes.
+
+    >>> short(-0.04), short(12.0), short(-0.5), short(1.444, 2)
+    ('0', '12', '-.5', '1.44')
+    """
+    return decimal(round(value * 10**decimals), decimals)
+
+
+@lru_cache(maxsize=1 << 12)
+def decimal(value: int, decimals: int) -> str:
+    """An integer number of units of the last decimal, as short as it goes.
+
+    >>> decimal(-5, 1), decimal(120, 1)
+    ('-.5', '12')
+    """
+    text = f"{value / 10**decimals:.{decimals}f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from flexstage import __version__
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
+from flexstage.base.version import __version__
 from flexstage.solid.fea.hinge_form import HingeSolid
 from flexstage.solid.fea.install import SOLVER_VERSION
 from flexstage.solid.fea.superelement import Skin, Superelement

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-import flexstage
 from flexstage.analysis.requirements import Verdict
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
@@ -96,5 +96,5 @@ def _headline(found: Optimum) -> Headline:
 
 
 def _head(study: Study, kind: str, said: Headline) -> Head:
-    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
     return Head(study.name, kind, origin, said)

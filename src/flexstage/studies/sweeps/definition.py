@@ -9,7 +9,6 @@ from typing import Annotated
 
 import numpy as np
 
-import flexstage
 from flexstage.analysis.judge import measure_all
 from flexstage.analysis.measures import MEASURES, Measure
 from flexstage.analysis.requirements import Requirement, Verdict
@@ -18,6 +17,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import Quantity
 from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
 from flexstage.studies.sweeps.plan import Plan, shares
@@ -91,7 +91,7 @@ class Study:
         ['version', 'design', 'plan', 'variables.neck', 'responses.tilt']
         """
         return {
-            "version": flexstage.__version__,
+            "version": __version__,
             "design": digest(self.design, physics=True)[:16],
             "plan": _describe(self.plan),
             **{f"variables.{each.name}": _describe(each) for each in self.variables},

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
-from flexstage import __version__
 from flexstage.analysis.measures import platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
+from flexstage.base.version import __version__
 from flexstage.models.batch.engine import Plan, Status, plan_family, platform_modes
 from flexstage.models.batch.kernel import kernel_name
 from flexstage.models.batch.numbers import Family, drawn_family, family

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-import flexstage
 from flexstage.base.files import Hdf, new_hdf
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.store import atomic_write
+from flexstage.base.version import __version__
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.evaluate import Piece
 from flexstage.studies.sweeps.store import (
@@ -126,7 +126,7 @@ def _frame(file: Any, study: Study, size: int) -> None:
 
     names, units = columns_of(study)
     file.attrs["format"] = FORMAT
-    file.attrs["study"], file.attrs["version"], file.attrs["about"] = study.text, flexstage.__version__, _ABOUT
+    file.attrs["study"], file.attrs["version"], file.attrs["about"] = study.text, __version__, _ABOUT
     file.attrs["planned"], file.attrs["piece"] = study.plan.designs, size
     facts = file.create_group("facts", track_order=True)
     for key, value in study.facts.items():

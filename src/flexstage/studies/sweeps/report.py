@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import flexstage
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
@@ -47,7 +47,7 @@ def sweep_report(sweep: Sweep) -> str:
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
     ]
-    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
     head = Head(study.name, "A sweep of designs", origin, _headline(study, results))
     return page(head, [each for each in sections if each is not None], {key: each.data for key, each in stages.items()})
 

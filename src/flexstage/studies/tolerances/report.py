@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import flexstage
 from flexstage.base.digest import digest
+from flexstage.base.version import __version__
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.page import Head, Headline, Picture, Section, page, section
@@ -43,7 +43,7 @@ def tolerance_report(found: Toleranced) -> str:
         *(_crosstalk(found, index) for index in range(len(said.crosstalk))),
         section("Copies without values", [failure_table(found.results)] if found.results.failures else []),
     ]
-    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", flexstage.__version__))
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
     return page(Head(study.name, "Tolerances", origin, _headline(found)), [each for each in sections if each is not None], {"stage": data})
 
 

@@ -1,0 +1,63 @@
+"""Checks of named numbers and formulas: spelling, units, circles, and values equal to those that their formulas give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.expression import Expression, ExpressionError, parse_expression
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.unit import quantity_of_unit
+from flexstage.mechanism.address import get, quantity_of
+from flexstage.mechanism.formulas import PREFIX, amount_of, cycle_findings, formula_value, scope_of, shown_unit, spelling_findings
+from flexstage.mechanism.mechanism import Mechanism, NamedNumber
+
+_ALIKE = 1e-9
+
+
+def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about named numbers and formulas that a description in Python may have: files are so by their reading.
+
+    >>> print(*formula_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "ells")})))
+    numbers.arm: "ells" is not a known unit. Give it a unit, such as mm, or 1 for a ratio.
+    """
+    for name, number in mechanism.numbers.items():
+        yield from spelling_findings(name)
+        yield from _unit_findings(name, number)
+    expressions: dict[str, Expression] = {}
+    for address, text in mechanism.formulas.items():
+        try:
+            expressions[address] = parse_expression(text)
+        except ExpressionError as error:
+            yield Finding(address, error.what, error.advice)
+    circles = tuple(cycle_findings({key.removeprefix(PREFIX): each for key, each in expressions.items() if key.startswith(PREFIX)}))
+    yield from circles
+    if circles or any(tuple(_unit_findings(*item)) for item in mechanism.numbers.items()):
+        return
+    scope = scope_of(mechanism)
+    for address in expressions:
+        try:
+            wanted = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope, address)
+            found = get(mechanism, address)
+        except DesignError as error:
+            yield from error.findings
+            continue
+        number = mechanism.numbers.get(address.removeprefix(PREFIX)) if address.startswith(PREFIX) else None
+        if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
+            yield Finding(address, f"its formula gives it in {unit}, and its unit is {number.unit}", f"Write {unit}")
+        if found is None or not np.allclose(found, wanted, rtol=_ALIKE, atol=0.0):
+            what = f'its formula "{mechanism.formulas[address]}" gives {_si(wanted)}, and its value is {_si(found)} (SI)'
+            yield Finding(address, what, "Set the value by the formula, or take the formula out")
+
+
+def _si(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else "other values"
+
+
+def _unit_findings(name: str, number: NamedNumber) -> Iterator[Finding]:
+    try:
+        quantity_of_unit(number.unit)
+    except ValueError as error:
+        yield Finding(PREFIX + name, str(error), "Give it a unit, such as mm, or 1 for a ratio")
