@@ -19,10 +19,11 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import flexstage as fs
 from flexstage.apps import doctor
-from flexstage.apps.cli import analyses, commands, run
+from flexstage.apps.cli import commands, run
 from flexstage.apps.cli.commands import COMMANDS
-from flexstage.apps.cli.installation import self_test
+from flexstage.apps.commands import analyses
 from flexstage.apps.doctor import Row, Verdict
+from flexstage.apps.installation import self_test
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
 from flexstage.control.hysteresis.example import example_record
@@ -109,7 +110,7 @@ def test_the_line_of_each_command_is_that_of_its_docstring(command: commands.Com
 def test_only_the_module_of_a_command_that_runs_is_imported() -> None:
     code = "import sys; from flexstage.apps.cli import run; run(sys.argv[1:]); print(*sys.modules)"
     homes = {each.home.partition(":")[0] for each in COMMANDS}
-    for words, expected in ((["--help"], set()), (["version"], {"apps.cli.about"}), (["sweep", "--help"], set())):
+    for words, expected in ((["--help"], set()), (["version"], {"apps.commands.about"}), (["sweep", "--help"], set())):
         done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
         assert homes & set(done.stdout.splitlines()[-1].split()) == {f"flexstage.{name}" for name in expected}
 
@@ -331,7 +332,7 @@ def test_in_python_one_thread_serves_small_matrices_and_the_callers_are_restored
 def test_the_doctor_runs_without_typer(tmp_path: Path) -> None:
     code = (
         "import sys; sys.modules['typer'] = None\n"
-        "import flexstage.apps.cli.installation as installation\n"
+        "import flexstage.apps.installation as installation\n"
         "installation.consult = lambda: print('consulted') or 0\n"
         "from flexstage.apps.cli import run; print(run(['doctor'])); print(run(['modes']))"
     )
@@ -355,5 +356,5 @@ def test_the_doctor_prints_rows_and_tells_by_exit_code(flexstage: Command, monke
 
 def test_the_doctors_self_test_is_good_and_notices_wrong_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     assert self_test().verdict is Verdict.GOOD
-    monkeypatch.setattr("flexstage.apps.cli.installation._FREQUENCIES", (110.9, 110.9, 135.1, 145.5, 176.7, 176.7))
+    monkeypatch.setattr("flexstage.apps.installation._FREQUENCIES", (110.9, 110.9, 135.1, 145.5, 176.7, 176.7))
     assert self_test().verdict is Verdict.BAD

@@ -69,13 +69,13 @@ FORBIDDEN = [
     ("control/plants.py", "flexstage.experiment.comparison"),
     ("studies/sweeps/run.py", "flexstage.solid.fea.install"),
     ("studies/sweeps/run.py", "flexstage.control.plants"),
-    ("apps/cli/analyse.py", "flexstage.apps.cli.describe"),
-    ("apps/cli/analyse.py", "flexstage.apps.cli.commands"),
+    ("apps/commands/analyse.py", "flexstage.apps.commands.describe"),
+    ("apps/commands/analyse.py", "flexstage.apps.cli.commands"),
     ("studies/commands/sweep.py", "flexstage.studies.commands.tolerance"),
     ("studies/sweeps/run.py", "flexstage.studies.commands.sweep"),
     ("control/commands/loop.py", "flexstage.apps.cli.commands"),
     ("experiment/commands/compare.py", "flexstage.solid.commands.modes"),
-    ("show/command/answer.py", "flexstage.apps.cli.about"),
+    ("show/command/answer.py", "flexstage.apps.commands.about"),
     ("show/command/progress.py", "flexstage.solid.modes"),
 ]
 

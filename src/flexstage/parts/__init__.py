@@ -28,10 +28,11 @@ from flexstage.parts.voice_coil import VoiceCoil
 _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
+_GAUGES = (Gauge, Tilt, Encoder, StrainGauge)
 PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts", {part.kind: part for part in (*_HINGES, Membrane, Given, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)}
 )
 """Kinds of parts that have a stiffness of their own, or whose members have."""
 
-GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in (Gauge, Tilt, Encoder, StrainGauge)})
+GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in _GAUGES})
 """Kinds of gauges; one that states no kind is a `Gauge`."""

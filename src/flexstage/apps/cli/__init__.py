@@ -1,7 +1,7 @@
 """The command line: `flexstage ...`. Translates requests; no physics. Nothing heavy is loaded before a command is called.
 
-`commands` is the table of all commands. Those of the wings stand in their wings. A command's module takes what commands share from
-`show.command`, and knows neither another command nor the table.
+`commands` is the table of all commands; their modules are in `apps.commands` and in `commands` of the other packages. A command's module
+imports what commands share from `show.command`, and neither another command nor the table.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _run(arguments: list[str]) -> None:
     except ModuleNotFoundError as error:
         if arguments[:1] != ["doctor"] or (error.name or "").startswith("flexstage"):
             raise
-        from flexstage.apps.cli.installation import consult
+        from flexstage.apps.installation import consult
 
         sys.exit(consult())
     application()(arguments, prog_name="flexstage", obj=MODELS)

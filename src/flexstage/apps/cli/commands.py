@@ -49,7 +49,7 @@ _DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
     "Improve it",
     "Installation",
 )
-_CLI = "flexstage.apps.cli"
+_APPS = "flexstage.apps.commands"
 _SOLID = "flexstage.solid.commands"
 _EXPERIMENT = "flexstage.experiment.commands"
 _CONTROLLED = "flexstage.control.commands"
@@ -57,17 +57,17 @@ _STUDIES = "flexstage.studies.commands"
 
 # fmt: off
 COMMANDS: tuple[Command, ...] = (
-    Command("new", _DESCRIBE, "Write a shipped case as a commented design file.", f"{_CLI}.describe:new",
+    Command("new", _DESCRIBE, "Write a shipped case as a commented design file.", f"{_APPS}.describe:new",
             "flexstage new stage.toml --case hexapod"),
-    Command("check", _DESCRIBE, "Check a design file.", f"{_CLI}.describe:check",
+    Command("check", _DESCRIBE, "Check a design file.", f"{_APPS}.describe:check",
             "flexstage check stage.toml"),
-    Command("schema", _DESCRIBE, "Print the JSON Schema of a kind of file, for editors.", f"{_CLI}.describe:schema",
+    Command("schema", _DESCRIBE, "Print the JSON Schema of a kind of file, for editors.", f"{_APPS}.describe:schema",
             "flexstage schema > flexstage.schema.json"),
     Command("studio", _DESCRIBE, "Open a stage in the browser: change it, see what it does.", "flexstage.apps.studio.command:studio",
             "flexstage studio stage.toml"),
-    Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_CLI}.describe:plan",
+    Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_APPS}.describe:plan",
             "flexstage plan stage.toml -o plan.svg"),
-    Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_CLI}.describe:catalogue",
+    Command("catalogue", _DESCRIBE, "List the shipped materials, piezo stacks and gauges.", f"{_APPS}.describe:catalogue",
             "flexstage catalogue stacks"),
     Command("import", _DESCRIBE, "State a STEP file as an outline.", f"{_SOLID}.exchange:state",
             "flexstage import part.step stage.toml --material steel"),
@@ -75,31 +75,31 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage cad stage.toml -o stage.step"),
     Command("superelement", _DESCRIBE, "Reduce one solid of a stage to a superelement.", f"{_SOLID}.exchange:superelement",
             "flexstage superelement stage.toml platform -o frame.npz"),
-    Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_CLI}.analyse:analyse",
+    Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_APPS}.analyse:analyse",
             "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
-    Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_CLI}.analyses:mapping",
+    Command("mapping", _ANALYSE, "Mappings R_a and R_s, mobility, redundancy.", f"{_APPS}.analyses:mapping",
             "flexstage mapping stage.toml --json -"),
-    Command("stiffness", _ANALYSE, "Compliance and stiffness of the platform.", f"{_CLI}.analyses:stiffness",
+    Command("stiffness", _ANALYSE, "Compliance and stiffness of the platform.", f"{_APPS}.analyses:stiffness",
             "flexstage stiffness stage.toml --model mapped"),
-    Command("lost-motion", _ANALYSE, "Gain, loss and its budget by part, crosstalk, correction.", f"{_CLI}.analyses:lost_motion",
+    Command("lost-motion", _ANALYSE, "Gain, loss and its budget by part, crosstalk, correction.", f"{_APPS}.analyses:lost_motion",
             "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
-    Command("modes", _ANALYSE, "Natural frequencies, names and shapes.", f"{_CLI}.analyses:modes",
+    Command("modes", _ANALYSE, "Natural frequencies, names and shapes.", f"{_APPS}.analyses:modes",
             "flexstage modes stage.toml --model mapped --json modes.json"),
-    Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_CLI}.analyses:response",
+    Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_APPS}.analyses:response",
             'flexstage response stage.toml --input ground.z --output platform.z --band "1 Hz" "1 kHz"'),
-    Command("stroke", _ANALYSE, "Force, stiffness, parasitic motion, frequencies over a stroke.", f"{_CLI}.displaced:stroke",
+    Command("stroke", _ANALYSE, "Force, stiffness, parasitic motion, frequencies over a stroke.", f"{_APPS}.displaced:stroke",
             'flexstage stroke stage.toml --drive platform.x --to "50 um" --points 3'),
-    Command("buckle", _ANALYSE, "How far a load may grow until the stage gives way.", f"{_CLI}.displaced:buckle",
+    Command("buckle", _ANALYSE, "How far a load may grow until the stage gives way.", f"{_APPS}.displaced:buckle",
             'flexstage buckle stage.toml --load "platform.fz=-100 kN" --beyond 3'),
-    Command("misalign", _ANALYSE, "What a misaligned copy does to an over-constrained stage.", f"{_CLI}.displaced:misalign",
+    Command("misalign", _ANALYSE, "What a misaligned copy does to an over-constrained stage.", f"{_APPS}.displaced:misalign",
             "flexstage misalign stage.toml --copy B4 --about y --points 3"),
-    Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_CLI}.accuracy:workspace",
+    Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_APPS}.accuracy:workspace",
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
-    Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_CLI}.accuracy:drift",
+    Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_APPS}.accuracy:drift",
             "flexstage drift stage.toml --ground none"),
-    Command("sensitivities", _ANALYSE, "Exact derivatives with respect to every number.", f"{_CLI}.accuracy:sensitivities",
+    Command("sensitivities", _ANALYSE, "Exact derivatives with respect to every number.", f"{_APPS}.accuracy:sensitivities",
             "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
-    Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_CLI}.accuracy:budget",
+    Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_APPS}.accuracy:budget",
             "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
     Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_SOLID}.solid:solid",
             "flexstage solid stage.toml --what unit --report units.html"),
@@ -127,9 +127,9 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
     Command("tolerance", _IMPROVE, "Scatter dimensions and materials: yield, allowances.", f"{_STUDIES}.tolerance:tolerance",
             "flexstage tolerance study.toml --report tolerance.html"),
-    Command("doctor", _INSTALLATION, "Examine the installation.", f"{_CLI}.about:doctor",
+    Command("doctor", _INSTALLATION, "Examine the installation.", f"{_APPS}.about:doctor",
             "flexstage doctor"),
-    Command("version", _INSTALLATION, "Print the version of flexstage.", f"{_CLI}.about:version",
+    Command("version", _INSTALLATION, "Print the version of flexstage.", f"{_APPS}.about:version",
             "flexstage version"),
 )
 # fmt: on
@@ -204,7 +204,7 @@ def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
 
 def _tell_version(*, asked: bool) -> None:
     if asked:
-        from flexstage.apps.cli.about import version  # when called, as the module of any command
+        from flexstage.apps.commands.about import version  # when called, as the module of any command
 
         version()
         raise typer.Exit

@@ -23,7 +23,7 @@ def signature_of(module: str, name: str) -> Callable[..., Any]:
 
     The function itself where its module is imported already, or its signature needs a class or function that stands in its own module.
 
-    >>> signature_of("flexstage.apps.cli.about", "version").__doc__
+    >>> signature_of("flexstage.apps.commands.about", "version").__doc__
     'Print the version of flexstage.'
     """
     if module in sys.modules:

@@ -1,4 +1,4 @@
-"""Kinds of amplifiers that a set-up file may state. Other packages offer theirs."""
+"""Voltage and charge amplifiers as a set-up file states them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ from flexstage.base.quantity import (
     VOLTAGE_NOISE,
     Bound,
 )
-from flexstage.base.register import Register
 from flexstage.control.electronics import AmplifierSettings, ChargeHold
 
 _MOST_BITS = 32
@@ -28,7 +27,7 @@ _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=
 
 
 class AmplifierForm(CheckedFields):
-    """What every `kind` of amplifier has, a frozen dataclass whose fields are the keys of its table; `AMPLIFIERS` lists the kinds."""
+    """What every `kind` of amplifier has, a frozen dataclass whose fields are the keys of its table; `amplifier_kinds` lists them."""
 
     kind: ClassVar[str]
 
@@ -117,7 +116,3 @@ class ChargeSetup(AmplifierSetup):
             given = "are both given" if self.corner is not None else "are both missing"
             advice = 'Give one of them: no drive holds charge for ever. Write for example corner = "0.1 Hz"'
             yield Finding("amplifier", f"its corner and its leakage {given}", advice)
-
-
-AMPLIFIERS: Register[type[AmplifierForm]] = Register("flexstage.amplifiers", {each.kind: each for each in (AmplifierSetup, ChargeSetup)})
-"""Kinds of amplifiers by the `kind` of a set-up file; a table without one is that of voltage amplifiers."""

@@ -28,7 +28,8 @@ from flexstage.base.quantity import (
     Bound,
 )
 from flexstage.control.controllers.kinds import CONTROLLERS
-from flexstage.control.study.amplifiers import AMPLIFIERS, AmplifierForm, AmplifierSetup
+from flexstage.control.study.amplifier_kinds import AMPLIFIERS
+from flexstage.control.study.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
 from flexstage.control.tuning.aim import Aim
 from flexstage.mechanism.node import ChoiceNode, Wanted

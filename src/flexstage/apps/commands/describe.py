@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis.cautions import caveats, model_findings
-from flexstage.apps.cli.words import File
+from flexstage.apps.words import File
 from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.version import __version__

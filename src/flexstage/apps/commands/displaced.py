@@ -17,7 +17,7 @@ from flexstage.analysis.requirements import asked_factor
 from flexstage.analysis.stance import require_consistent
 from flexstage.analysis.stroke import Beyond
 from flexstage.analysis.stroke import stroke as over_stroke
-from flexstage.apps.cli.words import Side
+from flexstage.apps.words import Side
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.quantity import ANGLE, LENGTH, RATIO, Quantity

@@ -6,7 +6,7 @@ import platform
 
 import typer
 
-from flexstage.apps.cli import installation
+from flexstage.apps import installation
 from flexstage.base.version import __version__
 from flexstage.show.command.terminal import print_result
 
