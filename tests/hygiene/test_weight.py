@@ -1,0 +1,54 @@
+"""The weight of the source: code tokens by package stay below ceilings that only fall."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.hygiene.source import expect_none
+from tools.weight import weigh, weights
+
+CEILINGS = {
+    "base": 29_500,
+    "spatial": 3_900,
+    "parts": 44_300,
+    "beams": 27_000,
+    "mechanism": 60_100,
+    "cases": 13_700,
+    "models": 111_700,
+    "analysis": 68_800,
+    "show": 78_100,
+    "solid": 81_000,
+    "experiment": 104_200,
+    "control": 175_900,
+    "studies": 55_300,
+    "apps": 40_100,
+    ".": 400,
+    "all": 893_300,
+}
+"""Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
+
+
+SLACK = 1_000
+"""Tokens by which a ceiling may exceed the weight, so that what a change saves stays saved."""
+
+
+def test_weights_stay_below_ceilings_that_follow_them() -> None:
+    found = {name: row["tokens"] for name, row in weights().items()}
+    heavy = (name for name, tokens in found.items() if tokens > CEILINGS.get(name, 0))
+    advice = "remove code; to raise a ceiling, write a decision record that says what was tried instead"
+    expect_none((f"{name}: {found[name]:,} code tokens, ceiling {CEILINGS.get(name, 0):,}" for name in heavy), advice)
+    light = ((name, -(-found.get(name, 0) // 100) * 100) for name, ceiling in CEILINGS.items() if found.get(name, 0) < ceiling - SLACK)
+    expect_none((f'"{name}": {tokens:_},' for name, tokens in light), "lower these ceilings: the packages have become lighter")
+
+
+@pytest.mark.parametrize(
+    ("text", "weight"),
+    [
+        ('"""A module."""\nimport math\n\nhalf = 0.5 * math.pi  # a comment\n', (7, 1)),
+        ("def f(x):\n    '''One\n    two.'''\n    return x if x >= 1e-3 else -x\n", (15, 2)),
+        ('a = f"{b}" "c"; d **= 0x1F\n"not a docstring" + a\n', (11, 0)),
+        ("from a import (\n    b,\n    c,\n)\n@b\nclass C: ...\n", (6, 0)),
+    ],
+)
+def test_tokens_leave_out_docstrings_comments_and_imports(text, weight) -> None:
+    assert weigh(text) == weight
