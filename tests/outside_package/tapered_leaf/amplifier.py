@@ -16,6 +16,6 @@ class Switching(AmplifierForm):
     carrier: Annotated[float, FREQUENCY, POSITIVE] = 100e3
 
     @property
-    def settings(self):
+    def settings(self) -> AmplifierSettings:
         """First order at a tenth of the carrier."""
         return AmplifierSettings(bandwidth=0.1 * self.carrier)
