@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import ast
 import re
+import sys
+from collections import Counter
 from importlib import import_module
 from pathlib import Path
 
 from sphinx.application import Sphinx
 
 import flexstage
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from tools.imports import import_graph, layers, package_of, points_up
 
 project = "flexstage"
 author = "The flexstage authors"
@@ -31,12 +36,11 @@ suppress_warnings: list[str] = []
 nitpicky = False
 
 
-FLOORS = ["apps", "studies", "control", "experiment", "solid", "show", "analysis", "models", "cases"]
-FLOORS += ["beams", "mechanism", "parts", "spatial", "base"]
+LAYERS = [name for name in layers() if name not in {"flexstage", "__main__"}]
 
 
 def setup(app: Sphinx) -> None:
-    """Write the pages that are made from the code before pages are read: the map of the house, and the reference; stages that turn."""
+    """Write the pages that are made from the code before pages are read: package structure and reference; stages that turn."""
     app.connect("builder-inited", write_pages)
     app.connect("source-read", let_turn)
     app.connect("build-finished", write_stages)
@@ -44,8 +48,8 @@ def setup(app: Sphinx) -> None:
 
 
 def write_pages(app: Sphinx) -> None:
-    """The map, and a page of the reference for each chapter."""
-    pages = {"map": house_map(), "api/index": contents()} | {f"api/{each}": chapter(each) for each in CHAPTERS}
+    """The package structure, and a page of the reference for each chapter."""
+    pages = {"map": structure(), "api/index": contents()} | {f"api/{each}": chapter(each) for each in CHAPTERS}
     for name, text in pages.items():
         path = Path(app.srcdir, f"{name}.md")
         path.parent.mkdir(exist_ok=True)
@@ -83,16 +87,16 @@ def names(part: str) -> dict[str, str]:
     return {name: f"{space}.{name}" for each in homes for name in each.split()}
 
 
-CHAPTERS = [each for each in (*reversed(FLOORS[5:]), *reversed(FLOORS[:5])) if names(each)]
+CHAPTERS = [each for each in LAYERS if names(each)]
 
 
 def contents() -> str:
     """The first page of the reference."""
     return f"""# Reference
 
-`import flexstage as fs`: what describes a stage, models it and analyses it stands in `fs` itself, the rest in `fs.solid`,
-`fs.experiment`, `fs.control` and `fs.studies`. Chapters go up the floors. Types of results, and steps of others' work, are imported from
-their modules ([map](../map.md)).
+`import flexstage as fs`: what describes a stage, models it and analyses it is in `fs` itself, the rest in `fs.solid`, `fs.experiment`,
+`fs.control` and `fs.studies`. Chapters are in the order of the layers, lowest first. Types of results, and steps of others' work, are
+imported from their modules ([package structure](../map.md)).
 
 ```{{toctree}}
 :maxdepth: 1
@@ -132,17 +136,39 @@ def literal(line: str) -> str:
     return indent + "".join(f"``{part}``" if odd % 2 else re.sub(r"([\\*|_])", r"\\\1", part) for odd, part in enumerate(parts))
 
 
-def house_map() -> str:
-    """Every module with its first line, floor by floor."""
+def structure() -> str:
+    """The imports between packages as a table, the largest folders, and every module with its first line, layer by layer."""
+    lines = ["# Package structure", "", *imports_table(), "", *folders_table()]
     package = Path(flexstage.__file__).parent
-    lines = [
-        "# Map of the house",
-        "",
-        "Every concept has one home: look here before writing something anew. Imports go down the floors only.",
-    ]
-    for floor in FLOORS:
-        lines += ["", f"## {floor}", ""]
-        for path in sorted((package / floor).rglob("*.py")):
+    for layer in reversed(LAYERS):
+        lines += ["", f"## {layer}", ""]
+        for path in sorted((package / layer).rglob("*.py")):
             first = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")[0]
             lines.append(f"- `{path.relative_to(package).as_posix()}`: {first}")
     return "\n".join(lines) + "\n"
+
+
+def imports_table() -> list[str]:
+    """How often each package imports each other one, highest layer first. Raises `RuntimeError` for an import that points upwards."""
+    graph = import_graph()
+    edges = [(importer, each) for importer in graph.modules for each in graph.find_modules_directly_imported_by(importer)]
+    if upward := [f"{importer} -> {imported}" for importer, imported in edges if points_up(importer, imported)]:
+        raise RuntimeError(f"imports point upwards: {', '.join(upward)}")
+    counts = Counter((package_of(importer), package_of(imported)) for importer, imported in edges)
+    order = LAYERS[::-1]
+    lines = [
+        "Number of imports by modules of the row's package of modules of the column's: statements, also those within functions, and",
+        "modules named in a string. Packages are in the order of the layers, highest first; no import points upwards.",
+        "",
+        f"| | {' | '.join(order)} |",
+        f"|---|{'---:|' * len(order)}",
+    ]
+    return lines + [f"| **{row}** | {' | '.join(str(counts[row, column] or '') for column in order)} |" for row in order]
+
+
+def folders_table() -> list[str]:
+    """Folders of more than fifteen modules, the largest first."""
+    package = Path(flexstage.__file__).parent
+    counts = Counter(path.parent.relative_to(package).as_posix() for path in package.rglob("*.py"))
+    rows = [f"| `{folder}` | {count} |" for folder, count in counts.most_common() if count > 15]
+    return ["| folder of more than fifteen modules | modules |", "|---|---:|", *rows]
