@@ -7,6 +7,7 @@ import linecache
 import os
 import signal
 import sys
+from collections.abc import Generator
 from pathlib import Path
 
 # Before numpy is imported; the limit below catches libraries that were loaded earlier all the same.
@@ -15,6 +16,7 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import pytest
 from _pytest.assertion import rewrite
+from _pytest.doctest import DoctestModule
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.internal.conjecture import providers
 
@@ -74,6 +76,13 @@ def _translate(path: Path, config: pytest.Config) -> None:
     if rewrite._read_pyc(path, place) is None and rewrite.try_makedirs(place.parent):
         source, code = rewrite._rewrite_test(path, config)
         rewrite._write_pyc(config.stash[rewrite.assertstate_key], code, source, place)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file() -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+    """Tests have no examples in their docstrings: none are looked for here, only in `src`."""
+    found = yield
+    return [each for each in found if not isinstance(each, DoctestModule)]
 
 
 def pytest_collection_finish() -> None:

@@ -7,7 +7,7 @@ sheared by the force in its axes (Haringx); m' = y' f_x - x' f_y under the force
 from __future__ import annotations
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 from scipy.optimize import root
 
 from flexstage.base.number import Array
@@ -23,7 +23,7 @@ def beam_end(force: Array, moment: float, stretch: float, shear: float) -> Array
         dx, dy = cosine * along - sine * across, sine * along + cosine * across
         return np.array([dx, dy, state[3], dy * force[0] - dx * force[1]])
 
-    return solve_ivp(slope, (0.0, 1.0), [0.0, 0.0, 0.0, moment], method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1]
+    return scipy.integrate.solve_ivp(slope, (0.0, 1.0), [0.0, 0.0, 0.0, moment], method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1]
 
 
 def cross_pivot(angle: float, crossing: float, load: Array, stretch: float, shear: float) -> tuple[float, Array]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_bvp
+import scipy
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
@@ -40,7 +40,7 @@ def test_a_curved_cantilever_under_a_force_at_its_end() -> None:
     """E I theta'' = -F cos theta, theta(0) = 0, theta'(L) = k, solved as a boundary value problem."""
     for curvature, force in ((1.0, 3.0), (0.5 * np.pi, -2.0), (-0.7, 5.0)):
         places = np.linspace(0.0, 1.0, 41)
-        found = solve_bvp(
+        found = scipy.integrate.solve_bvp(
             lambda _, y, f=force: np.array([y[1], -f * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])]),
             lambda a, b, k=curvature: np.array([a[0], a[2], a[3], b[1] - k]),
             places,

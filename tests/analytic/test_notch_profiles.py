@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+import scipy
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 
@@ -166,7 +166,7 @@ def test_compliances_are_the_integrals_of_their_heights(profile):
         def density(x, power=power):
             return (0.4 + 2.0 * float(profile.height(np.array(x)))) ** -power
 
-        whole = sum(quad(density, a, b, epsabs=0.0, epsrel=1e-11, limit=400)[0] for a, b in pairwise(breaks))
+        whole = sum(scipy.integrate.quad(density, a, b, epsabs=0.0, epsrel=1e-11, limit=400)[0] for a, b in pairwise(breaks))
         assert found[index] == pytest.approx(2.0 * factor * whole / (200e3 * 10.0), rel=1e-8)
 
 

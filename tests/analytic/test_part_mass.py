@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+import scipy
 
 from flexstage.beams.mass import mass
 from flexstage.parts.given import Given, Joint
@@ -71,7 +71,8 @@ def test_notch_moved_rigidly_is_its_solid(profile, height, half):
     """Mass and inertia of the solid between the arc ends, integrated from its outline by another quadrature."""
 
     def integral(function):
-        return BEAM.density * 0.012 * 2.0 * quad(lambda x: height(x) * function(x), 0.0, half, points=[0.004], epsabs=0.0, epsrel=1e-11)[0]
+        half_integral = scipy.integrate.quad(lambda x: height(x) * function(x), 0.0, half, points=[0.004], epsabs=0.0, epsrel=1e-11)[0]
+        return BEAM.density * 0.012 * 2.0 * half_integral
 
     total, along, across = integral(lambda x: x**0), integral(lambda x: x**2), integral(lambda x: height(x) ** 2 / 12.0)
     sideways = total * 0.012**2 / 12.0

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import quad
 
 from flexstage.analysis.workspace.polytope import reachable
 from flexstage.analysis.workspace.stroke import StrokeLimits
@@ -132,7 +132,9 @@ def test_the_path_of_an_even_spiral_is_as_long_as_its_time():
     spiral, growth = Spiral(10e-6, 1e-6, EvenSpeed(2e-3)), 1e-6 / (2.0 * np.pi)
     times = spiral.duration * np.array([1e-4, 1e-3, 0.02, 0.3, 1.0])
     angles = np.hypot(*spiral.at(times).T) / growth
-    lengths = [growth * quad(lambda angle: np.sqrt(1.0 + angle**2), 0.0, angle, epsabs=0.0, epsrel=1e-13)[0] for angle in angles]
+    lengths = [
+        growth * scipy.integrate.quad(lambda angle: np.sqrt(1.0 + angle**2), 0.0, angle, epsabs=0.0, epsrel=1e-13)[0] for angle in angles
+    ]
     assert lengths == pytest.approx(2e-3 * times, rel=1e-11)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 from scipy.optimize import brentq
 
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
@@ -143,7 +143,8 @@ def integrated(given: Machine, whole: Plant, reference: np.ndarray, named: dict[
             return x
         drive = system.B @ entering(k, strokes)
         ramp = system.B @ np.where(shakes, (entering(min(k + 1, count - 1), strokes) - entering(k, strokes)) / step, 0.0)
-        return solve_ivp(lambda t, x: system.A @ x + drive + ramp * t, times, x, method="DOP853", rtol=1e-11, atol=1e-18).y[:, -1]
+        solve = scipy.integrate.solve_ivp
+        return solve(lambda t, x: system.A @ x + drive + ramp * t, times, x, method="DOP853", rtol=1e-11, atol=1e-18).y[:, -1]
 
     for k in range(count):
         now = entering(k, stroke)

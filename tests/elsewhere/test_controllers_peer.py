@@ -5,7 +5,6 @@ Its numbers are made at test time by the pinned version; it solves the same Ricc
 
 from __future__ import annotations
 
-import control as peer
 import numpy as np
 import pytest
 
@@ -29,6 +28,8 @@ STEP = 1e-4
 
 def test_a_row_of_law_and_notch_is_the_peer_s():
     """PID, filter and notch as transfer functions, multiplied and made digital by the other code."""
+    import control as peer  # takes a third of a second, also where the tests are only listed
+
     s = peer.tf("s")
     omega, corner = 2.0 * np.pi * 110.9, 2.0 * np.pi * 1500.0
     law = 0.3 + 200.0 / s + 2e-3 * s / (1.0 + s / corner)
@@ -45,6 +46,8 @@ def test_a_row_of_law_and_notch_is_the_peer_s():
 @pytest.mark.parametrize("given", [Hardware(), Hardware(rate=5e3, delay=130e-6)])
 def test_linear_quadratic_gains_are_the_peer_s(given):
     """Regulator with integrators and observer, continuous and sampled, of the shipped two-axis stage with four modes."""
+    import control as peer
+
     stage = xy_stage()
     one = plant(lumped(stage), ideal(stage), given, modes=4)
     model = pose_plant(one)

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import dblquad, solve_ivp
+import scipy
 from scipy.optimize import brentq
 
 from flexstage.control.hysteresis.bouc_wen import BoucWen
@@ -41,7 +41,9 @@ def test_bouc_wen_against_an_integrator(gamma):
     for start, stop in pairwise(turning_times(2.0)):
         samples = np.linspace(start, stop, 12)[1:]
         crossing = lambda _, state: state[0]  # noqa: E731 - the integrator wants a function it can ask where h is 0
-        solved = solve_ivp(right, (start, stop), wanted[-1:], "DOP853", samples, events=crossing, rtol=3e-14, atol=1e-20, max_step=2e-3)
+        solved = scipy.integrate.solve_ivp(
+            right, (start, stop), wanted[-1:], "DOP853", samples, events=crossing, rtol=3e-14, atol=1e-20, max_step=2e-3
+        )
         times += samples.tolist()
         wanted += solved.y[0].tolist()
     volts = swept(np.array(times))[0]
@@ -81,6 +83,8 @@ def density(plant, alpha, beta):
 @pytest.mark.parametrize(("alpha", "beta"), [(1000.0, 0.0), (700.0, 650.0), (400.0, 10.0)])
 def test_everett_against_quadrature(alpha, beta):
     plant = preisach(150e-6, (0.0, 1000.0), 0.15)
-    wanted, _ = dblquad(lambda low, high: density(plant, high, low), beta, alpha, beta, lambda high: high, epsabs=0.0, epsrel=1e-12)
+    wanted, _ = scipy.integrate.dblquad(
+        lambda low, high: density(plant, high, low), beta, alpha, beta, lambda high: high, epsabs=0.0, epsrel=1e-12
+    )
     found = plant.everett(np.array([alpha]), np.array([beta]))
     assert found[0] == pytest.approx(wanted, rel=1e-9)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from scipy.signal import dlsim
+import scipy
 
 from flexstage.control.simulation.machine import machine, without_limits
 from flexstage.control.simulation.result import Simulated
@@ -50,7 +50,7 @@ def test_linear_loops_equal_scipys_difference_equations(delay):
     reference = np.stack([named.pop(f"reference.{name}") for name in given.names], axis=-1)
     found = simulate(given, reference, named)
     system = wired.system
-    _, expected, _ = dlsim((system.A, system.B, system.C, system.D, 1.0 / RATE), inputs)
+    _, expected, _ = scipy.signal.dlsim((system.A, system.B, system.C, system.D, 1.0 / RATE), inputs)
     wanted = dict(zip(system.output_names, expected.T, strict=True))
     for channel, series in zip(found.channels, found.motions.T, strict=True):
         assert relative(series, wanted[channel.name]) < 1e-12, channel.name

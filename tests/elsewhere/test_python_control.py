@@ -7,11 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-pytest.importorskip("control", reason="python-control is not installed")
-
-import control
-from scipy.signal import dlsim, dlti
+import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
@@ -79,6 +75,8 @@ def test_responses(rate):
 @pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
 def test_closed_by_feedback(rate, gain):
     """The closed loop of python-control's `feedback` around our open loop is ours."""
+    import control
+
     closed = _loop(rate, gain, tip_tilt, 6)
     open_loop = to_control(open_at(closed, Cut.POSE))
     at = np.geomspace(0.5, 3500.0, 100)
@@ -91,6 +89,8 @@ def test_closed_by_feedback(rate, gain):
 @pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
 def test_margins(gain):
     """A continuous loop: every margin by the roots of polynomials."""
+    import control
+
     closed = _loop(None, gain)
     own = margins(closed, Cut.POSE).of("x")
     gains, phases, _, at_gain, at_phase, _ = control.stability_margins(to_control(open_at(closed, Cut.POSE)), returnall=True, method="poly")
@@ -105,6 +105,8 @@ def test_margins(gain):
 @pytest.mark.parametrize("gain", [50.0, 200.0, 400.0])
 def test_margins_of_samples(gain):
     """A sampled loop: theirs by interpolation (their polynomials in z lose four digits), and their response at our frequencies."""
+    import control
+
     closed = _loop(8e3, gain)
     own, loops = margins(closed, Cut.POSE).of("x"), to_control(open_at(closed, Cut.POSE))
     gain_high, phase, _, at_gain, at_phase, _ = control.stability_margins(loops, method="frd")
@@ -125,6 +127,8 @@ def _found_by_search(plant_of_samples, wish: Wish) -> Loop:
 @pytest.mark.parametrize("wish", [Wish(), pytest.param(Wish(aim=Aim.REJECTION, gain=0.1), marks=pytest.mark.full)])
 def test_margins_of_what_a_search_finds(wish):
     """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""
+    import control
+
     wired = _found_by_search(integral_loop().plant, wish)
     own, step = margins(wired, Cut.POSE).of("x"), wired.step
     loops = to_control(open_at(wired, Cut.POSE))
@@ -196,6 +200,8 @@ def _read_off(omega, opened):
 @pytest.mark.parametrize("rate", [8e3, None])
 def test_disk_margins(rate):
     """Theirs from frequencies given, ours from the norm: with the norm's own frequency among them."""
+    import control
+
     closed = _loop(rate, 200.0)
     for skew in (-0.5, 0.0, 1.0):
         own = disk_margin(sensitivity(open_at(closed, Cut.POSE)), skew)
@@ -210,6 +216,8 @@ def test_norms(rate):
 
     Theirs by the Gramian: `control.norm` looks for a negative eigenvalue in it, and finds one of rounding or none as the machine rounds.
     """
+    import control
+
     closed = _loop(rate, 200.0)
     system = select(closed.system, ["noise.B"], ["relative.x"])
     if rate is None:
@@ -224,6 +232,8 @@ def test_norms(rate):
 
 def test_hold():
     """Exact sampling without delay is `sample_system`; a whole sample of delay is a shift."""
+    import control
+
     stage = parallelogram()
     plants = [
         plant(lumped(stage), ideal(stage), hardware(stage, rate=8e3, delay=delay, amplifiers=AmplifierSettings(bandwidth=900.0)), modes=2)
@@ -239,10 +249,12 @@ def test_hold():
 
 def test_stepped_by_scipy():
     """The closed loop's step, as scipy.signal and python-control march it."""
+    import control
+
     closed = _loop(8e3, 200.0)
     system = select(closed.system, ["reference.x"], ["relative.x", "command.B"])
     reference = np.ones(400)
-    _, found, _ = dlsim(dlti(system.A, system.B, system.C, system.D, dt=system.step), reference)
+    _, found, _ = scipy.signal.dlsim(scipy.signal.dlti(system.A, system.B, system.C, system.D, dt=system.step), reference)
     theirs = control.forced_response(to_control(system), inputs=reference, squeeze=False)
     assert np.allclose(theirs.outputs.T, found, rtol=1e-10, atol=1e-12)
     assert abs(found[-1, 0] - 1.0) < 1e-3
@@ -250,6 +262,8 @@ def test_stepped_by_scipy():
 
 def test_controllers_come_back():
     """A controller designed there closes the loop here."""
+    import control
+
     closed = _loop(8e3, 200.0)
     theirs = control.c2d(control.tf([200.0], [1.0, 0.0]), closed.step, method="tustin")
     gain = float(closed.plant.coordinates.strokes[0, 0])
@@ -260,6 +274,8 @@ def test_controllers_come_back():
 
 
 def test_what_cannot_be_taken_is_refused():
+    import control
+
     one = to_control(_loop(8e3, 200.0).controller)
     channel = Channel("error.x", "m")
     with pytest.raises(DesignError, match="2 are named, the system has 1"):

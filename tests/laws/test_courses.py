@@ -11,35 +11,45 @@ import flexstage as fs
 from flexstage.analysis.load_cases import REST, LoadCase, critical_factors
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.lines import centre_lines, critical_motion, mode_motions
+from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.displaced import along_table, buckling_report, stroke_report
 from flexstage.show.table import matrix_table
 from flexstage.show.viewer.course import NODES, stroke_data
 from flexstage.spatial.rotation import exponential, logarithm
 
 STAGE = fs.case("parallelogram")
-MODEL = fs.nonlinear(STAGE)
-PATH = fs.path(MODEL, "platform.x", np.linspace(-1e-4, 5e-4, 4))
 
 
-def test_what_is_lost_over_a_short_stroke_is_lost_motion() -> None:
+@pytest.fixture(scope="module")
+def model() -> Nonlinear:
+    return fs.nonlinear(STAGE)
+
+
+@pytest.fixture(scope="module")
+def course(model: Nonlinear) -> Path:
+    return fs.path(model, "platform.x", np.linspace(-1e-4, 5e-4, 4))
+
+
+def test_what_is_lost_over_a_short_stroke_is_lost_motion(model: Nonlinear, course: Path) -> None:
     """And nothing is told where there is no stroke, or where no stack drives."""
-    found = fs.stroke(fs.path(MODEL, "B", np.array([0.0, 1e-9]), weight=0.0), kinematics=fs.ideal(STAGE))
+    found = fs.stroke(fs.path(model, "B", np.array([0.0, 1e-9]), weight=0.0), kinematics=fs.ideal(STAGE))
     lost = found.along.values[:, found.along.columns.index("lost")]
     assert np.isnan(lost[0])
     assert lost[1] == pytest.approx(
         float(fs.lost_motion(fs.ideal(STAGE), fs.lumped(STAGE)).loss.at("B", "B")), rel=3e-3
     )  # leaves bend as plates
-    assert "lost" not in fs.stroke(PATH, kinematics=fs.ideal(STAGE)).along.columns
+    assert "lost" not in fs.stroke(course, kinematics=fs.ideal(STAGE)).along.columns
 
 
 @pytest.mark.parametrize("name", ["left", "B/front"])
-def test_centre_lines_are_those_of_the_flexures(name: str) -> None:
+def test_centre_lines_are_those_of_the_flexures(model: Nonlinear, course: Path, name: str) -> None:
     """They begin and end on their bodies without a gap, and their slope is that of the sections but for shear and stretch."""
-    line = centre_lines(PATH.state)[name]
-    drawn = MODEL.assembly.links[name].frame
-    group = next(each for each in MODEL.flexures if name in each.names)
+    line = centre_lines(course.state)[name]
+    drawn = model.assembly.links[name].frame
+    group = next(each for each in model.flexures if name in each.names)
     length = float(group.law.length[group.names.index(name)])
-    bent = assemble(MODEL, PATH.state.pose, PATH.state.loads, PATH.state.hold).bent[MODEL.flexures.index(group)]
+    bent = assemble(model, course.state.pose, course.state.loads, course.state.hold).bent[model.flexures.index(group)]
     place = group.names.index(name)
     end = line.place[:, 0] + length * (bent.frame[place] @ bent.lies.end[place][..., None])[..., 0]
     np.testing.assert_allclose(line.place[:, -1], end, rtol=0.0, atol=1e-9 * length)
@@ -48,14 +58,14 @@ def test_centre_lines_are_those_of_the_flexures(name: str) -> None:
     np.testing.assert_allclose(slope / np.linalg.norm(slope, axis=-1)[..., None], axis, atol=2e-3)
 
 
-def test_small_motions_are_differences_of_states() -> None:
+def test_small_motions_are_differences_of_states(model: Nonlinear) -> None:
     """Bodies and centre lines move by a small force as the linear model about the state says."""
     loads, step = {"platform.fx": 800.0, "platform.fy": 50.0}, 1e-2
-    state = fs.equilibrium(MODEL, loads)
+    state = fs.equilibrium(model, loads)
     about = fs.linearise(state)
     push = about.input_matrix[:, about.input_index(("platform.fx",))]
     told = mode_motions(state, np.linalg.solve(about.stiffness_matrix, push))
-    near, far = (centre_lines(fs.equilibrium(MODEL, {**loads, "platform.fx": 800.0 + each})) for each in (-step, step))
+    near, far = (centre_lines(fs.equilibrium(model, {**loads, "platform.fx": 800.0 + each})) for each in (-step, step))
     for name, moved in told.lines.items():
         shift = (far[name].place - near[name].place)[0] / (2.0 * step)
         turn = logarithm(far[name].turn @ np.swapaxes(near[name].turn, -1, -2))[0] / (2.0 * step)
@@ -64,9 +74,9 @@ def test_small_motions_are_differences_of_states() -> None:
         np.testing.assert_allclose(moved[0, :, 3:], turn, rtol=0.0, atol=1e-4 * np.max(size[3:]))
 
 
-def test_poses_do_not_gape() -> None:
+def test_poses_do_not_gape(course: Path) -> None:
     """The first and the last node of all that bends move with their bodies, at every frame, and nodes of nothing else are told."""
-    data = stroke_data(STAGE, PATH, fs.stroke(PATH))
+    data = stroke_data(STAGE, course, fs.stroke(course))
     path = data.motions[0]
     assert path.course is not None
     bending = [number for number, (one, other) in enumerate(data.mesh.bodies) if one != other]
@@ -84,9 +94,9 @@ def test_poses_do_not_gape() -> None:
 
 
 @pytest.mark.full
-def test_what_gives_way_bends_as_the_flexures_follow() -> None:
+def test_what_gives_way_bends_as_the_flexures_follow(model: Nonlinear) -> None:
     """The ends of centre lines move with the shape's bodies."""
-    found = fs.critical(MODEL, {"platform.fy": 10e3}, tolerance=1e-3)
+    found = fs.critical(model, {"platform.fy": 10e3}, tolerance=1e-3)
     moved = critical_motion(found)
     np.testing.assert_allclose(moved.bodies[0], found.shape)
     number = found.bodies.index("platform")
@@ -98,18 +108,18 @@ def test_what_gives_way_bends_as_the_flexures_follow() -> None:
     assert len(buckling_report(STAGE, whole)) < 2e6
 
 
-def test_reports_are_small_and_the_same_again() -> None:
+def test_reports_are_small_and_the_same_again(course: Path) -> None:
     """A report of a stroke stands alone in less than 2 MB, names what is beyond a limit, and has the same bytes again."""
-    found = fs.stroke(PATH)
-    told = stroke_report(STAGE, PATH, found)
+    found = fs.stroke(course)
+    told = stroke_report(STAGE, course, found)
     assert len(told) < 2e6
-    assert told == stroke_report(STAGE, PATH, found)
+    assert told == stroke_report(STAGE, course, found)
     assert "MPa of " in told
 
 
-def test_points_stand_in_columns_of_one_unit() -> None:
+def test_points_stand_in_columns_of_one_unit(course: Path) -> None:
     """Numbers of the table are those of the course in the units above them; what is not known has no unit."""
-    found = fs.stroke(PATH)
+    found = fs.stroke(course)
     gone = replace(found.along, values=np.where(np.arange(len(found.along.rows))[:, None] == 1, np.nan, found.along.values))
     heads, *rows = along_table("Along", gone).texts()
     told = dict(zip(heads, zip(*rows, strict=True), strict=True))

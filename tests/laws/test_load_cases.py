@@ -13,49 +13,54 @@ from flexstage.analysis.judge import judge
 from flexstage.analysis.load_cases import REST, LoadCase, case_critical, critical_factors, load_cases
 from flexstage.base.finding import LowerBoundError
 from flexstage.models.nonlinear.critical import STATED, WEIGHT
+from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.tables.overview import closing_text
 
 STAGE = fs.case("long-travel-xy")
-MODEL = fs.nonlinear(STAGE)
 AWAY = LoadCase(WEIGHT, "away", {WEIGHT: 1.0}, at={"platform.x": 5e-3})
 
 
-def test_where_the_free_stage_gives_way_its_stiffness_against_the_drive_vanishes() -> None:
+@pytest.fixture(scope="module")
+def model() -> Nonlinear:
+    return fs.nonlinear(STAGE)
+
+
+def test_where_the_free_stage_gives_way_its_stiffness_against_the_drive_vanishes(model: Nonlinear) -> None:
     """The load's share of a place's stiffness: 2e-3 less than the factor some is left, 2e-3 more and the stage pushes on."""
-    factor = case_critical(MODEL, AWAY, tolerance=1e-6).factor
-    place = fs.equilibrium(MODEL).displacement()[0] + 5e-3
+    factor = case_critical(model, AWAY, tolerance=1e-6).factor
+    place = fs.equilibrium(model).displacement()[0] + 5e-3
 
     def slope(share: float) -> float:
-        held = fs.equilibrium(MODEL, hold={"platform.x": place + np.array([-1e-5, 1e-5])}, weight=share * factor)
+        held = fs.equilibrium(model, hold={"platform.x": place + np.array([-1e-5, 1e-5])}, weight=share * factor)
         return float(np.diff(held.reactions[:, 0])[0])
 
     assert slope(1.0 - 2e-3) > 0.0 > slope(1.0 + 2e-3)
 
 
-def test_a_locked_drive_bears_more_than_a_free_one_and_none_at_rest_is_as_asked_alone() -> None:
+def test_a_locked_drive_bears_more_than_a_free_one_and_none_at_rest_is_as_asked_alone(model: Nonlinear) -> None:
     """A constraint more never takes stability; the case at rest is that of the weight alone, an imperfect bifurcation."""
-    free, locked = (case_critical(MODEL, each).factor for each in (AWAY, replace(AWAY, locked=("platform.x",))))
+    free, locked = (case_critical(model, each).factor for each in (AWAY, replace(AWAY, locked=("platform.x",))))
     with pytest.raises(LowerBoundError, match="it bends off there") as rest:
-        case_critical(MODEL, LoadCase(WEIGHT, REST, {WEIGHT: 1.0}))
+        case_critical(model, LoadCase(WEIGHT, REST, {WEIGHT: 1.0}))
     assert locked > 2.0 * free
     assert rest.value.bound == pytest.approx(2.6, rel=0.01)
 
 
-def test_less_than_the_load_that_it_has_is_a_factor_below_one() -> None:
+def test_less_than_the_load_that_it_has_is_a_factor_below_one(model: Nonlinear) -> None:
     """A load twice the critical one has the factor one half; a stage that it has pressed down bears nothing besides."""
     away = LoadCase("pressed", "away", {"platform.fz": -9.80665}, at={"platform.x": 5e-3})
-    borne = case_critical(MODEL, away, tolerance=1e-6).factor
+    borne = case_critical(model, away, tolerance=1e-6).factor
     pressed = replace(away, grows={"platform.fz": -9.80665 * 2.0 * borne})
-    assert case_critical(MODEL, pressed, tolerance=1e-6).factor == pytest.approx(0.5, rel=1e-3)
+    assert case_critical(model, pressed, tolerance=1e-6).factor == pytest.approx(0.5, rel=1e-3)
     with pytest.raises(fs.DesignError, match=r"not stable, or has no equilibrium|no equilibrium was found"):
-        case_critical(MODEL, replace(pressed, grows={"platform.fx": 1.0}, stays=pressed.grows))
+        case_critical(model, replace(pressed, grows={"platform.fx": 1.0}, stays=pressed.grows))
 
 
-def test_stated_forces_grow_as_the_same_wrench() -> None:
+def test_stated_forces_grow_as_the_same_wrench(model: Nonlinear) -> None:
     """All stated forces, scaled, are the wrench that they are, scaled."""
     pushed = replace(STAGE, forces={"push": fs.Force("platform", (0.0, 0.0, 0.0), (0.0, 0.0, -5.0))}, paths={})
     own = case_critical(fs.nonlinear(pushed), LoadCase(STATED, "away", {STATED: 1.0}, at={"platform.x": 5e-3}), tolerance=1e-6)
-    wrench = case_critical(MODEL, LoadCase("push", "away", {"platform.fz": -5.0}, at={"platform.x": 5e-3}), tolerance=1e-6)
+    wrench = case_critical(model, LoadCase("push", "away", {"platform.fz": -5.0}, at={"platform.x": 5e-3}), tolerance=1e-6)
     assert own.factor == pytest.approx(wrench.factor, rel=1e-5)
     assert own.kind == wrench.kind
     assert [(each.load, each.place) for each in load_cases(pushed)][:2] == [(WEIGHT, REST), (STATED, REST)]

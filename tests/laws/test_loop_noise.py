@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import welch
+import scipy
 
 from flexstage.analysis.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError
@@ -36,7 +36,7 @@ SPECTRA = {
 def test_periodograms_are_the_spectra(name):
     """Welch's averages of n segments scatter by 1/n^(1/2): mean ratio 1, none beyond five deviations."""
     values = series(SPECTRA[name], 400_000, STEP, (3,))
-    frequencies, density = welch(values, 1.0 / STEP, nperseg=4000, noverlap=0, window="hann", detrend=False)
+    frequencies, density = scipy.signal.welch(values, 1.0 / STEP, nperseg=4000, noverlap=0, window="hann", detrend=False)
     inside = (frequencies > 30.0) & (frequencies < 900.0)
     ratio = density[inside] / SPECTRA[name].at(frequencies[inside])
     assert np.mean(ratio) == pytest.approx(1.0, abs=0.01)

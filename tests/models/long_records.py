@@ -6,7 +6,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import scipy.signal
+import scipy
 
 from tests.models.synthetic_records import Truth, truth
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import binom
+import scipy
 
 from flexstage.experiment.record import Channel, InMemory, Record, Role
 
@@ -83,4 +83,4 @@ def record(
 
 def binomial_limits(count: int, share: float = 0.683, once_in: float = 1e-3) -> tuple[float, float]:
     """How many of `count` intervals hold, at least and at most, but once in so many tries, where each does with probability `share`."""
-    return float(binom.ppf(0.5 * once_in, count, share)), float(binom.ppf(1.0 - 0.5 * once_in, count, share))
+    return float(scipy.stats.binom.ppf(0.5 * once_in, count, share)), float(scipy.stats.binom.ppf(1.0 - 0.5 * once_in, count, share))

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
-from scipy.signal import lsim
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
@@ -171,7 +170,7 @@ def test_gauges_of_a_first_order_show_the_true_path_late():
     resolved, control, closed = closed_of("parallelogram", gauges=GaugeSetup(resolution=0.0, bandwidth=corner))
     time = np.arange(count) / resolved.rate
     path = 0.5 * (1.0 - np.cos(np.pi * np.clip((time - 0.05) / 0.04, 0.0, 1.0)))
-    seen = lsim(([1.0], [1.0 / (2.0 * np.pi * corner), 1.0]), U=path, T=time)[1]
+    seen = scipy.signal.lsim(([1.0], [1.0 / (2.0 * np.pi * corner), 1.0]), U=path, T=time)[1]
     found = wanted_readings(closed, control.system, 1e-6 * path[:, None], 800.0)[:, 0]
     assert found == pytest.approx(1e-6 * seen, abs=2e-10)
     assert np.max(np.abs(seen - path)) > 0.03

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy.signal
+import scipy
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
