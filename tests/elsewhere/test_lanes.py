@@ -17,7 +17,6 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.batch import compiled
 from flexstage.models.batch.compiled import kernel_job
 from flexstage.models.batch.engine import iterate, plan
-from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.numbers import numbers_of, slopes_of
 from flexstage.models.batch.solution import Solution, Stage
 
@@ -50,7 +49,7 @@ def agree(found: compiled.Job, known: Solution) -> None:
 
 
 @pytest.mark.full
-@pytest.mark.skipif(kernel() is None, reason="no kernel")
+@pytest.mark.skipif("kernel() is None", reason="no kernel")
 @pytest.mark.parametrize("lanes", processor_lanes(), ids=lambda lanes: lanes.name)
 def test_all_lanes_give_what_the_widest_give(lanes: Lanes, tmp_path: Path) -> None:
     made = tmp_path / "narrow.so"
@@ -70,7 +69,7 @@ def test_all_lanes_give_what_the_widest_give(lanes: Lanes, tmp_path: Path) -> No
 
 
 @pytest.mark.full
-@pytest.mark.skipif(kernel() is None or not all(map(shutil.which, (ARM, EMULATOR))), reason=f"no {ARM} or no {EMULATOR} here: not run")
+@pytest.mark.skipif("kernel() is None or not all(map(shutil.which, (ARM, EMULATOR)))", reason=f"no {ARM} or no {EMULATOR} here: not run")
 def test_neon_gives_what_this_processor_gives(tmp_path: Path) -> None:
     driver, task, results = tmp_path / "driver", tmp_path / "task", tmp_path / "results"
     subprocess.run([ARM, *FLAGS, "-static", "-o", str(driver), str(HERE / "lanes_driver.c"), str(KERNEL), "-lm"], check=True)
