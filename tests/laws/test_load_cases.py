@@ -79,11 +79,16 @@ def test_every_end_of_a_path_is_a_case_with_what_the_path_holds() -> None:
     assert cases[PUSH, ends[1]].shares == (1.0, 1.0)
 
 
-def test_a_requirement_asks_for_what_a_path_bears_and_less_is_warned_of() -> None:
-    """The weight beside what the path holds; below what is asked for the place is told."""
+def test_a_requirement_asks_for_what_a_path_bears() -> None:
+    """The weight beside what the path holds; that it bears less than what is asked for is told with the bound."""
     (verdict,) = judge(replace(OUT, requirements={"out.buckling at 0 mm": "at least 3"}))
     assert verdict.value is None
     assert "stable up to 2.4" in verdict.reason
+
+
+@pytest.mark.full
+def test_a_requirement_that_a_path_meets_is_met_and_what_is_demanded_beyond_is_warned_of() -> None:
+    """The same end, asked for less than it bears, and for more than it does; of a column always, below."""
     (met,) = judge(replace(OUT, requirements={"out.buckling at 0 mm": "at least 2"}))
     assert met.passed
     told = critical_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).cautions
@@ -125,3 +130,5 @@ def test_a_preload_is_a_load_that_grows() -> None:
     (found,) = critical_factors(column).cases
     assert (found.load, found.place, found.kind) == (STATED, REST, "bifurcation")
     assert 0.5 * found.factor == pytest.approx(np.pi**2 * 200e9 * np.pi * 2e-3**4 / 64.0 / 0.2**2, rel=1e-3)
+    (told,) = critical_factors(column, demand=80.0).cautions
+    assert told.where == REST
