@@ -146,7 +146,7 @@ def turned(body, frame):
 
 
 @pytest.mark.parametrize("part", ALL, ids=lambda part: part.kind)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(each, marks=pytest.mark.full) for each in (1, 2))])
 def test_a_compound_is_what_its_members_drawn_as_links_are(part, seed):
     """Stiffness, inertia and ideal motions, wherever it stands: so the laws of links hold for compounds."""
     random = np.random.default_rng(seed)

@@ -84,7 +84,7 @@ def on_rods(random: np.random.Generator, pieces: int) -> fs.Mechanism:
     )
 
 
-@pytest.mark.parametrize("seed", [*range(6), *(pytest.param(each, marks=pytest.mark.full) for each in range(6, 100))])
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(each, marks=pytest.mark.full) for each in range(3, 100))])
 def test_rods_in_two_halves_have_the_same_load_factor(seed: int) -> None:
     """Rods bent in both planes and twisted at once, as in lateral buckling, where more shapes take part than in a column."""
     whole, halves = (float(of(on_rods(np.random.default_rng([5, seed]), pieces)).dead) for pieces in (1, 2))

@@ -130,7 +130,7 @@ def test_an_unstable_attempt_is_called_so(sampled):
     assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
 
 
-@pytest.mark.parametrize("name", ["xy-stage", "tip-tilt", "tip-tilt-four", "bridge"])
+@pytest.mark.parametrize("name", ["xy-stage", "tip-tilt", pytest.param("tip-tilt-four", marks=pytest.mark.full), "bridge"])
 def test_stages_of_fewer_freedoms(name):
     """One to three axes, redundant actuators too: tuned in all coordinates that they have, and reached."""
     stage = case(name)

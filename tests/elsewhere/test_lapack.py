@@ -77,18 +77,17 @@ def test_assignments_are_those_of_scipy():
 
 
 @pytest.mark.parametrize(
-    ("asked", "package"),
+    ("asked", "packages"),
     [
-        ("from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2))", "scipy.linalg"),
-        ("from flexstage.base.assignment import assignment as f; f(numpy.eye(2))", "scipy.optimize"),
+        ("from flexstage.base.lapack import pivoted_qr as f; f(numpy.eye(2))", {"scipy.linalg"}),
+        ("from flexstage.base.assignment import assignment as f; f(numpy.eye(2))", {"scipy.optimize"}),
         (
             "from flexstage.base.sparse import Compressed as f; f(numpy.arange(3), numpy.arange(2), numpy.ones(2), 2) @ numpy.eye(2)",
-            "scipy.sparse",
+            {"scipy.sparse"},
         ),
-        ("from flexstage.solid.fea import contact, reduce", "scipy.linalg"),
-        ("from flexstage.solid.fea import contact, reduce", "scipy.sparse"),
-        ("from flexstage.solid.fea import contact, reduce", "scipy.spatial"),
+        ("from flexstage.solid.fea import contact, reduce", {"scipy.linalg", "scipy.sparse", "scipy.spatial"}),
     ],
 )
-def test_the_rest_of_scipy_is_not_loaded(asked, package):
-    subprocess.run([sys.executable, "-c", f"import sys, numpy; {asked}; assert {package!r} not in sys.modules"], check=True)
+def test_the_rest_of_scipy_is_not_loaded(asked, packages):
+    code = f"import sys, numpy; {asked}; loaded = {packages!r} & set(sys.modules); assert not loaded, loaded"
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -129,7 +129,7 @@ def test_the_critical_load_is_the_first_event_of_small_steps_whatever_the_size_o
     assert first_event(model, 1e-6 if seed % 5 == 4 else 5e-5, 10000) == pytest.approx(found[0], rel=1e-3)
 
 
-@pytest.mark.parametrize("seed", [2, 3, *(pytest.param(each, marks=pytest.mark.full) for each in range(6, 40))])
+@pytest.mark.parametrize("seed", [3, *(pytest.param(each, marks=pytest.mark.full) for each in (2, *range(6, 40)))])
 def test_units_change_no_critical_load(seed: int):
     """Lengths by 1.6, the modulus by 0.37: loads by 0.37 * 1.6^2."""
     drawn = random_legs(seed)

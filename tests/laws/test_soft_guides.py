@@ -34,6 +34,7 @@ from flexstage.control.tuning.view import view
 from flexstage.control.tuning.weigh import merit
 from flexstage.control.tuning.wish import Wish
 from flexstage.models.linear.model import Channel
+from tests.conftest import FULL
 
 MASS = 1.3
 RATIO = 0.012
@@ -63,11 +64,11 @@ def pid(stiffness: float, goal: Goal, late: float = 1.0) -> tuple[Tuning, np.nda
     return found, np.array([*gains, found.bandwidth, found.judgement.peak])
 
 
-@pytest.mark.parametrize(("late", "sensitivity"), [(1.0, 2.0), (0.3, 1.7), (2.5, 2.2)])
+@pytest.mark.parametrize(("late", "sensitivity"), [(1.0, 2.0), pytest.param(0.3, 1.7, marks=pytest.mark.full), (2.5, 2.2)])
 def test_a_guide_far_below_the_crossing_changes_nothing(late, sensitivity):
     """From a free mass to 1e4 N/m: gains in newtons per metre, crossing and peak of S stay within 2 %."""
     _, free = pid(0.0, Goal(None, sensitivity), late)
-    for stiffness in (1e-3, 1.0, 1e2, 1e4):
+    for stiffness in (1e-3, 1.0, 1e2, 1e4) if FULL else (1e-3, 1e4):
         found, numbers = pid(stiffness, Goal(None, sensitivity), late)
         assert guided(stiffness)[0].frequencies[0] < 0.1 * found.bandwidth
         np.testing.assert_allclose(numbers, free, rtol=0.02)

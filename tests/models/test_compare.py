@@ -323,7 +323,7 @@ def test_outputs_that_shapes_cannot_doubt_are_named_by_their_part_in_the_modes()
     assert [each.split(":")[0] for each in doubts] == ["S1 and S2 look exchanged", "S3 looks inverted"]
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.full) for seed in (1, 2)), 3])
+@pytest.mark.parametrize("seed", [3, *(pytest.param(seed, marks=pytest.mark.full) for seed in (0, 1, 2))])
 def test_sound_channels_are_not_doubted(seed: int) -> None:
     """Modes off by some per cent, a weak drive, other units: nothing of that is a channel's fault."""
     built = set_value(STAGE, "parts.neck.thickness", (1.0 + 0.05 * seed) * 1.54e-3)

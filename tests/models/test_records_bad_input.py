@@ -467,7 +467,7 @@ def test_a_file_damaged_anywhere_is_refused_or_read(form: str, kind: type, tmp_p
     path = tmp_path / f"a.{FORMS[form]}"
     write(path, in_memory(CHANNELS, RATE, VALUES[:60]) if kind is Record else awkward_responses(), form)
     whole, draw = path.read_bytes(), np.random.default_rng(list(FORMS).index(form))
-    for _ in range(1000 if FULL else 60):
+    for _ in range(1000 if FULL else 30):
         path.write_bytes(damaged(whole, draw))
         for options in (Options(), Options(allow=frozenset(Allow), rate=50.0)):
             with contextlib.suppress(DesignError):

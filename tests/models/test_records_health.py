@@ -14,6 +14,7 @@ from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.options import Allow
 from flexstage.experiment.pipeline import usable_measurement as sound_records
 from flexstage.experiment.record import Channel, Record, Responses, Role, in_memory
+from tests.conftest import FULL
 
 RATE, LENGTH = 2048.0, 8192
 CHANNELS = (
@@ -125,7 +126,7 @@ def test_a_fault_is_cured_only_when_allowed(plant: Callable[[np.ndarray], None])
 
 
 def test_sound_records_are_left_as_they_are() -> None:
-    for seed in range(20):
+    for seed in range(20 if FULL else 6):
         whole = record(sound(seed))
         assert usable_record(whole, frozenset(Allow), STAGE) is whole
 
@@ -242,7 +243,7 @@ def test_a_force_windowed_hammer_is_refused_by_its_name(name: str, unit: str) ->
     assert name in usable_record(hit, frozenset(Allow)).names
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(each, marks=pytest.mark.full) for each in (1, 2))])
 def test_a_windowed_force_that_is_allowed_gives_the_mode(seed: int) -> None:
     rate, count, natural, ratio = 1024.0, 8192, 100.0, 0.01
     random = np.random.default_rng(seed)
