@@ -44,7 +44,7 @@ STROKELESS |= {"quad-suspension", "voice-coil-xy", "z-stage", "spiral-stage", "s
 _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.nested_given]
 # Shrinking a failing random stage takes minutes and says little more than the stage itself.
 _PHASES = (Phase.explicit, Phase.reuse, Phase.generate)
-settings.register_profile("default", max_examples=40, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
+settings.register_profile("default", max_examples=25, deadline=None, derandomize=True, suppress_health_check=_SLOW, phases=_PHASES)
 settings.register_profile("full", max_examples=2000, deadline=None, derandomize=True, suppress_health_check=_SLOW)
 settings.register_profile("quick", settings.get_profile("default"), max_examples=_FEW)
 settings.load_profile("full" if FULL else "quick" if QUICK else "default")
