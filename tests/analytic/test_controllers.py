@@ -258,7 +258,7 @@ def test_the_least_cost_of_samples_by_doubling_is_that_of_a_schur_form(stage_pla
     given = stage_plants[1]
     model, noise = pose_plant(given), Disturbances(1e-9, dict.fromkeys(given.gauges, 1e-11))
     doubled = lqg(model, given.coordinates, Weights(30.0, 0.1), noise)
-    monkeypatch.setattr("flexstage.control.controllers.lqg._DOUBLINGS", 0)
+    monkeypatch.setattr("flexstage.control.controllers.lqg.DOUBLINGS", 0)
     found = lqg(model, given.coordinates, Weights(30.0, 0.1), noise)
     for own, other in ((doubled.regulator, found.regulator), (doubled.integral, found.integral), (doubled.observer, found.observer)):
         assert np.max(np.abs(own - other)) < 1e-9 * np.max(np.abs(other))

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from numpy.polynomial import Legendre, legendre
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
@@ -118,7 +118,7 @@ def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
     assert pressed.factor == pytest.approx(np.pi**2 / 4.0, rel=1e-6)
     along = pressed.state.model.reference[:-1, 0]
     assert pressed.shape[:, 1] / pressed.shape[np.argmax(along), 1] == pytest.approx(1.0 - np.cos(0.5 * np.pi * along), abs=1e-6)
-    monkeypatch.setattr(linearised, "_MEMORY", 1e6)
+    monkeypatch.setattr(linearised, "MEMORY", 1e6)
     with pytest.raises(DesignError, match="598 coordinates: dense matrices of"):
         linearise(found)
 
@@ -421,7 +421,9 @@ def heavy_elastica(angle: float) -> float:
     """w L^3 / (E I) of an upright column that its own weight w a length bends so far at its top: th'' = - w s sin(th), s from there."""
 
     def foot(weight: float) -> float:
-        course = solve_ivp(lambda s, y: [y[1], -weight * s * np.sin(y[0])], (0.0, 1.0), [angle, 0.0], rtol=1e-11, atol=1e-12)
+        course = scipy.integrate.solve_ivp(
+            lambda s, y: [y[1], -weight * s * np.sin(y[0])], (0.0, 1.0), [angle, 0.0], rtol=1e-11, atol=1e-12
+        )
         return float(course.y[0, -1])
 
     return float(brentq(foot, 7.5, 9.0, xtol=1e-11))

@@ -118,7 +118,7 @@ def test_matrices_of_many_coordinates_are_the_sums_of_what_their_parts_do(monkey
     about = linearise(equilibrium(nonlinear(guide()), loads(np.array([[0.0], [1.0]]) * SPACE * UNIT)))
     frequencies = eigenvalues(about)[:, :12]
     for module in (eigen, model):
-        monkeypatch.setattr(module, "_WIDE", 0)
+        monkeypatch.setattr(module, "WIDE", 0)
     for parts in (about.stiffness, about.inertia):
         whole = strain_forces(parts, {name: item.operator for name, item in parts.items()})
         assert np.max(np.abs(assemble(parts, len(about.coordinates)) - whole)) < 1e-13 * np.max(np.abs(whole))

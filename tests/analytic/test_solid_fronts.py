@@ -69,7 +69,7 @@ def test_traces_are_added_alike_in_blocks_and_scattered(monkeypatch: pytest.Monk
     forces = np.random.default_rng(2).standard_normal((SPACE.size, 2))
     found = []
     for scattered in (0.0, np.inf):
-        monkeypatch.setattr(frontal, "_SCATTERED", scattered)
+        monkeypatch.setattr(frontal, "SCATTERED", scattered)
         found.append(factorise(SPACE, ELASTIC)(forces))
     np.testing.assert_array_equal(*found)
 

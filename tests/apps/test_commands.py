@@ -189,7 +189,15 @@ def test_missed_requirements_change_the_exit_code_only_if_strict(flexstage: Comm
     assert "1 of 8 requirements" in strict.err
 
 
-@pytest.mark.parametrize("name", ["double-triangle", "double-triangle-a", "xy-stage-floating", "mirror-mount", "hexapod"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "double-triangle",
+        "xy-stage-floating",
+        "mirror-mount",
+        *(pytest.param(each, marks=pytest.mark.full) for each in ("double-triangle-a", "hexapod")),
+    ],
+)
 def test_the_short_form_fits_a_screen_and_ends_with_the_verdict(flexstage: Command, tmp_path: Path, name: str) -> None:
     design_in(tmp_path, name)
     short, whole = (flexstage("analyse", "stage.toml", *full).out for full in ([], ["--full"]))
@@ -356,5 +364,5 @@ def test_the_doctor_prints_rows_and_tells_by_exit_code(flexstage: Command, monke
 
 def test_the_doctors_self_test_is_good_and_notices_wrong_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     assert self_test().verdict is Verdict.GOOD
-    monkeypatch.setattr("flexstage.apps.installation._FREQUENCIES", (110.9, 110.9, 135.1, 145.5, 176.7, 176.7))
+    monkeypatch.setattr("flexstage.apps.installation.FREQUENCIES", (110.9, 110.9, 135.1, 145.5, 176.7, 176.7))
     assert self_test().verdict is Verdict.BAD

@@ -114,9 +114,9 @@ class Counted:
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> int:
     """Blocks so small that a record of some megabytes is as far beyond them as the long one is beyond the usual ones."""
-    monkeypatch.setattr(lines, "_BLOCK", 160_000)
-    monkeypatch.setattr(spectra_module, "_BATCH", 40_000)
-    monkeypatch.setattr(numbers, "_BLOCK", 4096)
+    monkeypatch.setattr(lines, "BLOCK", 160_000)
+    monkeypatch.setattr(spectra_module, "BATCH", 40_000)
+    monkeypatch.setattr(numbers, "BLOCK", 4096)
     return 160_000
 
 

@@ -81,7 +81,7 @@ def test_blocks_leave_no_trace(monkeypatch):
     known = full_loop(inverse=True)
     reference, disturbances = way(known, 300)
     whole = simulate(known, reference, disturbances)
-    monkeypatch.setattr("flexstage.control.simulation.run._BLOCK", 7)
+    monkeypatch.setattr("flexstage.control.simulation.run.BLOCK", 7)
     parted = simulate(known, reference, disturbances)
     for name in ("pose", "given", "stroke", "motions", "readings"):
         assert np.max(np.abs(getattr(whole, name) - getattr(parted, name))) <= 1e-13 * np.max(np.abs(getattr(whole, name)))

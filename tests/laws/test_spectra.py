@@ -87,7 +87,7 @@ def test_blocks_do_not_matter(seed: int, cut: Segments):
     record, _ = made(seed)
     whole = spectra(record, cut)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "_BATCH", 1)
+        patch.setattr(module, "BATCH", 1)
         parts = spectra(record, cut)
     assert parts.averages == whole.averages
     np.testing.assert_allclose(parts.yy, whole.yy, rtol=1e-9, atol=1e-12)

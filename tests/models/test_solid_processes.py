@@ -159,7 +159,7 @@ def test_reductions_repeat_bit_by_bit(folder: Path, monkeypatch: pytest.MonkeyPa
     started: list[remote.Worker] = []
     plain = remote.Worker
     monkeypatch.setattr(remote, "Worker", lambda *said: started.append(plain(*said)) or started[-1])
-    monkeypatch.setattr(remote, "_WAITED", 0.0)
+    monkeypatch.setattr(remote, "WAITED", 0.0)
     jobs = [job(rod()), job(replace(rod(), name="again"))]
     with Pool() as pool:
         for part in (jobs,) if workers == 2 else ([each] for each in jobs):  # the process stays from run to run

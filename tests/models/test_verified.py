@@ -48,7 +48,7 @@ def test_a_damaged_file_is_not_used(tmp_path, damage):
 
 
 def test_the_oldest_give_way(tmp_path, monkeypatch):
-    monkeypatch.setattr(verified, "_MOST", 1)
+    monkeypatch.setattr(verified, "MOST", 1)
     for order in (2, 3):
         retain(KNOWN, parallelogram(), Resolution(order=order), Cache(tmp_path))
     assert len(list(tmp_path.glob("*.verified"))) == 1

@@ -81,7 +81,7 @@ def test_a_single_output_and_input(form: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(found.values, single.values, rtol=1e-11)
 
 
-@examples(50, 2000)
+@examples(30, 2000)
 @given(length=st.integers(2, 41), channels=st.integers(1, 3), form=st.sampled_from(list(SUFFIX)), data=st.data())
 def test_any_part_is_read_as_it_stands_in_the_whole(
     length: int, channels: int, form: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
@@ -137,9 +137,9 @@ def test_a_name_without_a_form_is_refused() -> None:
 
 def test_blocks_of_writers_meet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Records longer than a writer's block, which is made small here.
-    monkeypatch.setattr(uff_write, "_BLOCK", 8)
+    monkeypatch.setattr(uff_write, "BLOCK", 8)
     monkeypatch.setattr("flexstage.experiment.formats.hdf.BLOCK", 8)
-    monkeypatch.setattr("flexstage.experiment.formats.table.write._BLOCK", 8)
+    monkeypatch.setattr("flexstage.experiment.formats.table.write.BLOCK", 8)
     first = in_memory([Channel("S1", "um"), Channel("S2", "um")], 3.0, np.random.default_rng(0).standard_normal((37, 2)))
     for form, suffix in SUFFIX.items():
         path = tmp_path / f"{form}{suffix}"

@@ -58,7 +58,7 @@ def depth(facet: Facet, eye: Array, ray: Array) -> float:
     return float((facet.points[0] - ray) @ facet.normal / (eye @ facet.normal))
 
 
-@examples(30, 600)
+@examples(18, 600)
 @given(BOXES, VECTOR.filter(lambda eye: np.linalg.norm(eye) > 0.1), VECTOR)
 def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ray: Array) -> None:
     """Of facets that face the eye: no others are drawn."""
@@ -69,7 +69,7 @@ def test_depth_order_agrees_with_ray_casting(facets: list[Facet], eye: Array, ra
     assert all(later >= earlier - 1e-6 for earlier, later in pairwise(depths))
 
 
-@examples(30, 600)
+@examples(18, 600)
 @given(BOXES)
 def test_cuts_keep_areas(facets: list[Facet]) -> None:
     pieces = list(sort_by_depth(partition(facets, 2.0), np.array([0.0, 0.0, 1.0])))
@@ -78,7 +78,7 @@ def test_cuts_keep_areas(facets: list[Facet]) -> None:
         assert sum(own) == pytest.approx(area(facet), rel=1e-9)
 
 
-@examples(30, 600)
+@examples(18, 600)
 @given(BOXES)
 def test_solids_are_closed_and_face_outward(facets: list[Facet]) -> None:
     for name in {facet.paint.name for facet in facets}:
@@ -119,7 +119,7 @@ def test_faces_between_outlines_of_a_body_are_left_out() -> None:
     assert outer(plate + apart) == plate + apart
 
 
-@examples(30, 600)
+@examples(18, 600)
 @given(st.lists(st.tuples(UNIT, UNIT, st.floats(0.05, 0.8), st.floats(0.05, 0.8)), min_size=1, max_size=9))
 def test_hidden_pieces_do_not_show(items: list[tuple[float, float, float, float]]) -> None:
     polygons = [np.array([x, y]) + rectangle(width, height) for x, y, width, height in items]
@@ -202,7 +202,7 @@ def test_stages_of_very_many_parts_show_the_outline_of_each(side: Side, monkeypa
     """It covers all facets of its solid in the picture, its corners are corners of those, and the farthest come first."""
     seen, drawn = view(side), scene(double_triangle())
     assert not drawn.is_large
-    monkeypatch.setattr("flexstage.show.scene.stage._ORDERED", 100)
+    monkeypatch.setattr("flexstage.show.scene.stage.ORDERED", 100)
     areas = [facet for facet in order_facets(drawn, seen) if len(facet.points) > 2]
     solids: dict[str, list[Array]] = {}
     for facet in drawn.facets:

@@ -43,7 +43,7 @@ _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
 """A share of the stiffness that counts as no softening: rounding."""
-_LARGE = 900
+LARGE = 900
 """Freedoms above which matrices are kept without their zeros."""
 _DENSE = 6000
 """Freedoms above which no loaded state is worked out."""
@@ -226,7 +226,7 @@ class _Pieces:
     @cached_property
     def is_large(self) -> bool:
         """Whether there are so many freedoms that the matrices of a single design are kept without their zeros."""
-        if self.size <= _LARGE or self.model.designs or any(part.per_force.ndim > 3 for part in self.parts.values()):
+        if self.size <= LARGE or self.model.designs or any(part.per_force.ndim > 3 for part in self.parts.values()):
             return False
         return self.model.is_sparse or not np.iscomplexobj(self.model.stiffness_matrix)
 

@@ -10,7 +10,7 @@ from flexstage.apps.doctor import Row, Verdict
 from flexstage.show.command.failure import BAD_INPUT, DONE
 from flexstage.show.command.terminal import print_result
 
-_FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
+FREQUENCIES = (110.910, 110.910, 135.148, 145.505, 176.690, 176.690)
 """Eq. 28 of Shin & Moon for the shipped stage [Hz]."""
 _TOLERANCE = 1e-5
 
@@ -39,7 +39,7 @@ def self_test() -> Row:
     from flexstage.models.mapped import mapped
 
     found = modes(mapped(double_triangle())).frequencies
-    worst = max(abs(have / want - 1.0) for have, want in zip(found, _FREQUENCIES, strict=True))
+    worst = max(abs(have / want - 1.0) for have, want in zip(found, FREQUENCIES, strict=True))
     verdict = Verdict.GOOD if worst < _TOLERANCE else Verdict.BAD
     remedy = "" if verdict is Verdict.GOOD else "reinstall numpy and scipy; else report this as a bug"
     return Row("self-test", f"frequencies within {worst:.1e}", f"{_TOLERANCE:.0e}", verdict, remedy)

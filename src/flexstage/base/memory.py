@@ -10,7 +10,7 @@ from flexstage.base.finding import refuse
 
 _USABLE = 0.9
 """Share of what is left that may be planned with."""
-_ALWAYS = 3e7
+ALWAYS = 3e7
 """Bytes that a process which runs has left, or is about to fail in any case."""
 
 
@@ -19,7 +19,7 @@ def require_memory(where: str, what: str, needed: float, fits: Callable[[float],
 
     >>> require_memory("stage", "its matrices", 1e3, lambda there: f"{there / 1e6:.0f} bodies would fit")
     """
-    if needed < _ALWAYS:
+    if needed < ALWAYS:
         return  # asking the machine takes longer than most such computations
     there = available()
     if needed > there:

@@ -16,7 +16,7 @@ from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER
 from flexstage.experiment.record import Channel, Record
 
-_BATCH = 2_000_000
+BATCH = 2_000_000
 
 Tell = Callable[[float], None]
 """Told the share of the work that is done, 0 to 1."""
@@ -172,7 +172,7 @@ def _accumulate(record: Record, size: int, segments: Segments, tell: Tell | None
     hop, window = _hop(size, segments), segments.window.samples(size)
     count = len(record.channels)
     total = np.zeros((size // 2 + 1, count, count), dtype=complex)
-    together = max(1, _BATCH // (size * count))
+    together = max(1, BATCH // (size * count))
     averages = 0
     for block in record.blocks(size + hop * (together - 1), size - hop):
         if len(block) < size:

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.experiment.record import Record, Role
 
-_BLOCK = 1 << 19
+BLOCK = 1 << 19
 """Numbers in a block, of all channels together."""
 _SEGMENT = 1024
 _KEPT = 2048
@@ -64,7 +64,7 @@ def gather(record: Record) -> RecordNumbers:
     inputs = [number for number, channel in enumerate(record.channels) if channel.role is Role.INPUT]
     moments, extremes, gaps, spectra = _Moments(size), _Extremes(size), _Gaps(size), _Spectra(len(inputs), record.length)
     runs = [_Runs() for _ in range(size)]
-    rows = max(1, _BLOCK // size // _SEGMENT) * _SEGMENT
+    rows = max(1, BLOCK // size // _SEGMENT) * _SEGMENT
     with np.errstate(over="ignore", invalid="ignore"):  # numbers near the largest double have no square
         for block in record.blocks(rows):
             finite = np.isfinite(block)

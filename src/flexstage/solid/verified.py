@@ -24,7 +24,7 @@ from flexstage.solid.fea.sound import has_imports
 from flexstage.solid.resolution import Resolution
 from flexstage.solid.verification import Row, Verification
 
-_MOST = 200
+MOST = 200
 """Files that are kept; those written longest ago go first."""
 
 
@@ -73,7 +73,7 @@ def retain(known: Known, mechanism: Mechanism, asked: Resolution, cache: Cache) 
     with contextlib.suppress(OSError, DesignError):
         path.parent.mkdir(parents=True, exist_ok=True)
         write(path, json.dumps({"checksum": _sum(text), "told": text}))
-        for old in sorted(path.parent.glob("*.verified"), key=lambda each: -each.stat().st_mtime)[_MOST:]:
+        for old in sorted(path.parent.glob("*.verified"), key=lambda each: -each.stat().st_mtime)[MOST:]:
             old.unlink(missing_ok=True)
 
 

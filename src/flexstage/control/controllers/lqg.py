@@ -16,7 +16,7 @@ from flexstage.control.system import System
 from flexstage.models.linear.model import Channel
 
 _DIRECT = 1e-12
-_DOUBLINGS, _SETTLED = 30, 1e-15
+DOUBLINGS, _SETTLED = 30, 1e-15
 """Rounds of doubling, 2^30 samples: a day at 10 kHz; and what the last may still add, a rounding."""
 
 
@@ -195,7 +195,7 @@ def _doubled(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
     back = np.linalg.solve(effort, np.hstack([B.T, cross.T]))
     through, moved, left = B @ back[:, : len(A)], A - B @ back[:, len(A) :], cost - cross @ back[:, len(A) :]
     identity = np.eye(len(A))
-    for _ in range(_DOUBLINGS):
+    for _ in range(DOUBLINGS):
         try:
             both = np.linalg.solve(identity + through @ left, np.concatenate((moved, through), axis=1))
         except np.linalg.LinAlgError:

@@ -18,7 +18,7 @@ from flexstage.control.simulation.kernel import reading_hold, rounder
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulation_result
 
-_BLOCK = 1024
+BLOCK = 1024
 _NONE: Mapping[str, Array] = {}
 
 
@@ -41,12 +41,12 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     linear = parts(given)
     form, entering = fuse(given, linear), inflow(given, reference, disturbances)
     row, count = form.row, len(entering)
-    rows, block = np.empty((count, row.width)), np.zeros((min(_BLOCK, count) + 1, row.width))
+    rows, block = np.empty((count, row.width)), np.zeros((min(BLOCK, count) + 1, row.width))
     stepper = _Stepper(given, form, block)
     block[0, row.next_values] = entering.first(form, linear)
     with np.errstate(over="ignore", invalid="ignore"):
-        for start in range(0, count, _BLOCK):
-            size = min(_BLOCK, count - start)
+        for start in range(0, count, BLOCK):
+            size = min(BLOCK, count - start)
             stepper.advance(entering.block(form, linear, start, start + size))
             rows[start : start + size] = block[:size]
             block[0, row.next_values] = block[size, row.next_values]

@@ -19,7 +19,7 @@ from flexstage.experiment.record import Record
 
 DEGREE = 7
 _FINENESS = 0.25
-_BLOCK = 12_000_000
+BLOCK = 12_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ def block_count(record: Record, least: int = 1) -> int:
     >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))
     1
     """
-    return max(least, -(-record.length * len(record.channels) // _BLOCK))
+    return max(least, -(-record.length * len(record.channels) // BLOCK))
 
 
 def edges(poles: Array, low: float, high: float) -> Array:

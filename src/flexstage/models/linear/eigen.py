@@ -15,7 +15,7 @@ from flexstage.models.linear.model import LinearModel
 
 _MASSLESS = 1e-13
 _CLUSTER = 1e-5
-_WIDE = 128
+WIDE = 128
 """Coordinates from which on a triangular solution costs less than numpy's for all matrices at once."""
 ALL_MODES = 900
 """Freedoms up to which all modes of a sparse model are worked out where its lowest are asked for."""
@@ -118,7 +118,7 @@ def _scaled(stiffness: Array, inertia: Array) -> tuple[Array, Array]:
 def _forward(lower: Array, right: Array) -> Array:
     """L^-1 times a matrix; of large ones without factors of L."""
     size = lower.shape[-1]
-    if size <= _WIDE:
+    if size <= WIDE:
         return np.linalg.solve(lower, right)
     pairs = zip(lower.reshape(-1, size, size), right.reshape(-1, size, size), strict=True)
     return np.stack([scipy.linalg.solve_triangular(*pair, lower=True, check_finite=False) for pair in pairs]).reshape(right.shape)

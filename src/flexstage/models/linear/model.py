@@ -19,7 +19,7 @@ from flexstage.models.linear.large import Quadratic, Solver
 
 _DENSE = 3000
 """Freedoms up to which dense matrices of a sparse model are made: all its modes take a minute."""
-_WIDE = 128
+WIDE = 128
 """Coordinates from which on each part's share is worked out for those that strain it alone: one product of all is slower then."""
 
 
@@ -212,7 +212,7 @@ def assemble(contributions: Contributions, size: int) -> Array:
     if not contributions:
         return np.zeros((size, size))
     sparse = any(isinstance(item.operator, Sparse) for item in contributions.values())
-    if size > _WIDE and not sparse:
+    if size > WIDE and not sparse:
         total = _sum_by_columns(contributions, size)
     else:
         total = strain_forces(contributions, {name: item.operator for name, item in contributions.items()})

@@ -36,7 +36,7 @@ from flexstage.parts.part import inner
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform
 
 _SHAKEN = " (link)"
-_MATRICES, _MEMORY = 6.0, 8e9
+_MATRICES, MEMORY = 6.0, 8e9
 """Matrices of all coordinates that are there at once, and the bytes that they may take."""
 
 
@@ -128,8 +128,8 @@ def _require_memory(state: State, *, inner: bool) -> None:
     model, cases = state.model, len(state.pose.position)
     own = sum(len(group.names) * (group.law.form.shape[-1] - 3) for group in model.flexures) if inner else 0
     size = model.freedoms + own + sum(len(each.squares) for each in model.elements)
-    needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, _MEMORY))
-    if 8.0 * _MATRICES * cases * size**2 > _MEMORY:
+    needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, MEMORY))
+    if 8.0 * _MATRICES * cases * size**2 > MEMORY:
         what = f"small motions about {cases} states have {size:,} coordinates: dense matrices of {needed}, above {most}"
         raise refuse("stage", what, "Ask for fewer states at once (state.case), or without coordinates of flexures (inner=False)")
 

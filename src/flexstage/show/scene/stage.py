@@ -25,7 +25,7 @@ from flexstage.spatial.frame import Frame, axes
 _MARKER = 0.02
 _BAR = 0.009
 _ARROW = 0.11
-_ORDERED = 5000
+ORDERED = 5000
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Scene:
     @property
     def is_large(self) -> bool:
         """Whether its facets are too many to be ordered one by one: pictures show the outline of each solid."""
-        return len(self.facets) > _ORDERED
+        return len(self.facets) > ORDERED
 
     @cached_property
     def order(self) -> Partition | None:

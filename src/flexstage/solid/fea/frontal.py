@@ -28,7 +28,7 @@ _LEAST, _UNEVEN = 0.2, 0.5
 """Least share of the elements on either side of a cut; how many faces more one is worth that leaves halves equal."""
 _COLUMNS = 256
 """Columns of a trace that are added at once where its nodes lie scattered: more runs of them than this share of their number."""
-_SCATTERED = 0.12
+SCATTERED = 0.12
 _EDGES = np.eye(3)
 _ACROSS = np.array([turn for turn in np.ndindex(3, 3, 3) if turn > (1, 1, 1)]) - 1.0
 """What cuts are tried across: the edges of a cube, and the edges and diagonals."""
@@ -307,7 +307,7 @@ class _Panel:
 def _add_trace(law: Array, trace: Array, rows: _Place, columns: _Place) -> None:
     """Add what counts of a part of a trace to rows and columns of nodes: where both are the same, the lower triangle."""
     triangle = rows is columns
-    if len(rows.runs) > _SCATTERED * len(rows.nodes):
+    if len(rows.runs) > SCATTERED * len(rows.nodes):
         at, across = ((3 * place.nodes[:, None] + np.arange(3)).ravel() for place in (rows, columns))
         for start in range(0, len(across), _COLUMNS):
             some, low = slice(start, start + _COLUMNS), start if triangle else 0

@@ -27,7 +27,7 @@ from flexstage.solid.fea.worker import Job, Task, work
 
 _MOST_WORKERS = 2
 _PAUSE = 0.02
-_WAITED = 2.5
+WAITED = 2.5
 """A job that takes less than so many times what it is spared by the process that did the like last waits for it where it is busy."""
 _TELL_EVERY = 0.5
 _MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
@@ -79,7 +79,7 @@ class Pool:
         """
         known = [(number, job, self._latest.get(job.kin)) for number, job in enumerate(jobs)]
         free = (number for number, _, owner in known if owner is None or owner in self.idle)
-        worth = (number for number, job, _ in known if job.seconds() >= _WAITED * job.spared())
+        worth = (number for number, job, _ in known if job.seconds() >= WAITED * job.spared())
         return next(chain(free, worth), None)
 
     def worker(self, job: Job) -> Worker:

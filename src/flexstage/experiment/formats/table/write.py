@@ -18,7 +18,7 @@ from flexstage.experiment.formats.table.read import SAYING
 from flexstage.experiment.options import Arrays, matches
 from flexstage.experiment.record import Channel, Record, Responses
 
-_BLOCK = 16_384
+BLOCK = 16_384
 
 
 def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
@@ -58,8 +58,8 @@ def _write_record(stream: IO[str], record: Record) -> None:
         stream.write(f"# {SAYING['name']}{_one_line(record.name)}\n")
     stream.write(f"# {SAYING['roles']}{', '.join(channel.role.value for channel in record.channels)}\n")
     stream.write(_row(["time [s]", *(_heading(channel.name, channel.unit) for channel in record.channels)]))
-    for start in range(0, record.length, _BLOCK):
-        block = record.samples.read(start, min(start + _BLOCK, record.length))
+    for start in range(0, record.length, BLOCK):
+        block = record.samples.read(start, min(start + BLOCK, record.length))
         times = record.start + np.arange(start, start + len(block)) / record.rate
         _write_numbers(stream, np.column_stack([times, block]))
 

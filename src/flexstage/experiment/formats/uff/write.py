@@ -23,7 +23,7 @@ from flexstage.experiment.formats.uff.function import (
 )
 from flexstage.experiment.record import Channel, Record, Responses, Role
 
-_BLOCK = 65_536
+BLOCK = 65_536
 _END = f"{-1:6d}\n".encode()
 _LINE = 4
 _LONGEST = 80
@@ -96,8 +96,8 @@ def _write_record(stream: BinaryIO, record: Record, *, binary: bool) -> None:
         stream.seek(position)
         stream.write(_END)
         position += len(_END)
-    for start in range(0, record.length, _BLOCK):
-        block = record.samples.read(start, min(start + _BLOCK, record.length))
+    for start in range(0, record.length, BLOCK):
+        block = record.samples.read(start, min(start + BLOCK, record.length))
         for column, origin in enumerate(starts):
             stream.seek(origin + _size(start, binary=binary))
             stream.write(_encode(block[:, column], binary=binary))
