@@ -131,3 +131,18 @@ def test_parts_that_are_stated_have_no_error():
     assert not found.ranges
     assert not found.errors
     assert not found.findings
+
+
+@pytest.mark.parametrize(
+    ("part", "shortest"),
+    [
+        (lambda length: Rod("m", length=length, diameter=1.0), 3.0),
+        (lambda length: Notch("m", thickness=1.0, width=1.0, profile=Straight(length)), 3.0),
+        (lambda length: Leaf("m", length=length, thickness=1.0, width=5.0), 10.0),
+    ],
+    ids=["rod", "straight", "leaf"],
+)
+def test_parts_shorter_than_those_compared_have_no_error(part, shortest):
+    """Rods and straight notches were compared from three thicknesses of length on, leaves from ten; torsion of a round rod is exact."""
+    assert validity(part(0.99 * shortest)).errors.keys() <= {"rx"}
+    assert {"x", "rz"} <= validity(part(1.01 * shortest)).errors.keys()
