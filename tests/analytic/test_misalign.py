@@ -31,14 +31,31 @@ def limit() -> float:
 
 
 def test_a_guide_gives_way_at_its_critical_misalignment():
-    found = critical_misalignments(slender(), ("ry",))
+    found = critical_misalignments(slender(), ("ry",))[0]
     assert found.rows == ("left", "right")
     assert found.values[:, 0] == pytest.approx(limit(), rel=5e-5)
 
 
 def test_the_axes_are_those_of_the_link():
     turn = exponential(np.array([0.4, -1.0, 0.3]))
-    assert critical_misalignments(slender(turn), ("ry",)).values[:, 0] == pytest.approx(limit(), rel=5e-5)
+    assert critical_misalignments(slender(turn), ("ry",))[0].values[:, 0] == pytest.approx(limit(), rel=5e-5)
+
+
+def test_units_of_measurement_do_not_change_it():
+    """Lengths by 1.6, moduli by 0.37: the same angle, found on the same path."""
+    drawn = slender()
+    links = {name: replace(link, at=tuple(1.6 * np.array(link.at))) for name, link in drawn.links.items()}
+    steel = replace(drawn.materials["steel"], young=0.37 * drawn.materials["steel"].young)
+    part = replace(SLENDER, **{name: 1.6 * getattr(SLENDER, name) for name in ("length", "thickness", "width")})
+    scaled = replace(drawn, materials={"steel": steel}, parts={"leaf": part}, links=links)
+    assert misalign(scaled, "left", "ry", 1e-4, points=2).critical == pytest.approx(limit(), rel=5e-5)
+
+
+def test_beyond_it_no_stable_state_is_one_of_the_guide():
+    """To the other side too; rows beyond the critical size are unstable, or have no numbers."""
+    found = misalign(slender(), "left", "ry", -1.5 * limit(), points=4)
+    assert found.critical == found.followed == pytest.approx(-limit(), rel=5e-5)
+    assert not np.any(found.along.values[-1, -1] == 0.0)
 
 
 def test_below_it_both_leaves_bend_uniformly():

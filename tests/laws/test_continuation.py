@@ -20,7 +20,7 @@ from flexstage.models.nonlinear.graph import System, advance, assemble
 from flexstage.models.nonlinear.hold import nothing
 from flexstage.models.nonlinear.path import trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
-from flexstage.models.nonlinear.state import Loads
+from flexstage.models.nonlinear.state import Effort, Loads
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
@@ -171,7 +171,12 @@ def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load()
     stage = random_legs(2)
     (limit,) = factors(nonlinear(stage), np.array([1.0]))
     assert fs.stance(stage, loads={DOWN: 0.95 * limit}).sag.at("platform", "z") < 0.0
-    assert equilibrium(nonlinear(stage), {DOWN: 1.5 * limit}).converged
+    beyond = equilibrium(nonlinear(stage), {DOWN: 1.5 * limit}, effort=Effort(past=True))
+    assert beyond.converged
+    assert not unstable_motions(beyond)
+    refused = fs.equilibrium(fs.nonlinear(stage), {DOWN: np.array([0.95, 1.5]) * limit})
+    assert refused.converged.tolist() == [True, False]
+    assert "at 0.66" in refused.reasons[1]
     with pytest.raises(fs.DesignError, match=r"at 0\.66\d* of its loads it snaps or buckles"):
         fs.stance(stage, loads={DOWN: 1.5 * limit})
 
@@ -190,3 +195,29 @@ def test_a_double_eigenvalue_is_counted_twice():
     model = nonlinear(random_legs(4))
     (load,) = factors(model, np.array([1.0]))
     assert unstable_motions(equilibrium(model, {DOWN: np.array([0.999, 1.001]) * load})).tolist() == [0, 2]
+
+
+def cantilever() -> Mechanism:
+    """A platform at the end of a slender rod along x."""
+    body = Body(mass=0.02, inertia=Inertia(1e-6, 1e-6, 1e-6), centre=(0.1, 0.0, 0.0), reference=(0.1, 0.0, 0.0))
+    link = Link(("ground", "platform"), "rod", (0.05, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    rod = Rod("steel", length=0.1, diameter=0.5e-3)
+    return Mechanism("", {"steel": STEEL}, parts={"rod": rod}, bodies={"platform": body}, links={"rod": link}, gravity=(0.0, 0.0, 0.0))
+
+
+def test_a_law_of_small_motions_is_10_per_cent_off_where_the_range_of_a_6x6_ends():
+    """A cantilever under P L^2 = E I: 0.3017 L and 0.4613 rad (Bisshopp & Drucker), where linear theory has 1/3 and 1/2."""
+    unit = 200e9 * np.pi * 0.5e-3**4 / 64.0 / 0.1**2
+    state = fs.equilibrium(fs.nonlinear(cantilever()), {"platform.fy": unit})
+    assert state.displacement()[1] / 0.1 == pytest.approx(0.3017, abs=2e-4)
+    assert state.rotation()[2] == pytest.approx(0.4613, abs=2e-4)
+
+
+@pytest.mark.parametrize(("load", "end"), [("platform.fx", 0.3 * 0.05 * 1e4), ("platform.mx", 0.46 * 50.0)])
+def test_a_load_is_bounded_where_the_6x6_of_a_link_ends(load: str, end: float):
+    """Displaced along its axis by 0.3 of the stage's extent (50 mm from its centre to the platform), or turned about it by 0.46 rad."""
+    spring = fs.Spring(diagonal=(1e4, 1e4, 1e4, 50.0, 50.0, 50.0))
+    held = replace(cantilever(), parts={"rod": spring})
+    with pytest.raises(LowerBoundError, match="rod is deformed beyond what its 6x6 holds for") as error:
+        critical(nonlinear(held), {load: 1.0}, weight=0.0)
+    assert error.value.bound == pytest.approx(end, rel=1e-4)

@@ -16,18 +16,18 @@ from flexstage.base.unit import parse, quantity_of_unit
 from flexstage.mechanism.expand import Assembly, expand
 from flexstage.mechanism.mechanism import Mechanism, StrokePath
 from flexstage.models.linear.channels import input_channels, wrench_places
+from flexstage.models.nonlinear.state import Status
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 if TYPE_CHECKING:
     from flexstage.analysis import stance
     from flexstage.analysis import stroke as strokes
-    from flexstage.models.nonlinear import critical, equilibrium
+    from flexstage.models.nonlinear import equilibrium
     from flexstage.models.nonlinear import path as paths
     from flexstage.models.nonlinear import stage as nonlinear
 else:
     stance = Late("flexstage.analysis.stance")
     strokes = Late("flexstage.analysis.stroke")
-    critical = Late("flexstage.models.nonlinear.critical")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
     paths = Late("flexstage.models.nonlinear.path")
     nonlinear = Late("flexstage.models.nonlinear.stage")
@@ -56,7 +56,7 @@ class Course:
         """Equilibria along it, or at other values of its drive."""
         wanted, hold = self._wanted(model, rest, values)
         found = paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
-        self._require_continuation(found.state, rest, hold, wanted)
+        _require_continuation(found.state)
         return found
 
     def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
@@ -65,16 +65,6 @@ class Course:
         driven = self.drive in {channel.name for channel in model.inputs}
         start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
         return start + wanted, {name: float(stance.coordinate(rest, name)) for name in self.locked}
-
-    def _require_continuation(self, found: equilibrium.State, rest: equilibrium.State, hold: dict[str, float], values: Array) -> None:
-        """Refuse states along a load or stroke beyond a snap: of both ends, as far as they are found. A held coordinate has none."""
-        if self.drive not in {channel.name for channel in rest.model.inputs}:
-            return
-        start = equilibrium.equilibrium(rest.model, self.loads, hold=hold, weight=self.weight, start=rest) if hold else rest
-        known = np.flatnonzero(found.converged)
-        ends = {int(known[most(values[known])]) for most in (np.argmin, np.argmax)} if known.size else set[int]()
-        for place in ends:
-            critical.require_continuation(start, found.case(place))
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
         """The points of its stroke, of which single columns may be asked."""
@@ -86,9 +76,13 @@ class Course:
         rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
         asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
         wanted, hold = [each for each, _ in asked], [each for _, each in asked]
-        states = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
-        for state, rest, locked, each in zip(states, rests, hold, wanted, strict=True):
-            self._require_continuation(state, rest, locked, each)
+        found = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        states = []
+        for state, rest, locked, each in zip(found, rests, hold, wanted, strict=True):
+            begin, start = paths.begin_along(rest, self.drive, self.loads, locked, self.weight)
+            states.append(paths.continue_along(begin, state, each - start))
+        for each in states:
+            _require_continuation(each)
         return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
 
     def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
@@ -98,10 +92,15 @@ class Course:
 
 
 def _resting(found: equilibrium.State) -> equilibrium.State:
-    if not bool(found.converged):
-        raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
-    critical.require_continuation(equilibrium.equilibrium(found.model, weight=0.0, stated=0.0), found)
+    equilibrium.require_equilibrium(found)
     return found
+
+
+def _require_continuation(found: equilibrium.State) -> None:
+    """Refuse states of which the first that does not continue the stage at rest says why."""
+    beyond = np.flatnonzero(found.status > Status.SINGULAR)
+    if beyond.size:
+        equilibrium.require_equilibrium(found.case(int(beyond[0])))
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:

@@ -23,7 +23,7 @@ from flexstage.base.unit import quantity_of_unit, show
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.nonlinear.critical import Critical, NothingGivesWayError, critical, require_continuation, unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import STATED, WEIGHT
 from flexstage.parts.part import push_of
@@ -241,44 +241,40 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
     >>> round(case_critical(stage, LoadCase("push", "at rest", {"platform.fx": -1e3}, gravity=0.0)).factor, 3)
     11.063
     """
-    there, hold = _brought(model, case)
+    known, hold = _brought(model, case)
     inputs = {channel.name for channel in model.inputs}
     stays = {**case.stays, **{name: value for name, value in case.at.items() if name in inputs}}
     weight, stated = case.shares
-
-    def ask(known: State | None) -> Critical:
-        return critical(
-            model,
-            case.grows,
-            rest=stays,
-            hold=hold,
-            locked=case.locked,
-            weight=weight,
-            stated=stated,
-            known=known,
-            most=most,
-            tolerance=tolerance,
-        )
-
-    return ask(there if case.at and int(unstable_motions(there, locked=case.locked)) == 0 else None)
+    return critical(
+        model,
+        case.grows,
+        rest=stays,
+        hold=hold,
+        locked=case.locked,
+        weight=weight,
+        stated=stated,
+        known=known,
+        most=most,
+        tolerance=tolerance,
+    )
 
 
-def _brought(model: Nonlinear, case: LoadCase) -> tuple[State, dict[str, float]]:
-    """The stage where a case has it under all of its load, and the coordinates that keep it there."""
+def _brought(model: Nonlinear, case: LoadCase) -> tuple[State | None, dict[str, float]]:
+    """The stage where a case has it under all of its load, if it is stable there, and the coordinates that keep it there."""
+    if not case.at and not case.locked:
+        return None, {}
     rest = equilibrium(model, case.whole, weight=case.gravity)
-    if not bool(rest.converged):
-        raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask for less")
+    require_equilibrium(rest)
     inputs = {channel.name for channel in model.inputs}
     given = {name: value for name, value in case.at.items() if name in inputs}
-    held = dict.fromkeys([*(name for name in case.at if name not in inputs), *case.locked])
-    hold = {name: float(coordinate(rest, name)) + case.at.get(name, 0.0) for name in held}
+    begun = {name: float(coordinate(rest, name)) for name in (*case.at, *case.locked) if name not in inputs}
+    hold = {name: value + case.at.get(name, 0.0) for name, value in begun.items()}
     there = equilibrium(model, {**case.whole, **given}, hold=hold, weight=case.gravity, start=rest)
     if not bool(there.converged):
         raise refuse("stage", "no equilibrium was found there", "Ask for less")
-    if case.at and not int(unstable_motions(there, locked=case.locked)):
-        begun = {name: float(coordinate(rest, name)) for name in held}
-        require_continuation(equilibrium(model, weight=0.0, stated=0.0), rest)
-        require_continuation(equilibrium(model, case.whole, hold=begun, weight=case.gravity, start=rest), there)
+    if not case.at or int(unstable_motions(there, locked=case.locked)):
+        return None, hold
+    require_continuation(equilibrium(model, case.whole, hold=begun, weight=case.gravity, start=rest), there)
     return there, hold
 
 

@@ -156,11 +156,9 @@ def _straight(mechanism: Mechanism) -> Mechanism:
 def _felt(mechanism: Mechanism) -> LoadEffect:
     state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
     unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
+    equilibrium.require_equilibrium(state)
     if int(critical.unstable_motions(state)):
         raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
-    if not bool(state.converged):
-        raise refuse("stage", "under its weight and loads no equilibrium was found", "Ask flexstage buckle how much it bears")
-    critical.require_continuation(equilibrium.equilibrium(state.model, weight=0.0, stated=0.0), state)
     found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
     return replace(found, state=state if found.model is not None else None)
 

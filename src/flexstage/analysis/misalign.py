@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.strained import strain_cautions
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import Finding, refuse, suggest_nearest
+from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
@@ -18,16 +18,18 @@ from flexstage.base.record import INNER
 from flexstage.mechanism.expand import Assembly, copies, expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.eigen import eigenvalues
-from flexstage.models.nonlinear.critical import unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.critical import NothingGivesWayError, critical, unstable_motions
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.path import continue_along
 from flexstage.models.nonlinear.seat import SEAT, seat
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import Effort
 from flexstage.models.nonlinear.strain import Strains, strains
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
-_FIRST, _MOST, _CLOSE = 1e-6, 0.1, 1e-5
-"""Where the search begins and ends [rad, or over the flexures' length], and how closely a critical misalignment is found."""
+_MOST = 0.1
+"""The largest misalignment looked at [rad, or over the flexures' length]."""
 _FREQUENCIES = 3
 _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 
@@ -38,8 +40,9 @@ class Misaligned(InNotebook):
 
     `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
     of a flexure, in how many ways the stage leaves (0: it stays); `state` is where it stands then. `loads` are the wrenches in all flexures
-    at the last size, on each end in the frame of its start. `critical` is the size at which the stage stops being stable [rad, m]; NaN
-    where it does not up to 0.1 rad, or 0.1 of the longest flexure.
+    at the last size, on each end in the frame of its start. `critical` is the size at which the first stiffness vanishes [rad, m], NaN
+    where none does. `followed` is the size up to which the stage is known to be stable: `critical`, 0.1 rad or 0.1 of the longest flexure,
+    or where the path ends. Stable states beyond `critical` do not continue the stage without a misalignment: they have no numbers.
     """
 
     copy: str
@@ -47,6 +50,7 @@ class Misaligned(InNotebook):
     along: Matrix
     loads: Matrix
     critical: float
+    followed: float
     strained: Annotated[Strains, INNER]
     state: Annotated[State, INNER]
     provenance: str
@@ -59,14 +63,15 @@ class Misaligned(InNotebook):
 
 @dataclass(frozen=True, eq=False)
 class Misalignments(InNotebook):
-    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where it does not up to 0.1 rad.
+    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where no stiffness vanishes.
 
-    `load` is what forces the copy to `size` [rad, m], `stress` the largest of a flexure then [Pa]; null where no equilibrium was found.
-    `worst` is the copy and axis that give way first, or where none does bear the largest stress, from none to its critical size, or to
-    `size`; None where no copy joins the ground.
+    `followed` is that up to which the stage is known to be stable, as in `Misaligned`. `load` is what forces the copy to `size` [rad, m],
+    `stress` the largest of a flexure then [Pa]; null where no equilibrium was found. `worst` is the copy and axis of the least `followed`,
+    or where all bear as much of the largest stress, from none to there, or to `size`; None where no copy joins the ground.
     """
 
     critical: Matrix
+    followed: Matrix
     size: float
     load: Matrix
     stress: Matrix
@@ -93,6 +98,7 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
     """
     forced = _forced(mechanism, copy, axis)
     state = forced.at(size * np.linspace(0.0, 1.0, points))
+    critical, followed = forced.limits(float(np.sign(size)) or 1.0)
     strained = strains(state)
     along = _along(forced, state, strained, size * np.linspace(0.0, 1.0, points))
     names = tuple(name for group in forced.model.flexures for name in group.names)
@@ -102,19 +108,24 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
         axis=axis,
         along=along,
         loads=Matrix(loads, names, FORCES, (WRENCH_UNITS,) * len(names)),
-        critical=forced.critical(),
+        critical=critical,
+        followed=followed,
         strained=strained,
         state=state,
         provenance=f"{copy} misaligned in the {forced.model.provenance}",
     )
 
 
-def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> Matrix:
-    """The misalignment of every copy (or link) that joins the ground at which the stage gives way, by axis; NaN where none does."""
+def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> tuple[Matrix, Matrix]:
+    """Critical misalignments of every copy (or link) that joins the ground, by axis, and those up to which the stage is stable.
+
+    The first are NaN where no stiffness vanishes on the way.
+    """
     rows = seated(mechanism)
-    values = [[_forced(mechanism, copy, axis).critical() for axis in axes] for copy in rows]
-    units = tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes)
-    return Matrix(np.array(values).reshape(len(rows), len(axes)), rows, axes, (units,) * len(rows))
+    values = [[_forced(mechanism, copy, axis).limits(1.0) for axis in axes] for copy in rows]
+    units = (tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes),) * len(rows)
+    critical, followed = np.moveaxis(np.array(values).reshape(len(rows), len(axes), 2), -1, 0)
+    return Matrix(critical, rows, axes, units), Matrix(followed, rows, axes, units)
 
 
 def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
@@ -127,13 +138,13 @@ def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], 
     >>> found.load.rows, found.worst.axis
     (('B', 'left', 'right'), 'ry')
     """
-    critical = critical_misalignments(mechanism, axes)
+    critical, followed = critical_misalignments(mechanism, axes)
     there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
     values = np.array(there).reshape(len(critical.rows), len(axes), 2)
     units = tuple(WRENCH_UNITS[COMPONENTS.index(axis)] for axis in axes)
     load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
     stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
-    return Misalignments(critical, size, load, stress, _worst(mechanism, critical, stress, size))
+    return Misalignments(critical, followed, size, load, stress, _worst(mechanism, (critical, followed), stress, size))
 
 
 def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
@@ -143,14 +154,15 @@ def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
     return float((state.reactions @ forced.direction)[0]), float(stress[0]) if bool(state.converged[0]) else np.nan
 
 
-def _worst(mechanism: Mechanism, critical: Matrix, stress: Matrix, size: float) -> Misaligned | None:
-    if not critical.values.size:
+def _worst(mechanism: Mechanism, limits: tuple[Matrix, Matrix], stress: Matrix, size: float) -> Misaligned | None:
+    critical, followed = limits
+    if not followed.values.size:
         return None
-    bears = np.where(np.isnan(critical.values), np.inf, critical.values)
-    ranks = bears if np.isfinite(bears).any() else -np.nan_to_num(stress.values)
+    ranked = bool(np.isfinite(critical.values).any() or np.ptp(followed.values) > 0.0)
+    ranks = followed.values if ranked else -np.nan_to_num(stress.values)
     row, column = np.unravel_index(int(np.argmin(ranks)), ranks.shape)
-    to = float(bears[row, column])
-    return misalign(mechanism, critical.rows[row], critical.columns[column], to if np.isfinite(to) else size)
+    to = float(followed.values[row, column]) if ranked else size
+    return misalign(mechanism, followed.rows[row], followed.columns[column], to)
 
 
 def seated(mechanism: Mechanism) -> tuple[str, ...]:
@@ -174,32 +186,28 @@ class _Forced:
     direction: Array
     axis: str
 
-    def at(self, sizes: Array, start: State | None = None) -> State:
-        hold = {name: sizes * part for name, part in zip(_HELD, self.direction, strict=True)}
-        return equilibrium(self.model, hold=hold, start=start)
+    def hold(self, size: Array | float) -> dict[str, Array]:
+        """Values of the seat's coordinates at sizes of the misalignment."""
+        return {name: size * part for name, part in zip(_HELD, self.direction, strict=True)}
 
-    def critical(self) -> float:
-        """The size at which the stage stops being stable; NaN where it does not."""
-        scale = self.model.size if np.any(self.direction[:3]) else 1.0
-        last, low, high = self.at(np.array(0.0)), 0.0, _FIRST
-        if int(unstable_motions(last)):
-            raise refuse("stage", "it is not stable, or has no equilibrium, without a misalignment", "Look at its weight and its forces")
-        while high <= _MOST:
-            found = self.at(np.array(scale * high), last)
-            if int(unstable_motions(found)):
-                return scale * self._between(low, high, last, scale)
-            last, low, high = found, high, 2.0 * high
-        return np.nan
+    def at(self, sizes: Array) -> State:
+        """Equilibria at sizes (k,), those that continue the stage without a misalignment."""
+        begin = equilibrium(self.model, hold=self.hold(np.array(0.0)))
+        require_equilibrium(begin)
+        found = equilibrium(self.model, hold=self.hold(sizes), effort=Effort(arcs=0))
+        return continue_along(begin, found, sizes)
 
-    def _between(self, low: float, high: float, last: State, scale: float) -> float:
-        while high - low > _CLOSE * high:
-            middle = 0.5 * (low + high)
-            found = self.at(np.array(scale * middle), last)
-            if int(unstable_motions(found)):
-                high = middle
-            else:
-                last, low = found, middle
-        return 0.5 * (low + high)
+    def limits(self, sign: float) -> tuple[float, float]:
+        """The critical size to one side, NaN without one, and that up to which the stage is known to be stable."""
+        most = _MOST * (self.model.size if np.any(self.direction[:3]) else 1.0)
+        gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
+        try:
+            found = sign * critical(self.model, gain, hold=none, most=most).factor
+        except NothingGivesWayError:
+            return np.nan, sign * most
+        except LowerBoundError as error:
+            return np.nan, sign * error.bound
+        return found, found
 
 
 def _forced(mechanism: Mechanism, copy: str, axis: str) -> _Forced:

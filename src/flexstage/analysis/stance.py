@@ -20,7 +20,7 @@ from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.critical import require_continuation, unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.strain import strains
@@ -87,14 +87,11 @@ def stance(
     asked = _Asked(nonlinear(mechanism, temperature=temperature), dict(at or {}), dict(loads or {}), tuple(dict.fromkeys(hold)))
     require(_contradictions(asked))
     rest = equilibrium(asked.model, asked.loads)
-    if not bool(rest.converged):
-        far = f": equilibrium was followed to {float(rest.reached):.3g} of them" if float(rest.reached) else ""
-        raise refuse("stage", f"under its weight and loads no equilibrium was found{far}", "Ask flexstage buckle how much it bears")
+    require_equilibrium(rest)
     state = asked.reach(rest, 1.0)
     if not bool(state.converged):
         raise refuse("--at", *_how_far(asked, rest))
     _require_stable(asked, state)
-    require_continuation(equilibrium(asked.model, weight=0.0, stated=0.0), rest)
     if asked.at:
         require_continuation(asked.reach(rest, 0.0), state)
     places = (PLATFORM, *(name for name in wrench_places(asked.model.assembly) if name not in asked.model.bodies))

@@ -215,18 +215,17 @@ def misalignments_text(found: Misalignments) -> str:
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no copy and no link joins the ground"
-    if np.isnan(worst.critical):
-        told = f"none gives way; {worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]} is stressed most"
-    else:
-        told = f"{_misaligned_text(worst)}, the first"
+    told = f"{_misaligned_text(worst)}, the first"
+    if np.isnan(worst.critical) and not np.ptp(found.followed.values):
+        where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
+        told = f"all are stable as far; {where} is stressed most"
     return f"{count} misaligned one by one: {told}"
 
 
 def critical_text(found: Misaligned) -> str:
     """At which misalignment the stage gives way, in words."""
-    if np.isnan(found.critical):
-        return "it bears all up to 0.1 rad, or a tenth of its flexures"
-    return f"it gives way at {format_value(found.critical, 'rad' if found.axis.startswith('r') else 'm', 4)}"
+    size = format_value(found.followed, "rad" if found.axis.startswith("r") else "m", 4)
+    return f"it is stable up to {size}, and not followed beyond" if np.isnan(found.critical) else f"it gives way at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
@@ -235,20 +234,25 @@ def misalignment_tables(found: Misalignments) -> list[Table]:
     size = format_value(found.size, unit, 4)
     alone = "Of one copy alone, in its own frame"
     return [
-        _by_copy("Misalignment at which the stage gives way", found.critical, f"{alone}. -: it does not give way up to a tenth."),
+        _by_copy("Misalignment at which the stage gives way", found.critical, f"{alone}. >: stable so far.", found.followed),
         _by_copy(f"Load that forces it to {size}", found.load, f"{alone}, about its origin, of a link its middle."),
         _by_copy(f"Largest stress of a flexure at {size}", found.stress, "Von Mises; weight included."),
     ]
 
 
-def _by_copy(title: str, found: Matrix, note: str) -> Table:
-    units = found.unit if not isinstance(found.unit, str) else ((found.unit,) * len(found.columns),) * len(found.rows)
-    rows = [
-        [copy, *("-" if np.isnan(each) else format_value(float(each), unit, 4) for each, unit in zip(values, own, strict=True))]
-        for copy, values, own in zip(found.rows, found.values, units, strict=True)
-    ]
+def _by_copy(title: str, found: Matrix, note: str, followed: Matrix | None = None) -> Table:
+    unit = found.unit if isinstance(found.unit, str) else found.unit[0][0]
+    bounds = found.values if followed is None else followed.values
+    cells = [[_bounded(*pair, unit) for pair in zip(*rows, strict=True)] for rows in zip(found.values, bounds, strict=True)]
+    rows = [[copy, *row] for copy, row in zip(found.rows, cells, strict=True)]
     heads = ["copy", *(Column(f"{'about' if axis.startswith('r') else 'along'} {axis[-1]}") for axis in found.columns)]
     return make_table(title, heads, rows, notes=[note])
+
+
+def _bounded(value: float, bound: float, unit: str) -> str:
+    """A value, or the bound that it is above."""
+    text = "-" if np.isnan(bound) else format_value(float(bound), unit, 4)
+    return text if np.isfinite(value) or np.isnan(bound) else f"> {text}"
 
 
 def _flags(said: tuple[str, ...]) -> Array:

@@ -14,12 +14,15 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
 from flexstage.models.nonlinear.arc import rescue
+from flexstage.models.nonlinear.follow import continued
 from flexstage.models.nonlinear.hold import Hold
-from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibrate, equilibrate_designs, search
+from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibrate, equilibrate_designs, merge, search
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.spatial.rotation import logarithm
+
+LESS = "Load it less, or ask flexstage buckle what gives way"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +54,9 @@ class State:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Why each case has no numbers, in the order of `status.ravel()`; empty where it has."""
-        return tuple(_reason(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True))
+        return tuple(
+            why_without(int(status), float(share)) for status, share in zip(self.status.ravel(), self.reached.ravel(), strict=True)
+        )
 
     @property
     def reactions(self) -> Array:
@@ -105,12 +110,27 @@ class State:
         return known.reshape(*self.shape, values.shape[-1])
 
 
-def _reason(status: int, share: float) -> str:
+def why_without(status: int, share: float) -> str:
+    """Why a case has no numbers, the path to its loads being followed to a share of them; empty where it has."""
     if status == Status.CONVERGED:
         return ""
+    if status == Status.CRITICAL:
+        return f"at {share:.4g} of its loads it snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
+    if status == Status.NOT_FOLLOWED:
+        return f"equilibrium was followed to {share:.3g} of the way from the unloaded stage: a state beyond is not its continuation"
     what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not settle"
     far = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the way to it"
     return f"{what} under the whole load; {far}. It may end there: fs.trace follows a load by arc length, fs.critical tells what gives way"
+
+
+def require_equilibrium(found: State) -> None:
+    """Refuse a case without an equilibrium that continues the unloaded stage: with where the path from there has an event, or ends."""
+    if not bool(found.converged):
+        status, share = int(found.status), float(found.reached)
+        far = f": equilibrium was followed to {share:.3g} of them" if share else ""
+        known = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
+        what = why_without(status, share) if known else f"under its weight and loads no equilibrium was found{far}"
+        raise refuse("stage", what, LESS)
 
 
 def place(model: Nonlinear, name: str) -> tuple[int, Array]:
@@ -140,8 +160,9 @@ def equilibrium(
     `hold` imposes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`: component of the rotation vector [rad])
     and finds what holds them. `weight` and `stated` are shares of gravity and of stated forces and preloads. Wrenches are dead: they keep
     their directions. Every case starts from the drawn position, or from `start`, and takes its whole load at once, or in steps, or by arc
-    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. Raises `DesignError` for
-    names that the stage does not have.
+    length up to where the load turns; one without an equilibrium that is found so is NaN and says so in `status`. So is a stable one found
+    from the drawn position that is not the continuation of the unloaded stage as all its loads and held coordinates grow together, unless
+    `effort` goes `past` limits or takes no `arcs`. Raises `DesignError` for names that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -152,6 +173,8 @@ def equilibrium(
     asked = _asked(model, loads or {}, hold or {}, weight, stated)
     first = _first(model, start, asked.hold, len(asked.loads.inputs))
     found = rescue(model, asked.loads, asked.hold, equilibrate(model, first, asked.loads, asked.hold, effort), effort)
+    if start is None:
+        found = _continued(model, asked, found, effort)
     return state(model, asked.loads, asked.hold, found, (asked.shape, asked.held))
 
 
@@ -182,10 +205,28 @@ def equilibria(
     starts = [_first(model, None, each.hold, len(each.loads.inputs)) for model, each in zip(models, asked, strict=True)]
     tasks = [Task(model, start, each.loads, each.hold) for model, start, each in zip(models, starts, asked, strict=True)]
     found = equilibrate_designs(tasks, effort)
+    rescued = (rescue(each.model, each.loads, each.hold, one, effort) for each, one in zip(tasks, found, strict=True))
     return [
-        state(task.model, each.loads, each.hold, rescue(task.model, each.loads, each.hold, one, effort), (each.shape, each.held))
-        for task, each, one in zip(tasks, asked, found, strict=True)
+        state(model, each.loads, each.hold, _continued(model, each, one, effort), (each.shape, each.held))
+        for model, each, one in zip(models, asked, rescued, strict=True)
     ]
+
+
+def _continued(model: Nonlinear, asked: _Asked, found: Found, effort: Effort) -> Found:
+    """What was found, where it is the continuation of the unloaded stage; else that, or why there is none."""
+    known = np.flatnonzero(found.status == Status.CONVERGED)
+    if not effort.arcs or effort.past or not known.size:
+        return found
+    one, none = np.array([0]), np.zeros(1)
+    loads, hold = asked.loads.of(one).times(none), replace(asked.hold.of(one), value=0.0 * asked.hold.value[one])
+    drawn = equilibrate(model, _first(model, None, hold, 1), loads, hold)
+    if drawn.status[0] != Status.CONVERGED:
+        return found
+    for case in known[:, None]:
+        end = Task(model, found.pose.of(case), asked.loads.of(case), asked.hold.of(case))
+        on = continued(Task(model, drawn.pose, loads, hold), end)
+        found = merge(found, case, replace(on, iterations=found.iterations[case], residual=found.residual[case]))
+    return found
 
 
 def _require_alike(models: Sequence[Nonlinear]) -> None:

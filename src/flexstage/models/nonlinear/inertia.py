@@ -43,11 +43,11 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
 
 
 def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
-    """The least of the flexures' own eigenvalues beyond their six multipliers, and the flexure's name; 1 without flexures."""
+    """The least of the flexures' own eigenvalues, scaled by rows, beyond their six multipliers, and the flexure; 1 without flexures."""
     weakest = [
         (float(least), name)
         for group, each in zip(model.flexures, whole.bent, strict=True)
-        for name, least in zip(group.names, np.linalg.eigvalsh(indefinite(each.tangent)[:, 0])[:, 6], strict=True)
+        for name, least in zip(group.names, np.linalg.eigvalsh(_even(indefinite(each.tangent)[:, 0]))[:, 6], strict=True)
     ]
     return min(weakest, default=(1.0, ""))
 
@@ -76,7 +76,12 @@ def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
 
 
 def _negative(matrix: Array) -> Array:
-    """How many eigenvalues of symmetric matrices (..., n, n), scaled by their rows, are negative."""
+    """How many eigenvalues of symmetric matrices (..., n, n) are negative."""
+    return np.sum(np.linalg.eigvalsh(_even(matrix)) < 0.0, axis=-1)
+
+
+def _even(matrix: Array) -> Array:
+    """Symmetric matrices (..., n, n) scaled by the largest of their rows."""
     even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
     size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
-    return np.sum(np.linalg.eigvalsh(np.nan_to_num(even / size[..., None] / size[..., None, :])) < 0.0, axis=-1)
+    return np.nan_to_num(even / size[..., None] / size[..., None, :])

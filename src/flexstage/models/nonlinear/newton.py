@@ -107,13 +107,14 @@ def _by_steps(model: Nonlinear, start: Pose, loads: Loads, hold: Hold, *, effort
         share[active[good]] = aim[good]
         pose = pose.put(active[good], again.pose.of(np.flatnonzero(good)))
         whole = np.flatnonzero(aim == 1.0)
-        found = _merge(found, failed[active[whole]], again.of(whole))
+        found = merge(found, failed[active[whole]], again.of(whole))
     reached = replace(found, reached=put(found.reached, failed, share))
     lost = reached.status[failed] != Status.CONVERGED
     return replace(reached, pose=reached.pose.put(failed[lost], pose.of(np.flatnonzero(lost))))
 
 
-def _merge(found: Found, cases: Array, other: Found) -> Found:
+def merge(found: Found, cases: Array, other: Found) -> Found:
+    """What was found, with some cases exchanged."""
     return Found(found.pose.put(cases, other.pose), *(put(getattr(found, name), cases, getattr(other, name)) for name in TOLD))
 
 

@@ -15,10 +15,12 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.arc import Course, Point, critical_point, first_point, follow_course
 from flexstage.models.nonlinear.critical import Critical, Kind, course_of, critical, unstable_motions
-from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, state
-from flexstage.models.nonlinear.newton import USUAL, join
+from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, require_equilibrium, state
+from flexstage.models.nonlinear.follow import continued
+from flexstage.models.nonlinear.newton import USUAL, Task, join
 from flexstage.models.nonlinear.stage import Nonlinear
-from flexstage.models.nonlinear.state import Effort, Loads
+from flexstage.models.nonlinear.state import Effort, Loads, Status
+from flexstage.spatial.frame import COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +81,8 @@ def path(
     """Equilibria as `drive` takes `values` (k,): a coordinate that is held (`platform.y`), or an actuator's stroke, force or a wrench.
 
     Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
-    its nearest neighbour that was found. Raises `DesignError` for a drive that the stage does not have.
+    its nearest neighbour that was found. Stable states that do not continue the stage at rest along the drive have no numbers, as in
+    `equilibrium`. Raises `DesignError` for a drive that the stage does not have.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -88,8 +91,44 @@ def path(
     ([-1939.0, 0.0, 1939.0], [0, 0, 0])
     """
     values = np.asarray(values, dtype=float)
+    rest = equilibrium(model, loads, hold=hold, weight=weight)
     found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, effort=effort)
+    begin, start = begin_along(rest, drive, loads or {}, hold or {}, weight)
+    found = continue_along(begin, found, values - start)
     return Path(drive, values, found, unstable_motions(found), tuple(hold or {}))
+
+
+def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
+    """The stage at rest with its drive held there, and the value of the drive."""
+    driven = drive in {channel.name for channel in rest.model.inputs}
+    if not bool(rest.converged):
+        return rest, 0.0
+    owner, _, component = drive.rpartition(".")
+    start = 0.0 if driven else float(rest.twist(owner)[COMPONENTS.index(component)])
+    held = {**({} if driven else {drive: start}), **hold}
+    return equilibrium(rest.model, loads, hold=held, weight=weight, start=rest), start
+
+
+def continue_along(begin: State, found: State, away: Array) -> State:
+    """States (k,) of a drive that is `away` (k,) from where it begins; stable ones that do not continue one another have no numbers."""
+    if not bool(begin.converged):
+        return replace(found, status=np.where(found.converged, begin.status, found.status), reached=0.0 * found.reached)
+    pose, status, reached = found.pose, np.array(found.status), np.array(found.reached)
+    stable = unstable_motions(found) == 0
+    last = dict.fromkeys((False, True), (Task(begin.model, begin.pose, begin.loads, begin.hold), 0.0))
+    for case in np.argsort(np.abs(away)):
+        if not stable[case]:
+            continue
+        one, there, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
+        before, here = last[side]
+        end = Task(found.model, pose.of(one), found.loads.of(one), found.hold.of(one))
+        after = continued(before, end)
+        status[case], pose = after.status[0], pose.put(one, after.pose)
+        if status[case] == Status.CONVERGED:
+            last[side] = (replace(end, start=after.pose), there)
+        else:
+            reached[case] = (here + float(after.reached[0]) * (there - here)) / there
+    return replace(found, pose=pose, status=status, reached=reached)
 
 
 def equilibria_along(
@@ -187,8 +226,7 @@ def trace(
     (3, True)
     """
     start = equilibrium(model, rest or {}, hold=hold, weight=weight)
-    if not bool(start.converged):
-        raise refuse("stage", "it has no equilibrium without the load", "Look at its weight and its stated forces")
+    require_equilibrium(start)
     names = [channel.name for channel in model.inputs]
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):

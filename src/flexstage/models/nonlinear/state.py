@@ -18,11 +18,13 @@ STATED = "stated forces"
 
 
 class Status(IntEnum):
-    """How a search for equilibrium ended."""
+    """How a search for equilibrium ended; `CRITICAL`: a limit point or a bifurcation is on the way, `NOT_FOLLOWED`: the way ends."""
 
     CONVERGED = 0
     NOT_CONVERGED = 1
     SINGULAR = 2
+    CRITICAL = 3
+    NOT_FOLLOWED = 4
 
 
 @dataclass(frozen=True)

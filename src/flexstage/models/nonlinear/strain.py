@@ -1,4 +1,7 @@
-"""How far flexures are strained at a state, their stress, and how much their sections curve (docs/nonlinear.md, 28 and 29)."""
+"""How far links are deformed at a state: strain and stress of flexures, curving of their sections, and what their laws hold for.
+
+See docs/nonlinear.md, 28 and 29.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array, Number
+from flexstage.models.nonlinear.corotated import moved as moved_ports
 from flexstage.models.nonlinear.element import Shape, shape
 from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.graph import hinge_ends
+from flexstage.models.nonlinear.hinge import deform, imposed
 from flexstage.models.nonlinear.stage import Flexures
 from flexstage.parts.material import Material
 
+_STRAIN = 0.05
+"""Strain of a flexure beyond which no linear elastic law is physics."""
+_TURN, _SHIFT = 0.46, 0.30
+"""Rotation [rad] and displacement over the length at which a law of small motions is 10 % off: those of a cantilever under P L^2 = E I.
+
+K. E. Bisshopp & D. C. Drucker, Quart. Appl. Math. 3 (1945) 272: 0.4613 rad and 0.3017, where linear theory has 0.5 and 0.3333.
+"""
 _ABOUT_Z = np.array([0.0, 0.0, 1.0])
 _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 """Where across the width stress is looked at, over half of it."""
@@ -65,6 +78,38 @@ def strains(state: State) -> Strains:
     known = np.where(state.converged, 1.0, np.nan)[..., None]
     told = (known * np.moveaxis(np.array(each), 0, -1).reshape(*state.shape, len(names)) for each in (largest, curving, stressed))
     return Strains(tuple(names), *told, limit=_limits([each for group in state.model.flexures for each in _materials(state, group)]))
+
+
+def law_reserve(state: State) -> tuple[float, str]:
+    """How much of the range of its links' laws a state has left: 1 as drawn, 0 at its end; and what ends there.
+
+    Flexures end at a strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % off: where its ends have
+    turned by 0.46 rad, or are displaced by 0.3 of its length, of which no more is known than that it is within the extent of the stage; a
+    spring with a length ends at twice that. What has no stiffness has no range.
+    """
+    model, pose, hinges = state.model, state.pose, state.model.hinges
+    used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure is strained by {_STRAIN:.0%} there")]
+    moved = deform(hinges, hinge_ends(model, pose))[0] - imposed(hinges, state.loads.inputs)
+    places = np.concatenate([model.reference[:-1], model.reference[hinges.first] + hinges.arm_first])
+    shift = np.where(hinges.strut > 0.0, hinges.strut, _SHIFT * _diagonal(places))
+    stiff = np.diagonal(hinges.stiffness, axis1=1, axis2=2) != 0.0
+    links = zip(hinges.names, np.where(stiff, moved[:, 0], 0.0), shift, strict=True)
+    shares = {name: _share(own, far) for name, own, far in links}
+    for each in model.elements:
+        motion = moved_ports(each, pose.position[:, each.bodies], pose.turn[:, each.bodies]).motion
+        shares[each.name] = _share(motion.reshape(-1, 6), _SHIFT * _diagonal(each.place))
+    used += [(share, f"{name} is deformed beyond what its 6x6 holds for there") for name, share in shares.items()]
+    return min((1.0 - share, why) for share, why in used)
+
+
+def _diagonal(places: Array) -> float:
+    """The diagonal of the box around places (n, 3); infinite of a single one, which tells of no size."""
+    return float(np.linalg.norm(np.ptp(places, axis=0))) or np.inf
+
+
+def _share(motion: Array, shift: float) -> float:
+    """The largest displacement and rotation among motions (..., 6) over those at which a law of small motions ends."""
+    return float(np.max(np.abs(motion) / np.repeat([shift, _TURN], 3)))
 
 
 def _bent(lies: Shape) -> Array:
