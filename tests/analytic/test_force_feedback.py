@@ -14,6 +14,8 @@ from flexstage.control.damping.force_feedback import ForceFeedback, best_gain, m
 from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.damping.sampled import sample_legs
 from flexstage.control.electronics import AmplifierSettings, hardware
+from flexstage.control.example import integral
+from flexstage.control.noise import DisturbanceResponse, noise_budget
 from flexstage.control.plants import plant
 from flexstage.control.reduction import reduce_modes, resonances
 from flexstage.control.study.control import make_controller
@@ -216,6 +218,12 @@ def test_strain_gauges_in_the_legs_sense_what_sensors_of_force_do():
         axial = np.asarray(lumped(stage).stiffness[f"B/{link}"].law)[0, 0]
         assert found.damping.sensed[0].noise == pytest.approx(1e-12 * axial)
         assert found.plant.heard == {"sensed.B": found.damping.sensed[0].noise}
+        closed = loop(found.plant, integral(found.plant, 20.0))
+        budget = noise_budget(closed, {}, (10.0, 1000.0), ("relative.x",))
+        lines = np.geomspace(10.0, 1000.0, 20_001)
+        gain = np.abs(DisturbanceResponse(closed, ("sensed.B",), ("relative.x",)).at(lines)[:, 0, 0]) ** 2
+        share = budget.squares[0, [source.channel for source in budget.sources].index("sensed.B")]
+        np.testing.assert_allclose(share, np.trapezoid(gain * found.damping.sensed[0].noise ** 2, lines), rtol=1e-3)
         if link == "pzt":
             assert found.damping.modes[0].damped_ratio == pytest.approx(bare.damping.modes[0].damped_ratio, rel=1e-9)
 

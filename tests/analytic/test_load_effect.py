@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
 from flexstage.analysis.judge import judge
-from flexstage.analysis.load_effect import FELT, felt_links, load_effect
+from flexstage.analysis.load_effect import FELT, LoadEffect, felt_links, load_effect
 from flexstage.analysis.stability import Stability, prestress, stability
 from flexstage.analysis.statics import statics
 from flexstage.beams.compliance import stiffness
@@ -107,6 +107,21 @@ def test_the_bound_is_one():
     found, bound = load_effect(stage), 1.0 / float(stability(stage, fs.lumped(stage)).dead)
     assert found is not None
     assert 0.5 * bound < abs(found.change) <= 1.001 * bound
+
+
+@pytest.mark.parametrize("mass", [0.05, 0.0525])
+def test_one_per_cent_is_felt(mass):
+    """Results are of the loaded stage from a change of 1 % on, here by beam columns 0.98 % and 1.03 %."""
+    found, change = load_effect(upright(mass)), 1.0 - column(9.80665 * mass) / column(1e-6)
+    assert found is not None
+    assert abs(found.change) == pytest.approx(change, rel=0.02)
+    assert (found.model is not None) == (change >= 0.01)
+
+
+def test_a_bound_of_stiffness_is_twice_that_of_frequencies():
+    """A frequency goes with the root of a stiffness."""
+    said = LoadEffect(0.004, "", "", None).text
+    assert "no stiffness by more than 0.4 %, no frequency by more than 0.2 %" in said
 
 
 def test_nothing_is_said_where_nothing_weighs():

@@ -224,6 +224,7 @@ def test_a_load_factor_is_told_as_stiffness_and_frequency(factor: float, softer:
     assert not found.refusals
     (worse,) = replace(found, dead=np.array(100.0)).cautions
     assert f"up to {softer} less stiff than printed, a frequency {slower} lower" in worse.what
+    assert len(replace(found, worst=np.array(0.9 * factor)).cautions) == 2  # the strokes take a tenth of it more
 
 
 def test_a_repeated_load_factor_names_the_bodies_of_all_its_shapes():

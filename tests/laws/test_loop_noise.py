@@ -103,6 +103,9 @@ def test_densities_of_white_sources_add_up_to_their_mean_squares():
     widths = np.diff(budget.frequencies)[:, None, None]
     areas = np.sum(0.5 * (budget.density[1:] + budget.density[:-1]) * widths, axis=0)
     np.testing.assert_allclose(areas, budget.squares, rtol=0.01)
+    beyond = noise_budget(small_loop(), {}, (0.1, 2.0 * RATE), ("relative.x", "platform.x"))
+    assert np.all(beyond.squares == budget.squares)
+    assert not np.any(beyond.density[beyond.frequencies > 0.5 * RATE])  # aliased below, and counted once
 
 
 @pytest.mark.parametrize("density", [1e-13, 1e-11])
@@ -138,3 +141,14 @@ def test_rounding_errors_of_successive_samples_correlate_as_the_criterion_says(c
 def test_rounding_is_white_from_half_a_step_on():
     budget = noise_budget(small_loop(), {}, (1.0, 100.0), ("relative.x",))
     assert [replace(budget, changes=np.array([change])).slowly_rounding for change in (0.0, 0.49, 0.51, np.nan)] == [("S",), ("S",), (), ()]
+    assert replace(budget, changes=np.zeros(1), squares=0.0 * budget.squares).slowly_rounding == ()  # its rounding reaches no output
+
+
+def test_steps_of_a_converter_are_no_motion_of_a_reading():
+    """Rounding dithers nothing, whose ever it is: a reading that rests on a step of the converter moves by its noise alone."""
+    closed = small_loop()
+    amplifiers = Table({"B": replace(closed.plant.hardware.amplifiers["B"], step=1e-7)})
+    stepped = loop(replace(closed.plant, hardware=replace(closed.plant.hardware, amplifiers=amplifiers)), closed.controller)
+    smooth, rough = (noise_budget(each, {}, (1.0, 100.0), ("relative.x",)) for each in (closed, stepped))
+    assert rough.rms[0] > 10.0 * smooth.rms[0]
+    assert rough.changes == smooth.changes
