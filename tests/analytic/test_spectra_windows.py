@@ -199,3 +199,10 @@ def test_a_deviation_of_the_pole_is_one_of_frequency_and_of_damping():
     found = deviations(Fit(Modal(pole, np.ones((1, 1), complex), np.ones((1, 1), complex)), 0.0, np.eye(3, dtype=complex), converged=True))
     assert found.frequencies[0] == pytest.approx(np.sqrt(0.5), rel=1e-12)
     assert found.damping[0] == pytest.approx(np.sqrt(0.5) * 0.8 / 50.0, rel=1e-12)
+
+
+def test_a_deviation_of_a_shape_is_one_of_its_ratios():
+    """Of parts that deviate alike, by s, a ratio r = b / a of real numbers has var(r) = (1 + r^2) s^2 / a^2; the largest is 1."""
+    shape = np.array([[2.0], [-1.0]], complex)
+    found = deviations(Fit(Modal(np.array([1j]), np.ones((1, 1), complex), shape), 0.0, np.eye(4, dtype=complex), converged=True))
+    np.testing.assert_allclose(found.shapes[:, 0], [0.0, np.sqrt(0.5 * (1.0 + 0.25) / 4.0)], rtol=1e-12)

@@ -212,6 +212,16 @@ def test_drift_is_a_random_walk_across_blocks() -> None:
     assert abs(neighbours) < 5.0 / np.sqrt(len(walked))
 
 
+def test_strokes_are_as_fast_as_their_band_makes_them() -> None:
+    """The mean square of a rate is (2 pi)^2 times the integral of f^2 times the density: what amplifiers' currents follow from."""
+    mechanism, model = stage()
+    plan = plan_test(mechanism, model, replace(BARE, seconds=1.0))
+    lines = np.linspace(0.0, 1024.0, 20_001)
+    density = density_shape(lines, plan.band)
+    expected = 2.0 * np.pi * plan.rms * np.sqrt(np.trapezoid(lines**2 * density, lines) / np.trapezoid(density, lines))
+    np.testing.assert_allclose(chain(model, plan, model.damping).stroke_rate_rms, expected, rtol=1e-3)
+
+
 def test_gauge_noise_has_its_density_below_the_filter() -> None:
     setup = replace(BARE, seconds=60.0, filter=AntiAlias(8, 800.0))
     quiet, noisy = (outputs(recorded(replace(setup, sensing=replace(FINE, density=density)))) for density in (0.0, 5e-9))
