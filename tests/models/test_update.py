@@ -123,14 +123,16 @@ def test_errors_are_as_large_as_stated() -> None:
     """Numbers drawn from their priors, frequencies with the stated errors: the whitened errors are normal."""
     random = np.random.default_rng(7)
     known, names = Known(prior=0.02, model_error=1e-3), ["neck", "density", "stack"]
-    total = 0.0
+    total, chances = 0.0, list[float]()
     for seed in range(COPIES):
         built = changed(**dict(zip(names, np.exp(known.prior * random.standard_normal(3)), strict=True)))
         found = update(STAGE, made(built, seed, Noise(model=1e-3)), [NECK, "steel.density", "stack_vertical.stiffness"], known)
         error = errors(found, built)
         total += float(error @ np.linalg.solve(found.covariance, error))
+        chances.append(found.probability)
     low, high = scipy.stats.chi2.ppf([0.005, 0.995], 3 * COPIES)
     assert low < total < high
+    assert scipy.stats.combine_pvalues(chances).pvalue > 0.005
 
 
 def test_chi_square_tells_of_what_is_not_modelled() -> None:
@@ -138,7 +140,10 @@ def test_chi_square_tells_of_what_is_not_modelled() -> None:
     found = update(STAGE, made(built), [NECK], Known(prior=0.05))
     assert found.probability < 1e-6
     assert any("state a larger model error" in warning for warning in found.warnings)
-    assert update(STAGE, made(built), ["steel.density"]).probability > 0.01
+    told = update(STAGE, made(built), ["steel.density"])
+    assert told.probability > 0.01
+    tenth = scipy.stats.chi2.ppf(0.9, len(told.residuals))  # priors are data too: each makes up for the number that it is of
+    assert replace(told, chi_square=tenth).probability == pytest.approx(0.1, rel=1e-9)
 
 
 def test_more_prior_is_left_where_it_is_narrower() -> None:
@@ -306,7 +311,8 @@ def test_deviations_of_gains_are_the_scatter_of_lines_of_windowed_records() -> N
         found.append(_extrapolate_to_zero(np.linspace(0.02, 0.35, 20), away.T[..., None]))
     errors, deviations = np.mean(np.square(found), axis=(0, 2, 3))
     assert errors == pytest.approx(deviations, rel=0.2)
-    errors, deviations = np.mean(np.square(_extrapolate_to_zero(np.linspace(0.02, 0.35, 8), random.standard_normal((8, 2000, 1)))), axis=(1, 2))
+    independent = _extrapolate_to_zero(np.linspace(0.02, 0.35, 8), random.standard_normal((8, 2000, 1)))
+    errors, deviations = np.mean(np.square(independent), axis=(1, 2))
     assert 1.94 * errors == pytest.approx(deviations, rel=0.2)
 
 
