@@ -150,8 +150,8 @@ def test_a_loop_of_six_axes_designed_at_uneven_lines_is_the_one_of_the_truth() -
 
 
 def test_intervals_of_margins_hold_the_truth_and_are_no_wider_than_errors_are() -> None:
-    """Responses with the errors that their coherence states, drawn again and again: gain, phase and rejection of the loop on each."""
-    stage, error, averages = parallelogram(), 0.01, 50
+    """Responses with the errors that their coherence of 0.1 states, drawn again and again: gain, phase and rejection of the loop."""
+    stage, error, averages = parallelogram(), 0.01, 90_000
     lines = np.geomspace(20.0, 2000.0, 160)
     test = swept(stage, lines, 60e-6, noise=0.0)
     studied = loop_study(stage, SETUP, test=test)
