@@ -98,6 +98,15 @@ def nodal_poles(model, legs, law):
     return poles[np.isfinite(poles) & (np.abs(poles) < 1e7)]
 
 
+@pytest.mark.parametrize("gain", [700.0, 7000.0])
+def test_a_leg_keeps_half_of_its_stiffness_below_the_first_gain_of_one(gain):
+    """|G| = g w / (w^2 + a^2) rises through 1 at a^2 / g but for (a / g)^2; without the second high pass it is below g / a everywhere."""
+    law = ForceFeedback(gain, 4.0)
+    passed = np.abs(law.at(2j * np.pi * law.kept_below))
+    assert passed == pytest.approx(1.0, abs=2.0 * (8.0 * np.pi / gain) ** 2)
+    assert (replace(law, order=1).kept_below, replace(law, order=1, gain=8.0).kept_below) == (0.0, np.inf)
+
+
 @pytest.mark.parametrize("guide", [0.7, 1.0, 20.0])
 def test_one_leg_reaches_its_closed_form(guide):
     """(w - z)/(2 z) at w (w/z)^(1/2), by the whole plant."""

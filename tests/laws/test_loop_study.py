@@ -68,11 +68,15 @@ def test_every_number_of_the_set_up_reaches_the_hardware() -> None:
     span = power.high - power.low
     volts = float(drive(parallelogram()).gain[0])
     assert (given.rate, given.delay, power.bandwidth) == (12e3, 1e-4, 900.0)
-    assert power.noise_density == pytest.approx(2e-6 * volts)
+    assert power.noise_density == pytest.approx(2e-6 * volts, abs=0.0)
     assert power.step == pytest.approx(span / 2**16)
     assert power.slew == pytest.approx(1e3 * volts)  # slower than 0.1 A into the stack lets it
     assert (sensor.noise_density, sensor.resolution, sensor.bandwidth) == (1e-10, 2e-9, 3e3)
     assert (sensor.filter_order, sensor.filter_corner) == (2, 4e3)
+    assert sensor.half_range == 0.5 * parallelogram().sensors["probe"].range
+    weak = resolve(parallelogram(), LoopSetup(rate=12e3, amplifier=AmplifierSetup(current=1e-4, slew=1e3))).plant.hardware
+    capacitance = float(drive(parallelogram()).capacitance[0])
+    assert weak.amplifiers["B"].slew == pytest.approx(1e-4 / capacitance * volts)  # I = C dV/dt
 
 
 @cache
