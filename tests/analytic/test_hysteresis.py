@@ -180,6 +180,10 @@ def test_exponentials_follow_the_logarithm():
         coarse, fine = (exponentials(LogCreep(rate, 0.1), (0.01, 1000.0), per_decade=count) for count in (1, 2))
         assert coarse.error < 0.03 * abs(rate)
         assert fine.error < 0.001 * abs(rate)
+        times = np.geomspace(0.01, 1000.0, 4321)
+        for fit in (coarse, fine):
+            away = np.max(np.abs(fit.creep.step_response(times)[:, 0] - LogCreep(rate, 0.1).at(times)))
+            np.testing.assert_allclose(fit.error, away, rtol=0.01)
         assert np.all(np.sign(rate) * fine.creep.gains >= 0.0)
 
 

@@ -61,6 +61,7 @@ def test_range_and_speed_are_both_reached_and_counted():
     found = simulate(known, stepped(known, 150e-6, 2000))
     assert np.any(found.saturated > 0.01)
     assert np.any(found.slewing > 0.01)
+    np.testing.assert_allclose(found.saturated + found.slewing, np.mean(found.given != found.asked, axis=0), rtol=1e-12)  # one or the other
     assert np.max(found.given) == np.max(known.amplifiers.high[:3])
     assert np.nanmax(found.volts) == pytest.approx(1000.0, rel=1e-12)
 
@@ -225,6 +226,8 @@ def test_what_goes_the_other_way_first_is_undershoot():
         assert figures.settling[0] == pytest.approx(4.0 * known.step, rel=1e-12)
         late = step_figures(given, 0.02, start=2.0 * known.step)
         assert (late.overshoot[0], late.undershoot[0]) == pytest.approx((0.3, 0.0), rel=1e-12)
+        assert late.settling[0] == pytest.approx(2.0 * known.step, rel=1e-12)
+        assert step_figures(given, 0.02, start=5.0 * known.step).settling[0] == 0.0
 
 
 def test_jerk_limited_steps_ring_less_than_steps_at_once():

@@ -315,6 +315,8 @@ def test_errors_that_were_not_estimated_are_unknown() -> None:
     assert {row.trust for row in rows} == {None}
     assert all(row.fea_error is None and "error was not estimated" in row.reason for row in rows)
     assert verdict(rows).startswith("No verdict.")
+    assert Converged(None, {"gain": 1e-4}, 2).error == 1e-4
+    assert Converged(None, {"gain": 1e-4}, 2, unestimated=("loss",)).error == np.inf  # one that is not known is no accuracy reached
 
 
 def test_a_mode_without_a_partner_has_no_theory() -> None:
