@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.cautions import defaults
 from flexstage.analysis.trust import Trust
+from flexstage.analysis.units import units
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.record import walk
@@ -25,8 +27,9 @@ from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.roots import Roots
 from flexstage.solid.hinges import distinct_hinges, solid_hinges
+from flexstage.solid.resolution import Converged
 from flexstage.solid.tables import verification_table
-from flexstage.solid.verification import Row, Verification, departures, hinge_rows, verdict
+from flexstage.solid.verification import Row, Verification, departures, hinge_rows, unit_rows, verdict
 from flexstage.spatial.frame import transport
 from tests.models.solid_studies import softened
 
@@ -196,6 +199,7 @@ def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
         (101.0, None, 0.2, Trust.UNCLEAR),
         (110.0, None, 0.001, Trust.FEA),
         (110.0, 101.0, 0.001, Trust.CALIBRATED),
+        (110.0, 102.5, 0.01, Trust.CALIBRATED),
         (110.0, 108.0, 0.001, Trust.FEA),
         (110.0, 101.0, 0.06, Trust.UNCLEAR),
     ],
@@ -204,6 +208,15 @@ def test_trust(theory: float, calibrated_value: float | None, error: float, trus
     row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
     assert row.trust is trust
     assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
+
+
+def test_a_loss_is_known_as_well_as_the_gain_that_it_is_the_rest_of() -> None:
+    """1 - g to 1 % of g, which is 24 % of a loss of 0.04."""
+    theory = units(double_triangle(), omissions=False)
+    found = SimpleNamespace(figures={"gain": 0.96}, loss=0.04)
+    gain, loss = unit_rows(double_triangle(), theory, Converged({"vertical": found}, {"vertical: gain": 0.01}, 3))  # pyright: ignore[reportArgumentType]
+    assert (gain.figure, gain.fea_error, loss.figure) == ("gain", 0.01, "loss")
+    assert loss.fea_error == pytest.approx(0.24, rel=1e-9)
 
 
 @pytest.mark.parametrize(
