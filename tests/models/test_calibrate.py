@@ -22,7 +22,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.calibration import substitute_parts
+from flexstage.solid.calibration import stand_ins, substitute_parts
 from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
 from flexstage.solid.fea.piece import span
 from flexstage.solid.fea.roots import Roots
@@ -154,6 +154,23 @@ def test_tags_of_the_drawn_hinge_follow_it() -> None:
     own = {key: tag for key, tag in stage.tags.items() if key.startswith("parts.neck.")}
     assert own
     assert {key.replace("parts.neck.", "parts.neck-drawn."): tag for key, tag in own.items()}.items() <= after.tags.items()
+
+
+def test_a_calibrated_hinge_has_the_symmetry_of_the_drawn_one() -> None:
+    """What a mesh adds at random goes: reflected across y and z a hinge is itself, so that only y and rz, and z and ry, may be coupled."""
+    random = np.random.default_rng(5)
+
+    def uneven(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
+        found = softened(1.0)(forms)
+        scale = {name: np.sqrt(np.diag(each.compliance)) for name, each in found.items()}
+        rough = {name: 1e-3 * np.outer(each, each) * random.standard_normal((6, 6)) for name, each in scale.items()}
+        return {name: replace(each, compliance=each.compliance + rough[name] + rough[name].T) for name, each in found.items()}
+
+    apart = np.ones((6, 6), dtype=bool)
+    apart[range(6), range(6)] = apart[[1, 5, 2, 4], [5, 1, 4, 2]] = False
+    parts = stand_ins(solid_hinges(double_triangle(), uneven))
+    assert len(parts) == 6
+    assert not any(np.any(np.array(each.compliance)[apart]) for each in parts.values())
 
 
 def test_what_cannot_be_told_from_the_blocks_keeps_beam_theory() -> None:

@@ -45,8 +45,8 @@ def remaining(changes: Iterable[float]) -> float:
     r = d_n / d_(n-1), at most 0.8: a geometric series where it converges slowly, and the last change, which overestimates, where it does
     not. Infinite without any change. An estimate, not a bound.
 
-    >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), remaining([0.4]), remaining([])
-    (0.1, 0.9, 0.4, inf)
+    >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
+    (0.1, 0.9, 1.6, 0.4, inf)
     """
     known = list(changes)
     if not known:
