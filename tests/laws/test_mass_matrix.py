@@ -12,7 +12,7 @@ from flexstage.analysis.mass_matrix import mass_matrix
 from flexstage.analysis.statics import freedom_stiffness, statics
 from flexstage.cases.registry import case
 from flexstage.mechanism.expand import expand
-from flexstage.mechanism.moving_mass import carried_masses
+from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.static import static_gain
@@ -52,6 +52,17 @@ def test_the_mass_at_a_point_is_that_at_the_reference_carried_there(drawn):
         expected = carry.T @ getattr(whole, name).values @ carry
         scale = np.max(in_metres(expected))
         np.testing.assert_allclose(in_metres(getattr(chuck, name).values), in_metres(expected), atol=tolerance * scale, rtol=0)
+
+
+def test_a_payload_turns_with_its_own_inertia():
+    """What it adds to the energy of a twist: m |v + w x r|^2 / 2 and w J w / 2, written out."""
+    bare = replace(case("parallelogram"), payloads={})
+    body = expand(bare).bodies["platform"]
+    added = moving_inertia(replace(bare, payloads={"load": LOAD}), body) - moving_inertia(bare, body)
+    speed = TWIST[:3] + np.cross(TWIST[3:], np.array(LOAD.at) - body.reference)
+    x, y, z = TWIST[3:]
+    own = 1e-4 * x**2 + 2e-4 * y**2 + 1.5e-4 * z**2 - 2.0 * 2e-5 * x * y
+    assert TWIST @ added @ TWIST == pytest.approx(0.7 * speed @ speed + own, rel=1e-12)
 
 
 @given(platforms())
