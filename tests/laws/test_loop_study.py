@@ -47,7 +47,7 @@ from flexstage.control.study.setup import (
 )
 from flexstage.control.study.stacks import stacks_of, sweep_stacks
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.tables import step_table
+from flexstage.control.tables import margin_table, step_table
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
@@ -92,6 +92,11 @@ def test_margins_are_marked_where_the_open_loop_has_them() -> None:
     for spot in spots:
         opened = 1.0 / found.curves.response.at(np.array([spot.x]))[0, 0, 0] - 1.0
         assert spot.y == pytest.approx(abs(opened), rel=1e-6)
+    told = dict(zip(*margin_table(found).texts(), strict=True))
+    assert found.margins is not None
+    own = found.margins.of("x")
+    assert float(told["delay margin [ms]"]) == pytest.approx(1e3 * own.delay.value, rel=1e-3)
+    assert float(told["phase margin [deg]"]) == pytest.approx(180.0 / np.pi * own.phase.value, rel=1e-3)
 
 
 def test_how_far_small_displacements_hold_is_told_of_what_is_simulated() -> None:

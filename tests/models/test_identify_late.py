@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.lateness import common_delay
 from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role
+from flexstage.experiment.tables import identified_table
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 
@@ -53,6 +55,9 @@ def test_modes_at_uneven_lines_are_those_of_the_truth(lines: str, seconds: float
     assert np.sqrt(np.mean(scores(found) ** 2)) < 2.0  # 6 numbers: chi-square passes that once in 1500
     assert found.delay == pytest.approx(seconds, abs=3e-6)
     assert abs(found.delay - seconds) <= 4.0 * found.delay_deviation
+    told = re.findall(r"come (\S+) ms late \(95 %: \+-(\S+) ms\)", " ".join(identified_table(found).notes))
+    expected = [(1e3 * found.delay, 1.96e3 * found.delay_deviation)] if seconds else []
+    assert [tuple(map(float, each)) for each in told] == [pytest.approx(each, rel=0.05) for each in expected]
 
 
 @pytest.mark.full
