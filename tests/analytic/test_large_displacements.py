@@ -176,6 +176,16 @@ def test_bodies_one_by_one_warm_the_stage_as_all_of_it_together():
     assert [str(each.where) for each in check(replace(stage, temperatures={"platfrom": 1.0}))] == ["temperatures.platfrom"]
 
 
+@pytest.mark.parametrize("ends", [("ground", "platform"), ("platform", "ground")])
+def test_a_leaf_between_bodies_of_two_temperatures_grows_with_their_mean(ends):
+    """Clamped at the cold ground, 100 mm to the platform: alpha L T / 2, whichever end is called the first."""
+    link = Link(ends, "leaf", at=(0.05, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    leaf, warm = replace(THIN, length=0.1), replace(SOFT, expansion=1e-5)
+    whole = replace(stage(leaf, {"platform": body(0.1, 0.0, 0.0)}, {"leaf": link}, warm), ground="none", temperatures={"platform": 3.0})
+    moved = equilibrium(nonlinear(whole), weight=0.0).twist()
+    np.testing.assert_allclose(moved, [1e-5 * 0.1 * 1.5, 0.0, 0.0, 0.0, 0.0, 0.0], rtol=1e-6, atol=1e-12)
+
+
 def test_a_heated_column_buckles_at_its_temperature():
     """Clamped, its other end free to go sideways but not along: alpha dT = pi^2 I / (A L^2), 1/12 of (pi t / L)^2."""
     warm = replace(SOFT, expansion=1e-6)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 
 import flexstage as fs
+from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import drift
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
@@ -16,14 +17,15 @@ from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.mechanism.mount import mount
+from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped as drawn_lumped
-from flexstage.parts.body import Block, Body, Cylinder, Sphere
+from flexstage.parts.body import Block, Body, Cylinder, Inertia, Payload, Sphere
 from flexstage.parts.material import Material
-from flexstage.spatial.frame import Frame, axes
+from flexstage.spatial.frame import Frame, axes, spatial_rotation
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import mechanisms, moved, turns
@@ -67,6 +69,20 @@ def test_a_stage_on_a_stage_is_both_drawn_in_one_piece(lower, upper, where):
     drawn += [name if name == PLATFORM else f"{name}-" for name in upper.bodies]
     assert same(comparable(lumped(both), called), comparable(lumped(by_hand(lower, upper, *where)), drawn))
     assert set(expand(both).gauges) == {f"z/{name}" for name in lower.gauges} | {f"fine/{name}" for name in upper.gauges}
+
+
+def test_loads_of_a_carried_stage_turn_with_it():
+    """Its forces and the inertia of what it carries: the platform moves, and weighs, as it does by itself, turned."""
+    load = Payload(PLATFORM, 0.7, (0.01, 0.03, -0.02), Inertia(1e-4, 2e-4, 1.5e-4, xy=2e-5, xz=-1e-5, yz=3e-5))
+    push = fs.Force(PLATFORM, (0.01, 0.02, 0.03), (1.0, -2.0, 3.0))
+    alone = replace(parallelogram(), gravity=(0.0, 0.0, 0.0), payloads={"load": load}, forces={"push": push})
+    turn, shift = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.0, 0.8, -0.6]]), np.array([0.1, 0.2, 0.3])
+    both = mount(replace(Mechanism("bare"), gravity=(0.0, 0.0, 0.0)), "fine", alone, pose=pose_of(turn, shift))
+    there, here = (deflection(each, drawn_lumped(each)).total for each in (both, alone))
+    whole = spatial_rotation(turn)
+    np.testing.assert_allclose(there, whole @ here, atol=1e-9 * np.max(np.abs(here)))
+    heavy, drawn = (moving_inertia(each, expand(each).bodies[PLATFORM]) for each in (both, alone))
+    np.testing.assert_allclose(heavy, whole @ drawn @ whole.T, atol=1e-12 * np.max(np.abs(drawn)))
 
 
 def test_patterns_and_departures_of_a_carried_stage_go_with_it():
