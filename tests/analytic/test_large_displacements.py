@@ -102,6 +102,18 @@ def follow_chain(count: int) -> None:
     assert unstable_motions(held) == 0
 
 
+def test_a_body_that_has_turned_has_its_inertia_turned():
+    """About z by half a radian: J_xx = c^2 J_1 + s^2 J_2, J_xy = c s (J_1 - J_2), in small motions about the bent state."""
+    inertia = Inertia(1.0, 2.0, 4.0)
+    turning = Body(mass=1.0, inertia=inertia, centre=(1.0, 0.0, 0.0), reference=(1.0, 0.0, 0.0))
+    link = Link(("ground", "platform"), "leaf", at=(0.5, 0.0, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
+    state = equilibrium(nonlinear(stage(THIN, {"platform": turning}, {"leaf": link})), hold={"platform.rz": 0.5})
+    found = np.asarray(linearise(state).inertia["platform"].law).reshape(6, 6)[3:, 3:]
+    cos, sin = np.cos(0.5), np.sin(0.5)
+    xx, yy, xy = cos**2 + 2.0 * sin**2, sin**2 + 2.0 * cos**2, -cos * sin
+    np.testing.assert_allclose(found, [[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, 4.0]], atol=1e-9)
+
+
 def test_a_chain_of_flexures_is_one_flexure(monkeypatch: pytest.MonkeyPatch):
     """Without the zeros of its matrices; its own weight bends it as that of one flexure does.
 
