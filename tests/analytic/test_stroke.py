@@ -47,9 +47,10 @@ def test_what_is_beyond_theory_is_told():
     assert "strain" in told[0].what
 
 
-def test_stress_above_the_limit_of_the_material_is_told():
+@pytest.mark.parametrize("limits", [{"yield_stress": 1e8}, {"yield_stress": 1e9, "fatigue_limit": 1e8}])
+def test_stress_above_the_limit_of_the_material_is_told(limits: dict[str, float]):
     whole = guide()
-    weak = replace(whole, materials={name: replace(each, yield_stress=1e8) for name, each in whole.materials.items()})
+    weak = replace(whole, materials={name: replace(each, **limits) for name, each in whole.materials.items()})
     found = fs.stroke(fs.path(fs.nonlinear(weak), "platform.y", np.array([1e-4, 4e-3])))
     assert found.along.at("1", "stress") < 1e8 < found.along.at("2", "stress")
     assert "limit is 100 MPa" in found.cautions[0].what

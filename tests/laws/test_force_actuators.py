@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.base.scale import X, Y, Z
+from flexstage.cases.registry import case
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.incidence import deformation, layout
@@ -17,6 +18,9 @@ from flexstage.mechanism.restrict import restrict
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.equilibrium import equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.body import Body
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.material import Material
@@ -105,3 +109,13 @@ def test_what_forces_command():
             | {"coil": Link((GROUND, PLATFORM), "pusher", (0.0, 0.0, 0.0), along)},
         )
         assert ideal(stage).commanded == commanded
+
+
+def test_about_rest_a_force_passes_through_its_link_as_in_the_drawn_stage():
+    """What a coil's link bears per ampere: its force constant, less what the link's own stiffness takes."""
+    stage = case("voice-coil-stage")
+    about = linearise(equilibrium(nonlinear(stage), weight=0.0, stated=0.0))
+    wrench = tuple(f"motor.{name}" for name in FORCES)
+    found, expected = (static_gain(model, wrench, ("motor",)).values for model in (about, lumped(stage)))
+    assert abs(expected[0, 0]) == expand(stage).actuator("motor").force_constant
+    np.testing.assert_allclose(found, expected, atol=1e-9)
