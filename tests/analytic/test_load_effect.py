@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.deflection import deflection
 from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
 from flexstage.analysis.judge import judge
 from flexstage.analysis.load_effect import FELT, LoadEffect, felt_links, load_effect
@@ -116,6 +117,17 @@ def test_one_per_cent_is_felt(mass):
     assert found is not None
     assert abs(found.change) == pytest.approx(change, rel=0.02)
     assert (found.model is not None) == (change >= 0.01)
+
+
+@pytest.mark.parametrize(("limit", "known"), [(1.7, False), (2.2, True)])
+def test_a_deflection_that_weight_may_double_is_withheld(limit, known):
+    """At a load factor of 2 a push goes up to 1 / (1 - 1 / 2) times as far as in the drawn stage."""
+    stage = replace(upright(2.5), forces={"push": fs.Force("platform", (0.0, 0.0, 0.0), (0.01, 0.0, 0.0))})
+    assert float(stability(stage, fs.lumped(stage)).dead) == pytest.approx(2.0, rel=0.03)
+    drawn = abs(float(deflection(stage, fs.lumped(stage)).total[0]))
+    (verdict,) = judge(replace(stage, requirements={"deflection.x": f"at most {1e6 * limit * drawn:.9g} um"}))
+    assert (verdict.value is not None) == known
+    assert bool(verdict.passed) == known
 
 
 def test_a_bound_of_stiffness_is_twice_that_of_frequencies():
