@@ -15,7 +15,7 @@ from flexstage.analysis.judge import bench_of, judge
 from flexstage.analysis.lost_motion import lost_motion
 from flexstage.analysis.measures import MEASURES, Measure, loss, stroke
 from flexstage.analysis.modes import modes
-from flexstage.analysis.requirements import Sense, known_keys, requirements
+from flexstage.analysis.requirements import Sense, asked_factor, known_keys, requirements
 from flexstage.analysis.statics import statics
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.strength import hinge_stress
@@ -240,3 +240,12 @@ def test_only_what_is_asked_is_worked_out(stage, monkeypatch):
     for name in ("standing", "drawn", "kinematics", "modes", "lost_motion", "hinge_stress", "drift"):
         monkeypatch.setattr(bench, name, refused)
     assert judge(replace(stage, requirements={"mass": "at most 14 kg"}))[0].passed
+
+
+@pytest.mark.parametrize(
+    ("lines", "factor"),
+    [({"buckling.factor": 1.5, "buckling": 3, "safety": 9}, 3.0), ({"safety": 2.5}, 2.5), ({}, 1.0)],
+)
+def test_a_factor_is_asked_for_by_the_hardest_line_on_buckling_else_by_safety(lines: dict[str, float], factor: float) -> None:
+    asked = {key: f"at least {value}" for key, value in lines.items()}
+    assert asked_factor(replace(case("parallelogram"), requirements=asked)) == factor
