@@ -25,7 +25,7 @@ def gap(one: Outline, other: Outline) -> float:
     turns = [outline.frame.rotation for outline in (one, other)]
     normals = [*turns[0].T, *turns[1].T, *(np.cross(a, b) for a in turns[0].T for b in turns[1].T)]
     for disc, box in ((one, other), (other, one)):
-        if disc.is_round:
+        if disc.is_cylinder:
             signs = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=3)))
             arms = box.frame.position + (signs * box.size) @ box.frame.rotation.T - disc.frame.position
             normals += list(arms - np.outer(arms @ disc.frame.rotation[:, 0], disc.frame.rotation[:, 0]))
@@ -51,7 +51,7 @@ def holds(solid: PlacedSolid, end: np.ndarray, outline: Outline, outward: np.nda
     """Whether a face of the solid, looking at the link, holds the whole end face of its outline."""
     y, z = (0.5 * outline.size[axis] * outline.frame.rotation[:, axis] for axis in (1, 2))
     ring = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
-    rim = [np.cos(a) * y + np.sin(a) * z for a in ring] if outline.is_round else [y + z, y - z, z - y, -y - z]
+    rim = [np.cos(a) * y + np.sin(a) * z for a in ring] if outline.is_cylinder else [y + z, y - z, z - y, -y - z]
     for middle, turn, half, is_round in faces(solid):
         arms = (end + np.array(rim) - middle) @ turn
         flush = np.allclose(turn[:, 0], -outward, atol=1e-9) and np.abs(arms[:, 0]).max() < FLUSH
@@ -118,7 +118,7 @@ def test_stacks_fit_the_bodies_they_pass() -> None:
     for name, (link, outline) in drawn_links(assembly).items():
         if is_actuator(link.part):
             wide = casings[name[:2] in ("B1", "B2", "B3")]
-            cased = Outline(name, outline.frame, np.array([outline.size[0], wide, wide]), is_round=True)
+            cased = Outline(name, outline.frame, np.array([outline.size[0], wide, wide]), is_cylinder=True)
             for body in assembly.bodies.values():
                 for solid in outlines(Assembly({body.name: body}, {}, {}, {}, {}, {})):
                     assert body.name in link.joins or gap(cased, solid) >= AROUND_CASINGS - FLUSH, (name, solid.name)

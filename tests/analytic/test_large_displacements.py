@@ -18,7 +18,6 @@ from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import DEFAULT, Resolution
 from flexstage.beams.flexure.strip import secant, stiffness
-from flexstage.beams.section import cowper_rectangle, rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
@@ -37,6 +36,7 @@ from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
+from flexstage.parts.section import Rectangle, cowper_rectangle
 from tests.analytic.shooting import cross_pivot
 
 SOFT = Material(young=1.0, poisson=0.3, density=0.0)
@@ -273,7 +273,7 @@ def test_a_strip_of_elements_stiffens_so_too():
 def test_a_twisted_strip_stiffens_and_shortens(kind: dict[str, LeafSection | LeafEnds]):
     """M = (G J + N I_p / A) k + E t b^5 k^3 / 360 (H. Wagner, 25 Jahre TH Danzig, 1929), and k^2 I_p / (2 A) shorter."""
     strip = Leaf("soft", length=1.0, thickness=2e-4, width=0.05, **kind)
-    section, polar = rectangle(2e-4, 0.05), (0.05**2 + 4e-8) / 12.0
+    section, polar = Rectangle(2e-4, 0.05), (0.05**2 + 4e-8) / 12.0
     twist, pull = np.array([0.05, 0.5, 0.5]), np.array([0.0, 0.0, 1e-10])
     found = equilibrium(cantilever(strip), {"platform.fx": pull}, hold={"platform.rx": twist})
     saint_venant, wagner = section.torsion / 2.6 * twist, 2e-4 * 0.05**5 * twist**3 / 360.0
@@ -334,7 +334,7 @@ def test_a_cross_pivot_turns(crossing: float, moment: list[float], shift: list[f
 )
 def test_a_cross_pivot_is_where_shooting_finds_it(crossing: float, angle: float, load: tuple[float, float]):
     """Moment and place, its leaves stretched and sheared as much as ours; literature's last digits depend on what stretches there."""
-    section = rectangle(1e-4, 1e-2, cowper_rectangle(0.3))
+    section = Rectangle(1e-4, 1e-2, cowper_rectangle(0.3))
     rigidity = section.inertia_z
     moment, place = cross_pivot(angle, crossing, np.array(load), rigidity / section.area, 2.6 * rigidity * section.shear / section.area)
     pushed = {"platform.fx": load[0] * rigidity, "platform.fy": load[1] * rigidity}
@@ -378,7 +378,7 @@ def misalignment() -> tuple[Nonlinear, Callable[[Number], dict[str, Number]]]:
         name: Link((name, "platform"), "leaf", at=(0.5 * length, side * spacing, 0.0), along=(1.0, 0.0, 0.0), bends=Z)
         for name, side in (("ground", -0.5), ("foot", 0.5))
     }
-    section = rectangle(thickness, width)
+    section = Rectangle(thickness, width)
     expected = 4.0 * np.pi * np.sqrt(section.inertia_z * section.torsion / 2.6) / section.inertia_y
     fixed: dict[str, Number] = {f"foot.{name}": 0.0 for name in ("x", "y", "z", "rx", "rz")}
     return nonlinear(stage(leaf, bodies, links)), lambda share: {**fixed, "foot.ry": expected * share}
@@ -538,6 +538,6 @@ def test_a_bent_strip_is_stretched_across_its_width():
 def test_twist_is_sheared_at_its_faces():
     """T t / J of Saint-Venant's torsion, times sqrt(3) by von Mises."""
     leaf = replace(THIN, thickness=1e-3, width=0.1)
-    torsion = float(rectangle(1e-3, 0.1).torsion)
+    torsion = float(Rectangle(1e-3, 0.1).torsion)
     found = strains(equilibrium(cantilever(leaf), {"platform.mx": 1e-6 * torsion}))
     assert found.stress[0] == pytest.approx(np.sqrt(3.0) * 1e-9, rel=1e-3)

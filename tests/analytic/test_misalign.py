@@ -9,9 +9,9 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.misalign import critical_misalignments, misalign, misalignments, seated
-from flexstage.beams.section import rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
+from flexstage.parts.section import Rectangle
 from flexstage.show.displaced import misalign_report, misalignments_report
 from flexstage.show.viewer.course import misalign_data
 from flexstage.spatial.rotation import exponential
@@ -26,7 +26,7 @@ def slender(turn: np.ndarray | None = None) -> fs.Mechanism:
 
 def limit() -> float:
     """4 pi sqrt(E I G J) / (E I_y) [rad], any length: uniform bending in the stiff plane until the leaves twist away."""
-    section = rectangle(SLENDER.thickness, SLENDER.width)
+    section = Rectangle(SLENDER.thickness, SLENDER.width)
     return 4.0 * np.pi * np.sqrt(section.inertia_z * section.torsion / 2.6) / section.inertia_y
 
 
@@ -61,7 +61,7 @@ def test_beyond_it_no_stable_state_is_one_of_the_guide():
 def test_below_it_both_leaves_bend_uniformly():
     """M = E I_y phi / (2 L), opposite in the two, as nothing else holds the platform."""
     found = misalign(slender(), "left", "ry", 0.5 * limit(), points=3)
-    moment = 200e9 * rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.5 * limit() / (2.0 * SLENDER.length)
+    moment = 200e9 * Rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.5 * limit() / (2.0 * SLENDER.length)
     assert found.along.at("3", "load") == pytest.approx(moment, rel=1e-3)
     assert np.abs(found.loads.values[:, 4]) == pytest.approx([moment, moment], rel=1e-3)
     assert found.along.values[:, -1].tolist() == [0.0, 0.0, 0.0]
@@ -81,7 +81,7 @@ def test_what_is_not_held_twice_follows_freely():
 def test_of_all_copies_the_loads_are_told_and_the_first_to_give_way_is_played():
     """M = E I_y phi / (2 L) of either leaf at a size that all bear; the worst goes to where it gives way."""
     found = misalignments(slender(), ("ry",), size=0.1 * limit())
-    moment = 200e9 * rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.1 * limit() / (2.0 * SLENDER.length)
+    moment = 200e9 * Rectangle(SLENDER.thickness, SLENDER.width).inertia_y * 0.1 * limit() / (2.0 * SLENDER.length)
     assert found.load.values[:, 0] == pytest.approx([moment, moment], rel=1e-3)
     assert found.worst is not None
     assert found.worst.along.values[-1, 0] == found.worst.critical == np.min(found.critical.values)

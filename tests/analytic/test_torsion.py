@@ -7,11 +7,11 @@ import pytest
 import scipy
 
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import rectangle, rectangle_torsion
 from flexstage.beams.torsion import constrained_twist
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Straight
+from flexstage.parts.section import Rectangle, rectangle_torsion
 from tests.analytic.hinges import STEEL, UNIT, diagonal
 
 
@@ -59,7 +59,7 @@ def test_a_hinge_of_many_is_told_as_if_alone():
 
     def twist(which):
         points = stations(Straight(lengths[which]), np.full(len(lengths[which]), 0.001))
-        section = rectangle(
+        section = Rectangle(
             np.broadcast_to(0.001 * one[which], points.growth.shape), np.broadcast_to(0.01 * one[which], points.growth.shape)
         )
         return constrained_twist(section, points, 2.6 * one[which], one[which])
@@ -101,7 +101,7 @@ def test_wide_hinges_bend_strip_by_strip(profile):
 
 
 def twisting(thickness, points):
-    section = rectangle(thickness, np.full_like(thickness, 0.01))
+    section = Rectangle(thickness, np.full_like(thickness, 0.01))
     return constrained_twist(section, points, np.full(1, UNIT.young), np.full(1, UNIT.shear))
 
 

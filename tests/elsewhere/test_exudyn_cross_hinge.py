@@ -30,8 +30,8 @@ from exudyn.itemInterface import (
 import flexstage as fs
 from flexstage.base.number import Array
 from flexstage.base.scale import Z
-from flexstage.beams.section import cowper_rectangle, rectangle
 from flexstage.parts.leaf import LeafSection
+from flexstage.parts.section import Rectangle, cowper_rectangle
 from flexstage.spatial.rotation import exponential, logarithm
 
 STEEL = fs.Material(young=200e9, poisson=0.3, density=0.0)
@@ -84,7 +84,7 @@ def theirs(wrench: Array, count: int) -> Array:
 
 
 def _leaf(mbs: exu.MainSystem, bodies: tuple[int, int], angle: float, height: float, count: int) -> None:
-    section = rectangle(LEAF.thickness, LEAF.width, cowper_rectangle(0.3))
+    section = Rectangle(LEAF.thickness, LEAF.width, cowper_rectangle(0.3))
     along, across = 200e9, 200e9 / 2.6
     beam = exu.BeamSection()
     lateral = across * section.area / section.shear

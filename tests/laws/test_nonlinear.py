@@ -13,7 +13,6 @@ from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import Resolution, leaf_law
 from flexstage.beams.leaf import leaf_diagonal, torsional_compliance
-from flexstage.beams.section import rectangle
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.parallelogram import parallelogram
@@ -32,6 +31,7 @@ from flexstage.parts.given import Given as Matrix
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
+from flexstage.parts.section import Rectangle
 from flexstage.spatial.frame import spatial_rotation
 from flexstage.spatial.rotation import exponential, exponential_rate, magnus
 
@@ -123,7 +123,7 @@ def test_ends_that_may_warp_twist_by_the_rigidity_alone(ends: LeafEnds, section:
     expected = small.stiffness_matrix[:6, :6]
     scale = np.sqrt(np.diag(expected))
     assert np.max(np.abs(found - expected) / scale / scale[:, None]) < 3e-3
-    torsion = leaf_diagonal(free, STEEL)[3] * STEEL.shear * rectangle(LEAF.thickness, LEAF.width).torsion
+    torsion = leaf_diagonal(free, STEEL)[3] * STEEL.shear * Rectangle(LEAF.thickness, LEAF.width).torsion
     assert torsion == pytest.approx(LEAF.length, rel=1e-12)
     bends = leaf_diagonal(replace(free, ends=LeafEnds.CLAMPED), STEEL)
     assert np.delete(leaf_diagonal(free, STEEL), 3) == pytest.approx(np.delete(bends, 3), rel=1e-15)

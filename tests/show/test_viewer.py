@@ -144,7 +144,7 @@ def moments(part: Shaped, bend: Bend, column: int) -> tuple[Array, Array]:
     along = stations[0] + places * (stations[-1] - stations[0])
     height, width = (np.interp(along, stations, [getattr(each, side) for each in sections]) for side in ("height", "width"))
     thin = np.minimum(height, width)
-    inertia = np.pi * height**4 / 64.0 if part.throat.is_round else height * width * thin**2 / 12.0
+    inertia = np.pi * height**4 / 64.0 if part.is_axisymmetric else height * width * thin**2 / 12.0
     return places, np.diff(bend.values[:, column]) / np.diff(bend.shares) * inertia
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.flexure.strip import secant
-from flexstage.beams.section import rectangle
 from flexstage.models.nonlinear.critical import critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.parts.section import Rectangle
 from tests.analytic.test_large_displacements import (
     RIGIDITY,
     cantilever,
@@ -98,7 +98,7 @@ def _strip() -> Section:
 
 
 def _pivot() -> Section:
-    angle, rigidity = np.array([0.1, 0.3]), rectangle(1e-4, 1e-2).inertia_z
+    angle, rigidity = np.array([0.1, 0.3]), Rectangle(1e-4, 1e-2).inertia_z
     found = equilibrium(pivot(0.5), hold={"platform.rz": angle})
     pulled = equilibrium(pivot(0.5), {"platform.fx": np.array([-1.0, 1.0, 2.0]) * rigidity}, hold={"platform.rz": 1e-4})
     shift = np.hypot(*found.displacement()[:, :2].T)

@@ -3,6 +3,7 @@
 from flexstage.base.register import Register
 from flexstage.beams.amplified import AMPLIFIED, STEPPER
 from flexstage.beams.contact import CONTACT
+from flexstage.beams.cruciform import CRUCIFORM
 from flexstage.beams.force_actuator import FORCE_ACTUATOR
 from flexstage.beams.given import GIVEN
 from flexstage.beams.law import PartLaw
@@ -18,6 +19,7 @@ from flexstage.beams.spring import SPRING
 from flexstage.beams.voice_coil import VOICE_COIL
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.contact import Contact
+from flexstage.parts.cruciform import Cruciform
 from flexstage.parts.force_actuator import ForceActuator
 from flexstage.parts.given import Given
 from flexstage.parts.leaf import Leaf
@@ -31,7 +33,7 @@ from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Membrane: MEMBRANE}
+_HINGES = {Notch: NOTCH, Neck: NECK, Leaf: LEAF, ReinforcedLeaf: REINFORCED_LEAF, Rod: ROD, Membrane: MEMBRANE, Cruciform: CRUCIFORM}
 _STATED = {Given: GIVEN, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
 _OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}

@@ -8,9 +8,9 @@ import numpy as np
 
 from flexstage.base.number import Array, Number
 from flexstage.beams.quadrature import Stations
-from flexstage.beams.section import Section
 from flexstage.beams.torsion import Twisting, constrained_twist, free_twist
 from flexstage.parts.material import Material
+from flexstage.parts.section import Section
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,17 +43,17 @@ def beam(points: Stations, section: Section, material: Material) -> Beam:
     """The beam of a section given at stations, its ends kept from warping.
 
     >>> from flexstage.beams.quadrature import stations
-    >>> from flexstage.beams.section import rectangle
+    >>> from flexstage.parts.section import Rectangle
     >>> from flexstage.parts.profile import Straight
     >>> steel = Material(young=200e9, poisson=0.25, density=7750.0)
-    >>> bar = beam(stations(Straight(0.1), 0.01), rectangle(np.full(25, 0.01), np.full(25, 0.01)), steel)
+    >>> bar = beam(stations(Straight(0.1), 0.01), Rectangle(np.full(25, 0.01), np.full(25, 0.01)), steel)
     >>> round(float(bar.diagonal()[0] * 200e9 * 1e-4), 12)
     0.1
     """
     young, shear = _column(material.modulus), _column(material.shear)
     across = shear_across(material)
     even = shear if across is None else 2.0 / (1.0 / shear + 1.0 / across)
-    twisting = free_twist(section, even) if section.is_round else constrained_twist(section, points, young, shear)
+    twisting = free_twist(section, even) if section.warping is None else constrained_twist(section, points, young, shear)
     return Beam(
         points, section, flexibility(section, young, shear, twisting, across), inertia(section, _column(material.density)), twisting
     )
@@ -67,7 +67,7 @@ def shear_across(material: Material) -> Array | None:
 def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting, across: Array | None = None) -> Array:
     """Flexibility per length (..., m, 6) of a section; moduli of shape (..., 1), `across` that of shear along y where it is another one.
 
-    >>> from flexstage.beams.section import circle
+    >>> from flexstage.parts.section import circle
     >>> section = circle(np.ones(1), 1.0)
     >>> flexibility(section, np.ones(1), np.ones(1), free_twist(section, np.ones(1))).round(4).tolist()
     [[1.2732, 1.2732, 1.2732, 10.1859, 20.3718, 20.3718]]
@@ -81,8 +81,8 @@ def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting
 def inertia(section: Section, density: Array) -> Array:
     """Inertia per length (..., m, 6) of a section, rotary inertia included; density of shape (..., 1).
 
-    >>> from flexstage.beams.section import rectangle
-    >>> inertia(rectangle(np.ones(1), np.ones(1)), np.array([12.0])).tolist()
+    >>> from flexstage.parts.section import Rectangle
+    >>> inertia(Rectangle(np.ones(1), np.ones(1)), np.array([12.0])).tolist()
     [[12.0, 12.0, 12.0, 2.0, 1.0, 1.0]]
     """
     along = density * section.area

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.beams.section import PARABOLIC
+from flexstage.parts.section import PARABOLIC
 
 
 def paros_weisbord_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:

@@ -152,7 +152,7 @@ def beam_of(part: Part, material: Material | None) -> Beam:
     """The part as a straight beam; raises `DesignError` where it needs a material and has none, and where it is not known as a beam.
 
     >>> from flexstage.parts.piezo import Piezo
-    >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_round
+    >>> beam_of(Piezo(stroke=1e-4, stiffness=1e7, length=0.1, diameter=0.01), None).section.is_axisymmetric
     True
     """
     known = _law_of(part)

@@ -59,7 +59,8 @@ class PartLaw:
     that is not the beam's own (plates). A part without a beam states its whole `compliance` (..., 6, 6), or its `stiffness` (..., 6, 6)
     where that may be singular or negative in some freedoms (then its compliance need not exist; `material_stiffness` where it is that of a
     part and its material), and `mass` (..., 12, 12), all about its centre. `damping` is the viscous one (..., 6, 6) [N s/m] of a part that
-    states it, about its centre too. `concentration` is the factor of its notches on the nominal stress; without it, or where it is `None`,
+    states it, about its centre too. `twisting_load` is the compression [N] at which a column of this kind twists, below Euler's
+    load. `concentration` is the factor of its notches on the nominal stress; without it, or where it is `None`,
     its stress is unknown. `ranges` are those in which the law was compared with elasticity, `family` names the fitted laws that tell its
     error. `held` are the modes it has while its ends are held, as many as it asks for, at stations of its half length from -1 to 1.
     """
@@ -71,6 +72,7 @@ class PartLaw:
     material_stiffness: Callable[[Any, Material], Array] | None = None
     mass: Callable[[Any], Array] | None = None
     damping: Callable[[Any], Array] | None = None
+    twisting_load: Callable[[Any, Material], Number] | None = None
     concentration: Callable[[Any], Number | None] | None = None
     ranges: Callable[[Any], tuple[Range, ...]] = _no_ranges
     family: Callable[[Any], str | None] = _no_family

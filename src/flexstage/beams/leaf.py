@@ -10,11 +10,11 @@ from flexstage.beams.held import Bending, Held, Plate, Torsion, held_bending, he
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, stations
-from flexstage.beams.section import Section, cowper_rectangle, rectangle
 from flexstage.beams.torsion import Twisting, decays, free_twist
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
+from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
@@ -27,7 +27,7 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
     """
     points = stations(Straight(part.length), part.thickness)
     thickness, width = np.asarray(part.thickness)[..., None] + points.growth, np.asarray(part.width)[..., None]
-    section = rectangle(thickness, width, np.asarray(cowper_rectangle(material.contraction))[..., None])
+    section = Rectangle(thickness, width, np.asarray(cowper_rectangle(material.contraction))[..., None])
     young, shear = np.asarray(material.modulus)[..., None], np.asarray(material.shear)[..., None]
     twisting = free_twist(section, shear) if part.warps else _twisting(part, points, section, material)
     density = np.asarray(material.density)[..., None]
@@ -75,7 +75,7 @@ def torsional_compliance(part: Leaf, material: Material) -> Number:
     >>> round(float(1.0 / torsional_compliance(thin, soft) / (0.5e-15 / 3.0)), 4)  # reference B6, closed form
     1.3032
     """
-    torsion = rectangle(part.thickness, part.width).torsion
+    torsion = Rectangle(part.thickness, part.width).torsion
     free = part.length / (material.shear * torsion)
     if part.warps:
         return free
@@ -104,7 +104,7 @@ def leaf_held(part: Leaf, material: Material, places: Array) -> tuple[Held, ...]
     >>> round(float(bending.squares[0] ** 0.5 / (22.3733 * (200e9 * 0.0002**2 / 12.0 / 7750.0 / 0.1**4) ** 0.5)), 4)  # over a beam's
     1.0129
     """
-    section = rectangle(part.thickness, part.width, cowper_rectangle(material.contraction))
+    section = Rectangle(part.thickness, part.width, cowper_rectangle(material.contraction))
     density, is_plate = material.density, part.section is LeafSection.PLATE
     rigidity, shear = material.modulus * section.inertia_z, material.shear * section.area / section.shear
     plate = Plate(part.width, material.contraction) if is_plate else None

@@ -9,10 +9,10 @@ from flexstage.beams.beam import Beam, beam
 from flexstage.beams.law import PartLaw, Range
 from flexstage.beams.profiled import concentration, proportions
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import circle, cowper_circle, rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Circular, Straight
+from flexstage.parts.section import Rectangle, circle, cowper_circle
 
 
 def neck_beam(part: Neck, material: Material) -> Beam:
@@ -29,7 +29,7 @@ def neck_beam(part: Neck, material: Material) -> Beam:
         factor = np.asarray(cowper_circle(material.contraction))[..., None]
         return beam(points, circle(_grow(part.thickness, points.growth), factor), material)
     points = stations(part.profile, np.minimum(part.thickness, part.width))
-    return beam(points, rectangle(_grow(part.thickness, points.growth), _grow(part.width, points.growth)), material)
+    return beam(points, Rectangle(_grow(part.thickness, points.growth), _grow(part.width, points.growth)), material)
 
 
 def _grow(size: Number, growth: Array) -> Array:

@@ -8,10 +8,10 @@ from flexstage.beams.beam import Beam, beam
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.profiled import concentration, proportions
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Contour, Filleted, Straight
+from flexstage.parts.section import Rectangle
 
 
 def notch_beam(part: Notch, material: Material) -> Beam:
@@ -25,7 +25,7 @@ def notch_beam(part: Notch, material: Material) -> Beam:
     """
     points = stations(part.profile, part.thickness)
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
-    return beam(points, rectangle(thickness, np.asarray(part.width)[..., None]), material)
+    return beam(points, Rectangle(thickness, np.asarray(part.width)[..., None]), material)
 
 
 def _ranges(part: Notch) -> tuple[Range, ...]:

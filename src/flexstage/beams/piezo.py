@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,10 +10,17 @@ from flexstage.base.number import Number
 from flexstage.beams.beam import Beam, flexibility, inertia
 from flexstage.beams.law import PartLaw
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import circle, cowper_circle
 from flexstage.beams.torsion import free_twist
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Straight
+from flexstage.parts.section import Circle, circle, cowper_circle
+
+
+@dataclass(frozen=True, eq=False)
+class _Cased(Circle):
+    """A stack's ceramic in a casing: the second moment that its bending rigidity has."""
+
+    inertia_y: Number = 0.0
 
 
 def piezo_beam(part: Piezo) -> Beam:
@@ -31,10 +38,10 @@ def piezo_beam(part: Piezo) -> Beam:
     young = np.asarray(effective_modulus(part))[..., None]
     shear = young / (2.0 * (1.0 + np.asarray(part.poisson)[..., None]))
     density = np.asarray(part.mass / part.length)[..., None] / ceramic.area
-    cased = ceramic
+    cased: Circle = ceramic
     if part.bending_rigidity is not None:
         moment = np.asarray(part.bending_rigidity)[..., None] / young
-        cased = replace(ceramic, inertia_y=moment, inertia_z=moment, torsion=2.0 * moment)
+        cased = _Cased(ceramic.height, ceramic.width, ceramic.shear, moment)
     twisting = free_twist(cased, shear)
     return Beam(points, cased, flexibility(cased, young, shear, twisting), inertia(ceramic, density), twisting)
 

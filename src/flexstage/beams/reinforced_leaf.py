@@ -11,12 +11,12 @@ from flexstage.beams.beam import Beam, flexibility, inertia
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.plate import moment_factor, shear_factor
 from flexstage.beams.quadrature import Stations, in_series, stations
-from flexstage.beams.section import cowper_rectangle, rectangle
 from flexstage.beams.torsion import constrained_twist, free_twist
 from flexstage.parts.leaf import LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Circular, Straight
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+from flexstage.parts.section import Rectangle, cowper_rectangle
 
 
 def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
@@ -26,7 +26,7 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
     """
     points = _points(part)
     thickness = np.asarray(part.thickness)[..., None] + 2.0 * points.growth
-    section = rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.contraction))[..., None])
+    section = Rectangle(thickness, np.asarray(part.width)[..., None], np.asarray(cowper_rectangle(material.contraction))[..., None])
     young, shear, density = (np.asarray(each)[..., None] for each in (material.modulus, material.shear, material.density))
     twisting = free_twist(section, shear) if part.warps else constrained_twist(section, points, young, shear)
     return Beam(points, section, flexibility(section, young, shear, twisting), inertia(section, density), twisting)

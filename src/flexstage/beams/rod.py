@@ -9,10 +9,10 @@ from flexstage.beams.beam import Beam, beam
 from flexstage.beams.held import Bending, Held, Torsion, held_bending, held_twist
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import circle, cowper_circle
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
 from flexstage.parts.rod import Rod
+from flexstage.parts.section import circle, cowper_circle
 
 
 def rod_beam(part: Rod, material: Material) -> Beam:

@@ -12,8 +12,6 @@ from flexstage.beams.compliance import beam_of, law_of
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, inner
 
-_ODD = np.arange(1.0, 8.0, 2.0)
-
 
 @dataclass(frozen=True, eq=False)
 class Stress:
@@ -73,35 +71,21 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
 
 def _normal(beam: Beam, position: Array, load: Array) -> Array:
     """Largest normal stress (..., 2, m) at the stations -x and +x."""
-    section = beam.section
-    thickness, width = _row(section.thickness), _row(section.width)
-    about_z = magnitude(load[5] - position * load[1]) / _row(section.inertia_z)
-    about_y = magnitude(load[4] + position * load[2]) / _row(section.inertia_y)
-    axial = magnitude(load[0]) / _row(section.area)
+    section = beam.section.each(_row)
+    about_z = magnitude(load[5] - position * load[1]) / section.inertia_z
+    about_y = magnitude(load[4] + position * load[2]) / section.inertia_y
+    plain = section.normal_stress(magnitude(load[0]) / section.area, about_y, about_z)
     if section.warping is None:
-        return axial + 0.5 * thickness * np.sqrt(about_y * about_y + about_z * about_z)
-    warping = magnitude(_row(beam.twisting.bimoment) * load[3]) / _row(section.warping)
-    return axial + 0.5 * thickness * about_z + 0.5 * width * about_y + 0.25 * thickness * width * warping
+        return plain
+    return plain + section.sectorial * (magnitude(_row(beam.twisting.bimoment) * load[3]) / section.warping)
 
 
 def _tangential(beam: Beam, load: Array) -> Array:
-    """Largest shear stress (..., 1, m): shear forces (3/2 or 4/3 of the mean), uniform torsion and the torque carried by strips."""
-    section = beam.section
-    force = np.sqrt(load[1] * load[1] + load[2] * load[2]) / _row(section.area)
-    if section.warping is None:
-        return 4.0 / 3.0 * force + magnitude(load[3]) * 0.5 * _row(section.thickness) / _row(section.torsion)
-    torsion = _row(section.torsion)
-    uniform = _row(beam.twisting.rate) * torsion * _shear_modulus(beam)
-    short, long = np.minimum(_row(section.thickness), _row(section.width)), np.maximum(_row(section.thickness), _row(section.width))
-    ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
-    crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
-    strips = 9.0 * magnitude(1.0 - uniform) / (long * long * short)
-    return 1.5 * force + magnitude(load[3]) * (magnitude(uniform) * crest * short / torsion + strips)
-
-
-def _shear_modulus(beam: Beam) -> Array:
-    """G from the shear flexibility k / (G A) of the beam itself."""
-    return _row(beam.section.shear) / (_row(beam.flexibility[..., 1]) * _row(beam.section.area))
+    """Largest shear stress (..., 1, m): shear forces, uniform torsion and the torque carried by warping."""
+    section = beam.section.each(_row)
+    force = np.sqrt(load[1] * load[1] + load[2] * load[2]) / section.area
+    uniform = _row(beam.twisting.rate) * section.torsion * (section.shear / (_row(beam.flexibility[..., 1]) * section.area))
+    return section.shear_peak * force + section.torsional_stress(magnitude(load[3]), uniform)
 
 
 def _row(number: Number) -> Array:

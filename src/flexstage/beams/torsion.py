@@ -23,7 +23,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.quadrature import Stations
-from flexstage.beams.section import Section
+from flexstage.parts.section import Section
 
 _LONG = 20.0
 """Decay lengths from the centre to an end from which stations do not resolve the ends: the equation at stations has their integral."""
@@ -42,7 +42,7 @@ class Twisting:
 def free_twist(section: Section, shear: Array) -> Twisting:
     """Twist of a part free to warp, phi' = 1 / (G J) (Saint-Venant): circles.
 
-    >>> from flexstage.beams.section import circle
+    >>> from flexstage.parts.section import circle
     >>> bool(abs(free_twist(circle(np.ones(1), 1.0), np.ones(1)).rate[0] - 32 / np.pi) < 1e-12)
     True
     """
@@ -58,10 +58,10 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     resolve its ends, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
-    >>> from flexstage.beams.section import rectangle
+    >>> from flexstage.parts.section import Rectangle
     >>> from flexstage.parts.profile import Straight
     >>> points = stations(Straight(0.1), 0.001)
-    >>> section = rectangle(np.full(25, 0.001), np.full(25, 0.01))
+    >>> section = Rectangle(np.full(25, 0.001), np.full(25, 0.01))
     >>> one = np.ones(1)
     >>> ratio = points.whole(constrained_twist(section, points, 2.6 * one, one).rate) / points.whole(free_twist(section, one).rate)
     >>> round(float(ratio), 3)  # 1 - tanh(lam) / lam, lam = (L/b) sqrt(6 / (1 + nu)) = 21.5
@@ -69,7 +69,7 @@ def constrained_twist(section: Section, points: Stations, young: Array, shear: A
     """
     if section.warping is None:
         return free_twist(section, shear)
-    square_y, square_z = section.thickness * section.thickness, section.width * section.width
+    square_y, square_z = section.height * section.height, section.width * section.width
     skew = (square_z - square_y) / (square_z + square_y)
     stiffness = section.polar / section.shear
     whole = section.torsion + stiffness * skew * skew

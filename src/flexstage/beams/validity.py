@@ -74,7 +74,7 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
 def _errors(part: Shaped, family: str, poisson: Number) -> dict[str, Array]:
     """By component, NaN outside what was compared; components that are nowhere known are left out."""
     slot = slot_of(part, poisson)
-    found = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.is_round else {}
+    found = {"rx": np.zeros_like(slot.thickness)} if family == "bar" and part.throat.warping is None else {}
     with np.errstate(all="ignore"):  # outside the range anything may come out, and nothing of it is told
         for axis, (law, numbers) in LAWS[family].items():
             index = AXES.index(axis)

@@ -6,7 +6,7 @@ Told from the outlines that the description has, without CAD, on the first desig
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import product
 
@@ -22,7 +22,9 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.mechanism.near import near_pairs
 from flexstage.mechanism.outline import Outline, outlines
 from flexstage.mechanism.pieces import SAGITTA, Form, form_of, is_flat, pieces
-from flexstage.parts.body import Imported, Pierced, Solid
+from flexstage.parts.body import Imported, Pierced, Solid, within_polygon
+from flexstage.parts.section import Section
+from flexstage.parts.shape import Shaped
 from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
 from flexstage.spatial.frame import Frame
 
@@ -34,8 +36,8 @@ _BRACKET = 0.05
 """A gauge's target may stand on a bracket that is not drawn: this share of its body's longest side away."""
 _ENOUGH = 300
 """Pairs of pieces looked at for the deepest overlap once there is one."""
-_RIM = 128
-"""Corners of the polygon that a round end face is measured with."""
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False)
+"""Angles of the corners of the polygon that a round end face is measured with."""
 _MARGIN = (5e-5, 0.05)
 """Beside its end faces a link keeps clear of its bodies but for this length [m], or this share of its half length."""
 
@@ -80,6 +82,25 @@ class _Thing:
     def half(self) -> float:
         """Half the length of a link."""
         return 0.5 * float(np.ravel(np.real(self.outline.size[..., 0]))[0])
+
+    @property
+    def end(self) -> Section:
+        """The section at both ends of a link."""
+        assert isinstance(self.form, Shaped)  # noqa: S101  only links are asked
+        return self.form.end
+
+    @cached_property
+    def face(self) -> tuple[Array, Array]:
+        """Points (n, 3) on a link's end face at its origin, and the share of the face that each stands for; the first lie near its rim."""
+        end, found = self.end, []
+        for piece in end.pieces(_ANGLES):
+            low, high = piece.min(axis=0), piece.max(axis=0)
+            points, weights = _face(*(0.5 * (high - low)).tolist(), is_round=end.is_axisymmetric)
+            points = points + np.array([0.0, *(0.5 * (low + high))])
+            inside = within_polygon(points[:, 1:], piece, 0.0)
+            found.append((points[inside], weights[inside] * np.prod(high - low)))
+        points, weights = (np.concatenate(each) for each in zip(*found, strict=True))
+        return points, weights / np.sum(weights)
 
     @property
     def slack(self) -> float:
@@ -243,7 +264,7 @@ def _link_findings(link: _Thing, ends: Sequence[tuple[float, str, list[_Thing]]]
 
 def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
     """The end face looked at from both sides, at points all over it."""
-    points, weights = _end_face(link)
+    points, weights = link.face
     axis = side * link.frame.rotation[:, 0]
     face = link.frame.point(points + np.array([side * link.half, 0.0, 0.0]))
     beyond, before = (np.any([_inside(each, face + step * axis) for each in met], axis=0) for step in (2.0 * TOUCHING, -2.0 * TOUCHING))
@@ -253,15 +274,9 @@ def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
     return _Meeting(float(weights @ beyond), depth)
 
 
-def _end_face(link: _Thing) -> tuple[Array, Array]:
-    """Points (n, 3) on a link's end face at its origin, and the share of the face that each stands for; the first lie near its rim."""
-    _, y, z = (0.5 * first_design(np.real(link.outline.size), 1)).tolist()
-    return _face(y, z, is_round=link.outline.is_round)
-
-
 @lru_cache(maxsize=64)
 def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
-    """The same by the half sides of the face; many links have the same."""
+    """Points on a rectangle or circle by its half sides, and the share that each stands for; many links have the same."""
     if is_round:
         radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
@@ -282,10 +297,7 @@ def _widen(weights: Array) -> Array:
 
 def _rim(link: _Thing, side: float) -> Array:
     """Corners (n, 3) of a link's end face, in its frame."""
-    _, y, z = 0.5 * first_design(np.real(link.outline.size), 1)
-    angles = 2.0 * np.pi * np.arange(_RIM) / _RIM if link.outline.is_round else np.pi * (np.arange(4) + 0.5) / 2.0
-    round_up = 1.0 if link.outline.is_round else np.sqrt(2.0)
-    rim = round_up * np.column_stack([y * np.cos(angles), z * np.sin(angles)])
+    rim = link.end.outline(_ANGLES)
     return np.column_stack([np.full(len(rim), side * link.half), rim])
 
 
@@ -333,7 +345,7 @@ def _end_findings(link: _Thing, side: float, body: str, met: Sequence[_Thing], m
 def _side_findings(link: _Thing, body: str, met: Sequence[_Thing]) -> Iterator[Finding]:
     margin = min(_MARGIN[0], _MARGIN[1] * link.half)
     size = first_design(np.real(link.outline.size), 1) - np.array([2.0 * margin, 0.0, 0.0])
-    short = Outline(link.name, link.frame, size, is_round=link.outline.is_round)
+    short = replace(link.outline, size=size)
     near = [met[other - 1] for one, other in near_pairs([short, *(each.outline for each in met)], 0.0) if one == 0]
     deep = max((_overlap(link.trim(margin), each.pieces, each.holes)[0] for each in near), default=0.0)
     if deep > TOUCHING:

@@ -17,7 +17,7 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A box (`size` along the axes of `frame`, (..., 3) [m]) or, with `is_round`, a cylinder of size (length, diameter, diameter) along x.
+    """A box (`size` along the axes of `frame`, (..., 3) [m]) or, a cylinder along x (`is_cylinder`: length, diameter, diameter).
 
     `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular hole along z;
     `bore`: diameter of a cylinder's hole along x. `corners` (..., n, 3) are those of an outline that does not fill its box; a ball is as
@@ -27,7 +27,7 @@ class Outline:
     name: str
     frame: Frame
     size: Array
-    is_round: bool = False
+    is_cylinder: bool = False
     hole: Array | None = None
     bore: Array | None = None
     corners: Array | None = None
@@ -53,7 +53,7 @@ class Outline:
             across = (np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0]
             return middle + np.max(np.sum(self.corners * across[..., None, :], axis=-1), axis=-1)
         own = np.abs((np.swapaxes(self.frame.rotation, -1, -2) @ direction[..., None])[..., 0])
-        if not self.is_round:
+        if not self.is_cylinder:
             return middle + 0.5 * np.sum(self.size * own, axis=-1)
         across = np.sqrt(np.maximum(0.0, 1.0 - own[..., 0] ** 2))
         return middle + 0.5 * (self.size[..., 0] * own[..., 0] + self.size[..., 1] * across)
@@ -75,7 +75,7 @@ def outlines(assembly: Assembly) -> tuple[Outline, ...]:
 def _solid(name: str, placed: PlacedSolid) -> Outline:
     solid = placed.solid.solid if isinstance(placed.solid, Pierced) else placed.solid
     if isinstance(solid, Cylinder):
-        return Outline(name, placed.frame, solid.sides, is_round=True, bore=None if solid.bore is None else np.asarray(solid.bore))
+        return Outline(name, placed.frame, solid.sides, is_cylinder=True, bore=None if solid.bore is None else np.asarray(solid.bore))
     if isinstance(solid, Extrusion):
         return Outline(name, placed.frame, solid.sides, corners=_prism(solid.corners, np.asarray(solid.height)))
     hole = None if not isinstance(solid, Block) or solid.hole is None else stack(solid.hole)
@@ -86,7 +86,7 @@ def _part(link: PlacedLink) -> Iterator[Outline]:
     part = inner(link.part)
     if isinstance(part, Shaped):
         end = part.end
-        yield Outline(link.name, link.frame, stack((part.span, end.height, end.width)), is_round=end.is_round)
+        yield Outline(link.name, link.frame, stack((part.span, end.height, end.width)), is_cylinder=end.is_axisymmetric)
 
 
 def _prism(corners: Array, height: Array) -> Array:

@@ -16,6 +16,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
 from flexstage.parts.part import Part, inner
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length, single
+from flexstage.parts.section import Section
 from flexstage.parts.shape import Profiled, Shaped
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
@@ -43,7 +44,7 @@ def is_flat(form: Form) -> bool:
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
     True
     """
-    return form.is_flat if isinstance(form, Solid) else form.is_prismatic and not form.throat.is_round
+    return form.is_flat if isinstance(form, Solid) else form.is_prismatic and not form.is_axisymmetric
 
 
 @lru_cache(maxsize=256)
@@ -57,38 +58,28 @@ def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
     """
     if isinstance(form, Solid):
         return tuple(_SOLIDS[type(form)](form))
-    if isinstance(form, Profiled):
-        return tuple(_hinge(form, trim))
-    return tuple(_bar(form, trim) if form.is_prismatic else _loft(form, trim))
-
-
-def _bar(form: Shaped, trim: float) -> Iterator[Convex]:
-    """A part of one section."""
-    throat = form.throat.first
-    if throat.is_round:
-        yield from _tube(single(form.span) - 2.0 * trim, single(throat.height), 0.0)
-        return
-    half = np.array([0.5 * single(form.span) - trim, 0.5 * throat.height, 0.5 * throat.width])
-    yield cuboid(tuple(-half), tuple(half))
+    return tuple(_hinge(form, trim) if isinstance(form, Profiled) else _loft(form, trim))
 
 
 def _loft(form: Shaped, trim: float) -> Iterator[Convex]:
-    """A part of varying section, straight between the stations of its silhouette."""
-    stations = form.silhouette
-    places = np.array([x for x, _ in stations])
-    sizes = np.array([(section.height, section.width) for _, section in stations])
-    count = _corners(0.5 * float(np.max(sizes)))
+    """A part without cuts, straight between the stations of its silhouette."""
+    places, angles = np.array([x for x, _ in form.silhouette]), _angles(form)
     inside = np.clip(places, places[0] + trim, places[-1] - trim)
-    heights, widths = (np.interp(inside, places, sizes[:, axis]) for axis in (0, 1))
-    is_round = form.throat.is_round
-    shapes = [_circle(0.5 * y, count) if is_round else _rectangle(0.5 * y, 0.5 * z) for y, z in zip(heights, widths, strict=True)]
-    for (here, one), (there, other) in pairwise(zip(inside, shapes, strict=True)):
+    for here, there in pairwise(inside):
         if there > here:
-            yield frustum(here, there, one, other)
+            yield from _slab((here, there), (form.section_at(here), form.section_at(there)), angles)
 
 
-def _rectangle(y: float, z: float) -> Array:
-    return np.array([[y, z], [-y, z], [-y, -z], [y, -z]])
+def _slab(stations: tuple[float, float], sections: tuple[Section, Section], angles: Array) -> Iterator[Convex]:
+    """Between two stations, piece by piece of the sections there."""
+    for one, other in zip(*(section.pieces(angles) for section in sections), strict=True):
+        yield frustum(*stations, one, other)
+
+
+def _angles(form: Shaped) -> Array:
+    """Where a round outline has corners."""
+    count = _corners(0.5 * max(max(section.height, section.width) for _, section in form.silhouette))
+    return 2.0 * np.pi * np.arange(count) / count
 
 
 def _frame(form: Block) -> Iterator[Convex]:
@@ -158,35 +149,9 @@ _SOLIDS: Mapping[type[Solid], Callable[[Any], Iterable[Convex]]] = {
 
 def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
     """Slabs between stations along the hinge; the height between two is the tangent's of its cuts, or the lower end's."""
-    section = _section(form)
-    for (here, there), (low, high) in _slabs(form.profile, trim):
-        yield frustum(here, there, section(low), section(high))
-
-
-def _section(form: Profiled) -> Callable[[float], Array]:
-    """The cross-section by the rise of the cuts, as a polygon (y, z)."""
-    throat = form.throat
-    thickness, width = 0.5 * single(throat.height), 0.5 * single(throat.width)
-    if throat.is_round:
-        count = _corners(thickness + rise_at(form.profile, 1.0))
-        return lambda up: _circle(thickness + up, count)
-    grows = single(form.grown(1.0).width) > single(throat.width)
-    return lambda up: _rectangle(thickness + up, width + (up if grows else 0.0))
-
-
-def rise_at(profile: Profile, station: float) -> float:
-    """How far the cuts have risen at a share of the curved part, from 0 at the neck to 1 at its end [m].
-
-    >>> from flexstage.parts.profile import Circular
-    >>> float(rise_at(Circular(0.005), 1.0))
-    0.005
-    """
-    if isinstance(profile, Straight):
-        return 0.0
-    if isinstance(profile, Contour):
-        return float(np.max(profile.height(station * np.array(profile.knots))))
-    height = single(profile.across if isinstance(profile, Elliptic) else profile.radius)
-    return height * (1.0 - np.sqrt(max(0.0, 1.0 - station * station)))
+    angles = _angles(form)
+    for stations, (low, high) in _slabs(form.profile, trim):
+        yield from _slab(stations, (form.grown(low), form.grown(high)), angles)
 
 
 def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:

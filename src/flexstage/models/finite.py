@@ -88,7 +88,7 @@ class _Links:
     drives: Array
     beams: list[int]
     spans: Array
-    round: Array
+    both_ways: Array
     posed: tuple[int, ...]
     length: Array
 
@@ -234,7 +234,7 @@ def _links(mechanism: Mechanism, kinematics: Kinematics, *, posed: bool) -> _Lin
         drives=free_deformations(assembly),
         beams=beams,
         spans=_together([np.asarray(part.span) for part in slender], 0),
-        round=np.array([part.throat.is_round for part in slender], dtype=float),
+        both_ways=np.array([part.bends_both_ways for part in slender], dtype=float),
         posed=tuple(COMPONENTS.index(name) for name in kinematics.coordinates) if posed else (),
         length=np.asarray(np.real(kinematics.length)),
     )
@@ -299,7 +299,7 @@ def _shortening(links: _Links, relative: _Relative) -> Array:
     half = 0.5 * links.spans
     turn, vector = relative.rotation[..., links.beams, :, :], relative.vector[..., links.beams, :]
     end = relative.translation[..., links.beams, :] + half[..., None] * turn[..., :, 0]
-    bent = _bend(end[..., 1], vector[..., 2], links.spans) + links.round * _bend(end[..., 2], -vector[..., 1], links.spans)
+    bent = _bend(end[..., 1], vector[..., 2], links.spans) + links.both_ways * _bend(end[..., 2], -vector[..., 1], links.spans)
     return bent + half * (turn[..., 0, 0] - 1.0)
 
 

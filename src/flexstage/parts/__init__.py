@@ -5,6 +5,7 @@ from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.cartwheel import Cartwheel
 from flexstage.parts.contact import Contact
 from flexstage.parts.cross_hinge import CrossHinge
+from flexstage.parts.cruciform import Cruciform
 from flexstage.parts.encoder import Encoder
 from flexstage.parts.folded_leaf import FoldedLeaf
 from flexstage.parts.force_actuator import ForceActuator
@@ -25,7 +26,7 @@ from flexstage.parts.superelement import Superelement
 from flexstage.parts.tilt import Tilt
 from flexstage.parts.voice_coil import VoiceCoil
 
-_HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod)
+_HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod, Cruciform)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
 _ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
 _GAUGES = (Gauge, Tilt, Encoder, StrainGauge)

@@ -84,7 +84,7 @@ class BetweenFaces(StrokeActuator):
         return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """Whether stiffness, free deformation and freedoms are alike across its axis."""
         across = np.real(self.free_deformation)[..., [1, 2, 4, 5]]
         return is_even(self.free) and not np.any(across) and turns_into_itself(self.between)

@@ -45,7 +45,7 @@ class Compound(Elastic):
     """
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """No: its members stand on different sides of its axis."""
         return False
 

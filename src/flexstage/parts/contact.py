@@ -57,7 +57,7 @@ class Contact(Elastic):
         return others((Freedom.X,) if self.seat is Seat.FLAT else (Freedom.X, Freedom.Y))
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """On a flat."""
         return self.seat is Seat.FLAT
 

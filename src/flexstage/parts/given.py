@@ -82,7 +82,7 @@ class Given(Elastic):
         return halves(rigid_inertia(self.mass, inertia, stack(self.centre or (0.0, 0.0, 0.0)), np.zeros(3)))
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """Whether freedoms and compliance are the same along and about y and z."""
         return is_even(self.free) and turns_into_itself(stack(self.compliance))
 

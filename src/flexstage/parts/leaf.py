@@ -10,7 +10,8 @@ from typing import Annotated, ClassVar
 from flexstage.base.number import Number
 from flexstage.base.quantity import CURVATURE, LENGTH, POSITIVE, TEMPERATURE
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.shape import INNER_MODES, Order, Section, Shaped, reversed_or_none
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import INNER_MODES, Order, Shaped, reversed_or_none
 
 
 class LeafSection(Enum):
@@ -82,9 +83,9 @@ class Leaf(Shaped):
         return self.length
 
     @property
-    def throat(self) -> Section:
+    def throat(self) -> Rectangle:
         """Its one section."""
-        return Section(self.thickness, self.width)
+        return Rectangle(self.thickness, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:

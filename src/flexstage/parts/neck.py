@@ -9,7 +9,8 @@ from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.profile import Profile
-from flexstage.parts.shape import Profiled, Section, circle
+from flexstage.parts.section import Rectangle, Section, circle
+from flexstage.parts.shape import Profiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,4 +35,4 @@ class Neck(Profiled):
     def grown(self, up: Number) -> Section:
         """The section where the cuts have risen by `up` [m], on all sides."""
         height = self.thickness + 2.0 * up
-        return circle(height) if self.width is None else Section(height, self.width + 2.0 * up)
+        return circle(height) if self.width is None else Rectangle(height, self.width + 2.0 * up)

@@ -10,7 +10,8 @@ from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.profile import Profile
-from flexstage.parts.shape import Order, Profiled, Section
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import Order, Profiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,9 +32,9 @@ class Notch(Profiled):
         """The freedoms the hinge is meant to have."""
         return (Freedom.RZ,)
 
-    def grown(self, up: Number) -> Section:
+    def grown(self, up: Number) -> Rectangle:
         """The section where the cuts have risen by `up` [m]: a notch is as wide everywhere."""
-        return Section(self.thickness + 2.0 * up, self.width)
+        return Rectangle(self.thickness + 2.0 * up, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:

@@ -24,7 +24,8 @@ from flexstage.base.quantity import (
     VOLTAGE,
 )
 from flexstage.parts.actuator import ChargedActuator
-from flexstage.parts.shape import Order, Section, Shaped, circle
+from flexstage.parts.section import Circle, circle
+from flexstage.parts.shape import Order, Shaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,7 @@ class Piezo(ChargedActuator, Shaped):
         return self.length
 
     @property
-    def throat(self) -> Section:
+    def throat(self) -> Circle:
         """That of its ceramic."""
         return circle(self.diameter)
 

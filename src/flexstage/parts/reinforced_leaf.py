@@ -12,7 +12,8 @@ from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.profile import single
-from flexstage.parts.shape import Order, Section
+from flexstage.parts.section import Rectangle, Section
+from flexstage.parts.shape import Order
 
 _ARC = np.linspace(0.0, 0.5 * np.pi, 9)
 
@@ -48,7 +49,7 @@ class ReinforcedLeaf(Leaf):
         arc = [(start + radius * (1.0 - np.sin(p)), radius * (1.0 - np.cos(p))) for p in (_ARC[::-1] if radius else _ARC[:1])]
         right = [(start, single(self.step)), *arc, (half, 0.0)]
         rows = [*((-x, up) for x, up in reversed(right)), *right]
-        return tuple((float(x), Section(self.thickness + 2.0 * up, self.width).first) for x, up in rows)
+        return tuple((float(x), Rectangle(self.thickness + 2.0 * up, self.width).first) for x, up in rows)
 
     @property
     def orders(self) -> Iterator[Order]:

@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar
 from flexstage.base.number import Number
 from flexstage.base.quantity import CURVATURE, LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom, others
-from flexstage.parts.shape import INNER_MODES, Section, Shaped, circle, reversed_or_none
+from flexstage.parts.section import Circle, circle
+from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,6 @@ class Rod(Shaped):
         return self.length
 
     @property
-    def throat(self) -> Section:
+    def throat(self) -> Circle:
         """Its one section, round."""
         return circle(self.diameter)

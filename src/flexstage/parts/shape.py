@@ -7,7 +7,7 @@ Outlines, pictures, contact, columns and finite elements ask the part; none of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import reduce
 from itertools import pairwise
 from typing import ClassVar
@@ -16,7 +16,7 @@ import numpy as np
 
 from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number, with_step
+from flexstage.base.number import Array, Number
 from flexstage.base.quantity import LENGTH, RATIO, Bound, Quantity
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
@@ -35,63 +35,8 @@ from flexstage.parts.profile import (
     single,
     stations_of,
 )
+from flexstage.parts.section import Section
 from flexstage.parts.stated import Stated
-
-_ODD_FIFTH_POWERS = 1.00452376279513961613
-"""Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Section:
-    """A cross-section: `height` along y and `width` along z [m]; of a round one both are its diameter."""
-
-    height: Number
-    width: Number
-    is_round: bool = False
-
-    @property
-    def second_moment(self) -> Number:
-        """Least second moment of area [m^4].
-
-        >>> round(float(Section(1e-3, 12e-3).second_moment) * 1e12, 9)
-        1.0
-        """
-        if self.is_round:
-            return np.pi * self.height**4 / 64.0
-        return self.height * self.width * np.minimum(self.height, self.width) ** 2 / 12.0
-
-    @property
-    def first(self) -> Section:
-        """That of the first design, in floats."""
-        return Section(single(self.height), single(self.width), self.is_round)
-
-
-def rectangle_torsion(thickness: Number, width: Number) -> Array:
-    """Saint-Venant torsion constant J [m^4] of a rectangle, either side the longer, correct to rounding.
-
-    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
-    section 109). The sum is (31/32) zeta(5) less a series in exp(-n pi c / a), of which four terms leave out less than 1e-17.
-
-    >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
-    (0.140577015, 33.1233)
-    """
-    tall = np.real(width) < np.real(thickness)
-    short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
-    ratio = long / short
-    decay = np.exp(-np.pi * np.real(ratio))
-    square, series, slope = decay * decay, _ODD_FIFTH_POWERS, 0.0
-    for odd in (1.0, 3.0, 5.0, 7.0):
-        share = decay / (1.0 + decay)
-        series = series - 2.0 / odd**5 * share
-        slope = slope + 2.0 * np.pi / odd**4 * share / (1.0 + decay)
-        decay = decay * square
-    series = with_step(series, slope, ratio)
-    return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
-
-
-def circle(diameter: Number) -> Section:
-    """A round section."""
-    return Section(diameter, diameter, is_round=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,8 +88,8 @@ class Elastic(Description):
         return None
 
     @property
-    def is_round(self) -> bool:
-        """Whether it behaves alike in all directions across its axis, so that links need not say which way it bends."""
+    def is_axisymmetric(self) -> bool:
+        """Whether it is alike in all directions across its axis, so that links need not say which way it bends."""
         return True
 
     @property
@@ -178,9 +123,14 @@ class Shaped(Elastic):
     slender: ClassVar[bool] = False
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """Whether its throat is."""
-        return self.throat.is_round
+        return self.throat.is_axisymmetric
+
+    @property
+    def bends_both_ways(self) -> bool:
+        """Whether it is meant to bend about y as about z."""
+        return {Freedom.RY, Freedom.RZ} <= set(self.intended)
 
     @property
     def mirrored(self) -> Elastic | None:
@@ -223,6 +173,12 @@ class Shaped(Elastic):
         half = 0.5 * single(self.span)
         ends = ((-half, self.end.first), (half, self.end.first))
         return ends if self.is_prismatic else (ends[0], (0.0, self.throat.first), ends[1])
+
+    def section_at(self, stations: Array) -> Section:
+        """The section at stations [m], of the first design: its numbers are straight between those of its silhouette."""
+        places, sections = zip(*self.silhouette, strict=True)
+        names = [item.name for item in fields(sections[0])]
+        return replace(sections[0], **{name: np.interp(stations, places, [getattr(each, name) for each in sections]) for name in names})
 
 
 class Profiled(Shaped):

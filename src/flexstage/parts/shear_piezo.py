@@ -26,7 +26,7 @@ from flexstage.base.quantity import (
 )
 from flexstage.parts.actuator import ChargedActuator
 from flexstage.parts.material import Material
-from flexstage.parts.shape import rectangle_torsion
+from flexstage.parts.section import rectangle_torsion
 from flexstage.parts.stated import Stated, point_masses
 
 
@@ -69,7 +69,7 @@ class ShearPiezo(ChargedActuator):
         return self.stroke * self.stiffness
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """Its stroke has a direction across its axis."""
         return False
 

@@ -74,7 +74,7 @@ class Spring(Elastic):
         return stack(diagonal)[..., None] * np.eye(6)
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """Whether freedoms and stiffness are the same along and about y and z."""
         return is_even(self.free) and turns_into_itself(self.whole)
 

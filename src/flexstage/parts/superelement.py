@@ -86,7 +86,7 @@ class Superelement(Elastic):
         return ()
 
     @property
-    def is_round(self) -> bool:
+    def is_axisymmetric(self) -> bool:
         """It is not: its axes are those of its file."""
         return False
 

@@ -15,7 +15,7 @@ from flexstage.base.number import Array, stack
 from flexstage.base.record import INNER, VIEW
 from flexstage.beams.compliance import compliance
 from flexstage.beams.mass import mass
-from flexstage.mechanism.checks.orientation import is_round
+from flexstage.mechanism.checks.orientation import is_axisymmetric
 from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
@@ -159,7 +159,7 @@ def _symmetrise(hinge: SolidHinge) -> Array:
     material, own = hinge.form.material, medium(hinge.form.material)
     axes = (0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2)
     mirrors = [mirror(axis) for axis in axes if is_mirrored(own, axis)]
-    for symmetry in [*mirrors, *([_TURN] if is_round(hinge.form.part) and not material.is_cubic else [])]:
+    for symmetry in [*mirrors, *([_TURN] if is_axisymmetric(hinge.form.part) and not material.is_cubic else [])]:
         matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
     return matrix
 

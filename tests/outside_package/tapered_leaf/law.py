@@ -7,9 +7,9 @@ import numpy as np
 from flexstage.beams.beam import Beam, beam
 from flexstage.beams.law import PartLaw
 from flexstage.beams.quadrature import stations
-from flexstage.beams.section import rectangle
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
+from flexstage.parts.section import Rectangle
 from tapered_leaf.part import Taper
 
 
@@ -18,7 +18,7 @@ def taper_beam(part: Taper, material: Material) -> Beam:
     points = stations(Straight(part.length), part.thickness)
     thickness, ends, long = (np.asarray(each)[..., None] for each in (part.thickness, part.end_thickness, part.length))
     height = thickness + (ends - thickness) * 2.0 * points.position / long
-    return beam(points, rectangle(height, np.asarray(part.width)[..., None]), material)
+    return beam(points, Rectangle(height, np.asarray(part.width)[..., None]), material)
 
 
 TAPER = PartLaw(taper_beam, concentration=lambda _: 1.0)

@@ -9,7 +9,8 @@ from typing import Annotated, ClassVar
 from flexstage.base.number import Number
 from flexstage.base.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
-from flexstage.parts.shape import Order, Section, Shaped
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import Order, Shaped
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,14 +36,14 @@ class Taper(Shaped):
         return self.length
 
     @property
-    def throat(self) -> Section:
+    def throat(self) -> Rectangle:
         """The section in its middle."""
-        return Section(self.thickness, self.width)
+        return Rectangle(self.thickness, self.width)
 
     @property
-    def end(self) -> Section:
+    def end(self) -> Rectangle:
         """The section at its ends."""
-        return Section(self.end_thickness, self.width)
+        return Rectangle(self.end_thickness, self.width)
 
     @property
     def is_prismatic(self) -> bool:

@@ -16,6 +16,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, index_of_largest
 from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW, Along
+from flexstage.beams.compliance import law_of
 from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -81,7 +82,8 @@ class Buckling(InNotebook):
 def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> Buckling:
     """Euler's loads of leaves, rods, notches, necks and stacks against their compression over the corners of the strokes and dead load.
 
-    P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated.
+    P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated;
+    or the load at which a section twists, where its law states a lower one.
     The whole stage's own factor knows how ends are really held. Compressions of less than a billionth of the largest
     force in any part, along or across it, are rounding, and none.
 
@@ -99,11 +101,12 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     rigidity = _join([column[0] for column in columns.values()])
     length_ = _join([column[1] for column in columns.values()])
     ends = tuple(column[2] for column in columns.values())
+    twisting = _join([_twisting_load(assembly.links[name]) for name in columns])
     effective = length_ * np.array([2.0 if end is Ends.FREE else 1.0 for end in ends])
     compression = np.max(-wrenches[..., 0], axis=0)
     largest = np.max(np.abs(wrenches[..., :3]), axis=(0, -2, -1), initial=0.0)
     compression = np.where(np.abs(compression) > _ROUNDING * largest[..., None], compression, 0.0)
-    critical = np.broadcast_to(np.pi**2 * rigidity / effective**2, compression.shape)
+    critical = np.broadcast_to(np.minimum(np.pi**2 * rigidity / effective**2, twisting), compression.shape)
     return Buckling(tuple(columns), critical, compression, np.broadcast_to(length_, compression.shape), ends, model.provenance, whole)
 
 
@@ -123,7 +126,14 @@ def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]
     alone = any(body != GROUND and len(_links_at(assembly, body)) == 1 for body in link.joins)
     young = np.nan if link.material is None else link.material.modulus
     assert isinstance(part, Shaped)  # noqa: S101  _is_column has asked
-    return young * part.throat.second_moment, part.span, Ends.FREE if alone else Ends.GUIDED
+    return young * part.throat.least_inertia, part.span, Ends.FREE if alone else Ends.GUIDED
+
+
+def _twisting_load(link: PlacedLink) -> Number:
+    known = law_of(link.part)
+    return (
+        np.inf if known is None or known.twisting_load is None or link.material is None else known.twisting_load(link.part, link.material)
+    )
 
 
 def stack_rigidity(piezo: Piezo) -> Number:

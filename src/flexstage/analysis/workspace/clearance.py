@@ -166,12 +166,12 @@ def _directions(outline: Outline, opening: Array) -> Array:
     normals = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
     edges = outline.frame.rotation[..., :2, :]
     normals += [np.stack([-edges[..., 1, index], edges[..., 0, index]], axis=-1) for index in range(3)]
-    if outline.is_round:
+    if outline.is_cylinder:
         corners = (np.array([sx, sy]) * 0.5 * opening for sx in (1.0, -1.0) for sy in (1.0, -1.0))
         normals += [outline.frame.position[..., :2] - corner for corner in corners]
     batch = np.broadcast_shapes(opening.shape[:-1], edges.shape[:-2], outline.frame.position.shape[:-1], outline.size.shape[:-1])
     normal = np.stack([np.broadcast_to(each, (*batch, 2)) for each in normals])
-    if outline.is_round:
+    if outline.is_cylinder:
         around = _AROUND.reshape(-1, *(1,) * len(batch), 2)
         normal = np.concatenate([normal, np.broadcast_to(around, (len(_AROUND), *batch, 2))])
     length = np.sqrt(np.sum(normal * normal, axis=-1, keepdims=True))

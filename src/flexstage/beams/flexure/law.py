@@ -17,9 +17,9 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.flexure.modes import FINE, gauss, polynomials, project
 from flexstage.beams.flexure.strip import LOADS, STRETCH_FOUR, STRETCH_TWO, fields
 from flexstage.beams.flexure.twist import curling_energy, held_modes, orthonormal
-from flexstage.beams.section import Section, cowper_rectangle, rectangle
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
+from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
     """
     length, thickness, width = (np.asarray(each, dtype=float) for each in (part.length, part.thickness, part.width))
     young, poisson = float(material.modulus), float(material.contraction)
-    section = rectangle(thickness, width, cowper_rectangle(poisson))
+    section = Rectangle(thickness, width, cowper_rectangle(poisson))
     rigidity = np.asarray(young * section.inertia_z)
     rule = gauss(resolution.points)
     twist, twist_form = _leaf_twist(resolution, section, material, length, rigidity, warps=warps)
@@ -159,7 +159,7 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
     points = polynomials(size, gauss(size).points)
     compliance = (project(relative[:, :3].T, places, weights, size) @ points).T
     section = part.section
-    thickness, width, polar, area = (float(np.ravel(each)[0]) for each in (section.thickness, section.width, section.polar, section.area))
+    thickness, width, polar, area = (float(np.ravel(each)[0]) for each in (section.height, section.width, section.polar, section.area))
     wagner = 12.0 * (width * width / (thickness * length)) ** 2 * STRETCH_TWO if flat else 0.0
     return FlexureLaw(
         length=length,

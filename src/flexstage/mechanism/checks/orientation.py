@@ -1,4 +1,4 @@
-"""Directions: not zero, perpendicular where two make a frame, and given where a part is not round."""
+"""Directions: not zero, perpendicular where two make a frame, and given where a part is not axisymmetric."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for name, placement in mechanism.place.items():
         yield from _pattern(f"place.{name}", placement.pattern)
     for name, probe in posed(mechanism.gauges).items():
-        yield from _pattern(f"gauges.{name}", probe.pattern, is_round=True)
+        yield from _pattern(f"gauges.{name}", probe.pattern, has_up=False)
     for name, stop in mechanism.stops.items():
-        yield from _pattern(f"stops.{name}", stop.pattern, is_round=True)
+        yield from _pattern(f"stops.{name}", stop.pattern, has_up=False)
 
 
 def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]]) -> Iterator[Finding]:
@@ -49,7 +49,7 @@ def _links(mechanism: Mechanism, prefix: str, links: Iterable[tuple[str, Link]])
         where = f"{prefix}links.{name}"
         yield from _pair(f"{where}.{'to' if link.along is None else 'along'}", link.direction, f"{where}.bends", link.bends)
         part = mechanism.parts.get(link.part)
-        if part is not None and link.bends is None and not is_round(part, link.free):
+        if part is not None and link.bends is None and not is_axisymmetric(part, link.free):
             yield Finding(where, *_unsaid(link.part, ported=bool(ports_of(part))))
 
 
@@ -60,17 +60,17 @@ def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     return what, 'Write for example bends = "y": the axis of its compliant rotation'
 
 
-def is_round(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
+def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
     """Whether a part behaves alike in all directions across its axis, so that its link needs no `bends`.
 
-    >>> is_round(Joint((Freedom.RZ,))), is_round(Joint((Freedom.RY, Freedom.RZ)))
+    >>> is_axisymmetric(Joint((Freedom.RZ,))), is_axisymmetric(Joint((Freedom.RY, Freedom.RZ)))
     (False, True)
     """
     if free is not None and not is_even(free):
         return False
     if isinstance(part, Restricted):
-        return is_even(part.elastic) and is_even(part.free) and part.part.is_round
-    return is_even(part.free) if isinstance(part, Joint) else part.is_round
+        return is_even(part.elastic) and is_even(part.free) and part.part.is_axisymmetric
+    return is_even(part.free) if isinstance(part, Joint) else part.is_axisymmetric
 
 
 def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]:
@@ -82,8 +82,8 @@ def _solids(where: str, bodies: Iterable[tuple[str, Body]]) -> Iterator[Finding]
                 yield from _pair(f"{here}.along", along, f"{here}.up", up)
 
 
-def _pattern(where: str, pattern: Pattern, *, is_round: bool = False) -> Iterator[Finding]:
-    """What is `is_round`, as a gauge is about its line, need not say which way is up."""
+def _pattern(where: str, pattern: Pattern, *, has_up: bool = True) -> Iterator[Finding]:
+    """One without `has_up`, such as a gauge, which is symmetric about its line, need not state which way is up."""
     if not isinstance(pattern, Pose):
         return
     here, usual = f"{where}.pose", Pose()
@@ -92,7 +92,7 @@ def _pattern(where: str, pattern: Pattern, *, is_round: bool = False) -> Iterato
         yield Finding(here, f"it has {ends[0]} alone", "Give both from and to, or at and along")
     elif ends and (pattern.at != usual.at or pattern.along != usual.along):
         yield Finding(here, "it has both from and to and at or along", "Leave one of them")
-    up = None if is_round and pattern.up == usual.up else pattern.up
+    up = None if not has_up and pattern.up == usual.up else pattern.up
     yield from _pair(f"{here}.{'to' if ends else 'along'}", pattern.direction, f"{here}.up", up)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from flexstage.base.number import Array, Number, first_design
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
 from flexstage.parts.part import Part, inner
-from flexstage.parts.shape import Profiled, Section, Shaped
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import Profiled, Shaped
 from flexstage.show.scene.facet import SHARP, Facet, Paint, circle, extrude, loft, pierce, rectangle
 
 _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
@@ -63,14 +64,21 @@ def part_facets(part: Part, paint: Paint, marker: float, *, steps: int = 1) -> l
     own = inner(part)
     if not isinstance(own, Shaped):
         ends = 0.5 * marker * np.array([-1.0, 1.0])
-        rings, round_section, stations = extrude(ends, [rectangle(marker, marker)] * 2), False, ends
+        silhouette, is_smooth = [(end, Rectangle(marker, marker)) for end in ends], False
     else:
-        sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
-        stations = np.array([station for station, _ in own.silhouette])
-        rings = extrude(stations, [_ring(section, sides) for _, section in own.silhouette])
-        round_section = own.throat.is_round
+        silhouette, is_smooth = own.silhouette, own.is_axisymmetric
+    sides = _ROUND_NECK_SIDES if isinstance(own, Profiled) else _ROUND_SIDES
+    angles = 2.0 * np.pi * (np.arange(sides) + 0.5) / sides
+    stations = np.array([station for station, _ in silhouette])
+    rings = extrude(stations, [section.outline(angles) for _, section in silhouette])
     rings, shares = _more_rings(rings, (stations - stations[0]) / (stations[-1] - stations[0]), steps)
-    return loft(rings, paint, round_section=round_section, shares=shares)
+    facets = loft(rings, paint, round_section=is_smooth, closed=False, shares=shares)
+    for (station, section), turn, share in ((silhouette[0], -1, 0.0), (silhouette[-1], 1, 1.0)):
+        for piece in section.pieces(angles):
+            count = len(piece)
+            face = np.column_stack([np.full(count, station), piece])[::turn]
+            facets.append(Facet(face, (SHARP,) * count, paint, np.full(count, share)))
+    return facets
 
 
 def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
@@ -80,11 +88,6 @@ def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
     first = np.minimum(places.astype(int), len(counts) - 1)
     weight = (places - first)[:, None, None]
     return (1.0 - weight) * rings[first] + weight * rings[first + 1], np.interp(places, np.arange(len(shares)), shares)
-
-
-def _ring(section: Section, sides: int) -> Array:
-    height, width = first_value(section.height), first_value(section.width)
-    return circle(height, sides) if section.is_round else rectangle(height, width)
 
 
 def simplification(solid: Solid) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.parts.part import Part, inner
+from flexstage.parts.profile import single
 from flexstage.parts.shape import Shaped
 
 COLUMNS = 5
@@ -46,11 +47,9 @@ def bend_of(part: Part | None) -> Bend:
 
 
 def _flexibility(part: Shaped, shares: Array) -> Array:
-    """1 / I in the middle of each interval of shares (n + 1,), over the largest: heights and widths are straight between stations."""
-    stations, sections = zip(*part.silhouette, strict=True)
-    places = stations[0] + 0.5 * (shares[1:] + shares[:-1]) * (stations[-1] - stations[0])
-    height, width = (np.interp(places, stations, [getattr(each, name) for each in sections]) for name in ("height", "width"))
-    moment = height**4 if part.throat.is_round else height * width * np.minimum(height, width) ** 2
+    """1 / I in the middle of each interval of shares (n + 1,), over the largest: sizes are straight between stations."""
+    places = (0.5 * (shares[1:] + shares[:-1]) - 0.5) * single(part.span)
+    moment = part.section_at(places).least_inertia
     return np.min(moment) / moment
 
 

@@ -115,7 +115,7 @@ def _is_round(form: Form) -> bool:
         return any(map(_is_round, (form.solid, *form.holes)))
     if isinstance(form, Cylinder):
         return float(np.real(form.length)) > _PLATE * float(np.real(form.diameter if form.bore is None else form.bore))
-    return isinstance(form, Sphere) or (isinstance(form, Shaped) and form.is_round and form.is_prismatic)
+    return isinstance(form, Sphere) or (isinstance(form, Shaped) and form.is_axisymmetric and form.is_prismatic)
 
 
 def _solids(component: Component) -> Iterator[list[occ.TopoDS_Shape]]:

@@ -18,6 +18,7 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.register import Register
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere
+from flexstage.parts.cruciform import Cruciform
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
@@ -57,7 +58,8 @@ def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
 
     It is thin along y and wide along z. Raises `DesignError` for a kind whose shape nobody offers.
 
-    >>> from flexstage.parts.leaf import Leaf
+    >>> from flexstage.parts.cruciform import Cruciform
+    from flexstage.parts.leaf import Leaf
     >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
     >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
     (2.0, ['end', 'start'])
@@ -228,6 +230,14 @@ def _polyline(points: list[tuple[float, float]]) -> Curve:
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]
 
 
+def prism(form: Shaped) -> occ.Solid:
+    """A part of one section, drawn by the corners of its outline [mm]."""
+    half = 0.5 * _mm(form.span)
+    corners = [occ.Pnt(-half, _mm(y), _mm(z)) for y, z in form.throat.outline(np.zeros(0))]
+    sides = [occ.Segment(here, there) for here, there in pairwise([*corners, corners[0]])]
+    return occ.Face(occ.Wire(sides)).Extrude(occ.Vec(2.0 * half, 0, 0))
+
+
 @dataclass(frozen=True)
 class Shape:
     """A kind of part as a CAD solid in millimetres: what draws it at the origin, and what draws it as a specimen, with stubs at its ends.
@@ -246,6 +256,7 @@ _OWN: Mapping[type[Shaped], Shape] = {
     Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
     ReinforcedLeaf: Shape(reinforced_solid),
     Rod: Shape(lambda form: _round(form.diameter, form.length), bar),
+    Cruciform: Shape(prism),
     Piezo: Shape(lambda form: _round(form.diameter, form.length)),
 }
 SHAPES: Register[Shape] = Register("flexstage.shapes", {part.kind: shape for part, shape in _OWN.items()})

@@ -95,7 +95,7 @@ class _Subject:
     def stubs(self) -> Array:
         """Compliance (6, 6) of both stubs about the hinge's centre."""
         section, total = own_stub(self.part)[0], np.zeros((6, 6))
-        form = circle(float(section.height)) if section.is_round else rectangle(float(section.height), float(section.width))
+        form = circle(float(section.height)) if section.is_axisymmetric else rectangle(float(section.height), float(section.width))
         for sign, length in ((-1.0, self.first), (1.0, self.second)):
             if length > 0.0:
                 total += _about_centre(beam(form, length, self.medium), sign * 0.5 * (span(self.part) + length))

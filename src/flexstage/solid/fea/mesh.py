@@ -20,7 +20,7 @@ from flexstage.solid.fea.component import Component
 from flexstage.solid.fea.content import content
 from flexstage.solid.fea.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, Fineness
 from flexstage.solid.fea.mirror import Mirrors
-from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, bends_both_ways, span, thinnest
+from flexstage.solid.fea.piece import MILLIMETRES, Form, Medium, Piece, span, thinnest
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.straighten import straighten
 
@@ -186,7 +186,7 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
 
 def _is_notch(form: Form) -> bool:
     """Whether it is a hinge with arcs across a width: its strain changes from face to face and along it, but smoothly."""
-    return isinstance(form, Shaped) and form.has_arc and not (form.throat.is_round or form.slender)
+    return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
 
 
 def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> MeshingParameters:
@@ -240,7 +240,7 @@ def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
     >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
     []
     """
-    if not (form.has_arc and form.throat.is_round):
+    if not (form.has_arc and form.is_axisymmetric):
         return
     size = _CORE * neck * thinnest(form)
     stations, sections = zip(*form.silhouette, strict=True)
@@ -261,7 +261,7 @@ def _root_points(form: Shaped, size: float) -> Array:
     along = np.linspace(-1.0, 1.0, 1 + int(np.ceil(2.0 * max(high, wide) / size)))
     one = np.ones_like(along)
     edges = [(along, one), (along, -one), (one, along), (-one, along)]
-    if form.end.is_round:
+    if form.is_axisymmetric:
         edges = [(np.cos(np.pi * along), np.sin(np.pi * along))]
     across = np.hstack(edges)
     return np.vstack([np.stack([np.full_like(across[0], end), high * across[0], wide * across[1]], axis=1) for end in (-half, half)])
@@ -299,7 +299,7 @@ def _thicker(piece: Piece, centre: Array) -> float:
         return 1.0
     stations, sections = zip(*piece.form.silhouette, strict=True)
     place = float(((centre - piece.frame.position) @ piece.frame.rotation)[0, 0])
-    return float(np.interp(place, stations, [min(section.height, section.width) for section in sections])) / thinnest(piece.form)
+    return float(np.interp(place, stations, [section.thinnest for section in sections])) / thinnest(piece.form)
 
 
 def _size(piece: Piece, fineness: Fineness) -> float:
@@ -312,7 +312,7 @@ def _size(piece: Piece, fineness: Fineness) -> float:
 
 def _is_strut(form: Shaped) -> bool:
     """Whether it is a neck of one section, which ends on blocks wider than itself."""
-    return form.is_prismatic and not form.slender and bends_both_ways(form)
+    return form.is_prismatic and not form.slender and form.bends_both_ways
 
 
 def _refuse_mesh(component: Component, reason: str) -> Exception:

@@ -13,7 +13,6 @@ from flexstage.base.number import Array, Number
 from flexstage.base.register import Register
 from flexstage.mechanism.expand import PlacedLink
 from flexstage.parts.body import Cylinder, Solid
-from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.material import Material, Oriented
 from flexstage.parts.part import Part, Restricted
@@ -166,16 +165,6 @@ def form_digest(form: Form) -> str:
     return digest(form, physics=True) + (OFFERED_SHAPES.offer(form.kind) if isinstance(form, Shaped) else "")
 
 
-def bends_both_ways(part: Shaped) -> bool:
-    """Whether a part is meant to bend about y as about z.
-
-    >>> from flexstage.parts.rod import Rod
-    >>> bends_both_ways(Rod("steel", 0.01, 1e-3))
-    True
-    """
-    return Freedom.RY in part.intended and Freedom.RZ in part.intended
-
-
 def span(form: Form) -> float:
     """Length of a link's form between its end faces [m].
 
@@ -199,8 +188,7 @@ def end_area(form: Form) -> float:
         return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
     if isinstance(form, Solid):
         return _single(form.sides[..., 1]) * _single(form.sides[..., 2])
-    end = form.end
-    return 0.25 * np.pi * _single(end.height) ** 2 if end.is_round else _single(end.height) * _single(end.width)
+    return _single(form.end.area)
 
 
 def thinnest(form: Form) -> float:
@@ -210,9 +198,7 @@ def thinnest(form: Form) -> float:
     >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
     0.02
     """
-    if isinstance(form, Solid):
-        return _single(form.thinnest)
-    return min(_single(form.throat.height), _single(form.throat.width))
+    return _single(form.thinnest if isinstance(form, Solid) else form.throat.thinnest)
 
 
 def _single(value: Number) -> float:

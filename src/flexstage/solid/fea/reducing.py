@@ -53,9 +53,9 @@ def _narrow_elements(piece: Piece, fineness: Fineness) -> float:
 
 def _thin_elements(form: Form, fineness: Fineness) -> float:
     """Elements of usual meshes in what is thin over a width: a layer of prisms in a leaf, several about the middle plane of a notch."""
-    if not isinstance(form, Shaped) or form.throat.is_round:
+    if not isinstance(form, Shaped) or form.is_axisymmetric:
         return 0.0
-    size, width = fineness.neck * thinnest(form), float(np.real(form.throat.width))
+    size, width = fineness.neck * thinnest(form), float(np.real(form.throat.area)) / thinnest(form)
     if form.slender:
         return _LEAF * span(form) * width / (_TRIANGLE * size**2)
     if not form.has_arc:
@@ -171,7 +171,7 @@ class Reduce(ComponentJob):
         thin = max(self.component.pieces, key=lambda piece: _thin_elements(piece.form, self.reduction.fineness))
         if found is None or not isinstance(thin.form, Shaped):
             return found
-        width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.height))
+        width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.thinnest))
         ratio = f"{thin.name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
         more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")

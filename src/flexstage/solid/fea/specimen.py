@@ -18,10 +18,11 @@ from netgen import occ
 from flexstage.base.number import Number
 from flexstage.parts.profile import Contour, Elliptic, Filleted, Profile, Straight, length
 from flexstage.parts.profile import rise as cut_height
-from flexstage.parts.shape import Profiled, Section, Shaped
+from flexstage.parts.section import Circle, Rectangle, Section
+from flexstage.parts.shape import Profiled, Shaped
 from flexstage.solid.fea.contour import contour_edges
 from flexstage.solid.fea.mirror import Mirrors, cut_at_mirrors, is_symmetric
-from flexstage.solid.fea.piece import MILLIMETRES, bends_both_ways
+from flexstage.solid.fea.piece import MILLIMETRES
 from flexstage.solid.fea.roots import rises
 
 START, END = "start", "end"
@@ -34,8 +35,8 @@ _NEAR = 1e-6
 """Relative to the hinge's length: what counts as lying in a plane."""
 _SAME = 1e-9
 """Distance [mm] below which two points are one."""
-_LONG = 3.0
-"""Elements of a rod over its radius."""
+_LONG = 1.5
+"""Elements of a rod over its diameter."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
 """Least element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
 _SEAT = 5.0
@@ -108,9 +109,7 @@ def grain(part: Shaped) -> float:
     0.002
     """
     end = part.end.first
-    if end.is_round or not bends_both_ways(part):
-        return float(end.height)
-    return float(np.sqrt(end.height * end.width))
+    return float(np.sqrt(end.height * end.width) if part.bends_both_ways else end.thinnest)
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
@@ -125,7 +124,8 @@ def own_stub(part: Shaped) -> tuple[Section, float]:
     if rises(part):
         return end, float(end.height)
     beyond = _SEAT * grain(part)
-    return Section(end.height + 2.0 * beyond, end.width + 2.0 * beyond, end.is_round), beyond
+    block = Circle if end.is_axisymmetric else Rectangle
+    return block(end.height + 2.0 * beyond, end.width + 2.0 * beyond), beyond
 
 
 def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
@@ -142,7 +142,7 @@ def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
 
 def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
     side = _Side(0.5 * _mm(part.throat.height), part.profile, stubs)
-    if part.throat.is_round:
+    if part.is_axisymmetric:
         return _name_faces(_revolve(side), side, 2.0 * side.rise, size)
     if part.end.first.width == part.throat.first.width:
         return _wide(side, _mm(part.throat.width), size)
@@ -167,22 +167,22 @@ def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS
 
 def _prism(part: Shaped) -> occ.TopoDS_Shape:
     side = _Side(0.5 * _mm(part.throat.height), Straight(part.span))
-    return _revolve(side) if part.throat.is_round else _extrude(side, _mm(part.throat.width))
+    return _revolve(side) if part.is_axisymmetric else _extrude(side, _mm(part.throat.width))
 
 
 def _thinness(part: Shaped) -> float:
     """Largest element [mm] where it is thinnest: those of leaves may be flat."""
-    height, width = _mm(part.throat.height), _mm(part.throat.width)
-    if part.throat.is_round:
-        return (_LONG if part.slender else 2.0) * (0.5 * height)
-    return min(height, width) if bends_both_ways(part) else max(height, _FLAT_STRAIGHT * min(width, _mm(part.span)))
+    thin = _mm(part.throat.thinnest)
+    if part.bends_both_ways:
+        return _LONG * thin if part.slender else thin
+    return max(thin, _FLAT_STRAIGHT * min(_mm(part.throat.width), _mm(part.span)))
 
 
 def _block(part: Shaped, sign: float, start: float, depth: float) -> occ.TopoDS_Shape:
     """The block [mm] at one end of a hinge."""
     section, _ = own_stub(part)
     high, wide = _mm(section.height), _mm(section.width)
-    if section.is_round:
+    if section.is_axisymmetric:
         return occ.Cylinder(occ.Pnt(sign * start, 0, 0), occ.X if sign > 0.0 else -occ.X, 0.5 * high, depth)
     low, top = sorted((sign * start, sign * (start + depth)))
     return occ.Box(occ.Pnt(low, -0.5 * high, -0.5 * wide), occ.Pnt(top, 0.5 * high, 0.5 * wide))

@@ -1,0 +1,133 @@
+"""Cruciform torsion hinges: two crossed leaves in one piece, a plus sign drawn along x."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, magnitude
+from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.section import Section
+from flexstage.parts.shape import Order, Shaped
+
+
+@dataclass(frozen=True, eq=False)
+class Cross(Section):
+    """A plus sign of two equal leaves: `thickness` t, height and width b, sharp inner corners.
+
+    >>> section = cross(1e-3, 10e-3)
+    >>> [round(float(value), 4) for value in (section.area * 1e6, section.inertia_y * 1e12, section.torsion * 1e12, section.shear)]
+    [19.0, 84.0833, 6.5819, 2.3201]
+    """
+
+    thickness: Number = 0.0
+
+    @property
+    def area(self) -> Number:
+        """That of both leaves, t (2 b - t) [m^2]."""
+        return self.thickness * (2.0 * self.width - self.thickness)
+
+    @property
+    def inertia_y(self) -> Number:
+        """(t b^3 + (b - t) t^3) / 12 [m^4]."""
+        cubes = self.thickness * self.width**3 + (self.width - self.thickness) * self.thickness**3
+        return cubes / 12.0
+
+    @property
+    def inertia_z(self) -> Number:
+        """That about y [m^4]."""
+        return self.inertia_y
+
+    @property
+    def torsion(self) -> Number:
+        """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 from b = 3 t up.
+
+        Two strips b t^3 / 3 less what the junction and the ends change (the form of Trayer & March, NACA Report 334, 1930). The numbers are
+        those of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section 106), solved by finite elements.
+        """
+        slender = self.width / self.thickness
+        return self.thickness**4 * (2.0 / 3.0 * slender - 0.08476 - 4.6 * np.exp(-0.5 * np.pi * slender))
+
+    @property
+    def warping(self) -> Number:
+        """C_w = b^3 t^3 / 72 [m^6]: leaves warp across their thickness alone (Timoshenko & Gere, Theory of Elastic Stability, 5.3)."""
+        return (self.width * self.thickness) ** 3 / 72.0
+
+    @property
+    def sectorial(self) -> Number:
+        """b t / 4 [m^2], at the corners of the leaves' ends."""
+        return 0.25 * self.width * self.thickness
+
+    @property
+    def thinnest(self) -> Number:
+        """The leaves' thickness [m]."""
+        return self.thickness
+
+    def outline(self, angles: Array) -> Array:  # noqa: ARG002
+        """Its twelve corners."""
+        far, near = 0.5 * self.first.width, 0.5 * self.first.thickness
+        quarter = np.array([(near, -far), (near, -near), (far, -near)])
+        turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
+        return np.concatenate([quarter @ np.linalg.matrix_power(turn, count) for count in range(4)])
+
+    def pieces(self, angles: Array) -> tuple[Array, ...]:
+        """The leaf along y, and both halves of the other one."""
+        corners = self.outline(angles)
+        return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
+
+    def torsional_stress(self, torque: Array, uniform: Array) -> Array:
+        """T t / J on the faces of the leaves, and the shear of strips that bend; the inner corner's own stress is not counted."""
+        strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
+        return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
+
+
+def cross(thickness: Number, width: Number) -> Cross:
+    """The plus sign of leaves of `thickness` and `width`.
+
+    Its shear factor is that of the energy of Jourawski's shear stress V Q(y) / (I b(y)), k = A / I^2 times the integral of Q^2 / b(y).
+    """
+    half, near = 0.5 * width, 0.5 * thickness
+    plain = Cross(width, width, thickness=thickness)
+    root, square, product = near / half, half * half - near * near, half * near
+    leaf = near * half**5 * (8.0 / 15.0 - root + 2.0 / 3.0 * root**3 - 0.2 * root**5)
+    middle = near**3 / half * (square * square + 4.0 / 3.0 * square * product + 8.0 / 15.0 * product * product)
+    return Cross(width, width, plain.area / plain.inertia_y**2 * (leaf + middle), thickness)
+
+
+@dataclass(frozen=True, eq=False)
+class Cruciform(Shaped):
+    """A torsion hinge of two crossed leaves in one piece: `length` along x, both `thickness` thick and `width` wide, along y and along z.
+
+    Intended freedom: the rotation about x.
+    """
+
+    kind: ClassVar[str] = "cruciform"
+    slender: ClassVar[bool] = True
+    material: str
+    length: Annotated[Number, LENGTH, POSITIVE]
+    thickness: Annotated[Number, LENGTH, POSITIVE]
+    width: Annotated[Number, LENGTH, POSITIVE]
+
+    @property
+    def intended(self) -> tuple[Freedom, ...]:
+        """Twist."""
+        return (Freedom.RX,)
+
+    @property
+    def span(self) -> Number:
+        """Its length [m]."""
+        return self.length
+
+    @property
+    def throat(self) -> Cross:
+        """Its one section."""
+        return cross(self.thickness, self.width)
+
+    @property
+    def orders(self) -> Iterator[Order]:
+        """Its leaves are thinner than wide."""
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them")

@@ -1,0 +1,261 @@
+"""Cross-sections of parts: outline, area, second moments, Saint-Venant torsion, warping, shear factors and largest stresses.
+
+Axes of the link frame: x along the part, y along the section's height, z along its width. A section is symmetric about both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from flexstage.base.number import Array, Number, magnitude, with_step
+from flexstage.parts.profile import single
+
+PARABOLIC = 6.0 / 5.0
+"""Shear factor of a rectangle from the energy of the parabolic shear stress (Castigliano); that of the notch formulas."""
+_ODD = np.arange(1.0, 8.0, 2.0)
+_ODD_FIFTH_POWERS = 1.00452376279513961613
+"""Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A cross-section: `height` along y and `width` along z over all [m], `shear` the factor k of its shear flexibility k / (G A).
+
+    A form of section is a dataclass of its dimensions, which may be arrays and complex. It states `area`, `inertia_y`, `inertia_z`,
+    `torsion` and `outline`, and what differs from the rest.
+    """
+
+    height: Number
+    width: Number
+    shear: Number = PARABOLIC
+
+    @property
+    def area(self) -> Number:
+        """Area [m^2]."""
+        raise NotImplementedError
+
+    @property
+    def inertia_y(self) -> Number:
+        """Second moment of area about y [m^4]."""
+        raise NotImplementedError
+
+    @property
+    def inertia_z(self) -> Number:
+        """Second moment of area about z [m^4]."""
+        raise NotImplementedError
+
+    @property
+    def torsion(self) -> Number:
+        """Saint-Venant's torsion constant J [m^4]."""
+        raise NotImplementedError
+
+    @property
+    def warping(self) -> Number | None:
+        """Warping constant C_w [m^6]; `None` where plane sections stay plane in torsion, or are taken to."""
+        return None
+
+    @property
+    def sectorial(self) -> Number:
+        """Largest value of the warping function [m^2]: the stress by a bimoment B is B sectorial / C_w."""
+        return 0.25 * self.height * self.width
+
+    @property
+    def polar(self) -> Number:
+        """Polar second moment I_y + I_z [m^4]."""
+        return self.inertia_y + self.inertia_z
+
+    @property
+    def least_inertia(self) -> Number:
+        """Least second moment of area [m^4]."""
+        return np.minimum(self.inertia_y, self.inertia_z)
+
+    @property
+    def thinnest(self) -> Number:
+        """Least thickness of its material [m]."""
+        return np.minimum(self.height, self.width)
+
+    @property
+    def is_axisymmetric(self) -> bool:
+        """Whether its outline is a circle about x."""
+        return False
+
+    def outline(self, angles: Array) -> Array:
+        """Corners (n, 2) of the outline, counter-clockwise, of the first design [m]; of a curve its points at `angles` [rad] from y."""
+        raise NotImplementedError
+
+    def pieces(self, angles: Array) -> tuple[Array, ...]:
+        """Convex polygons (n, 2) that make up the outline, as many in each design."""
+        return (self.outline(angles),)
+
+    def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
+        """An upper bound of the normal stress of an `axial` stress and of bending by |M_y| / I_y and |M_z| / I_z [Pa/m]."""
+        return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
+
+    @property
+    def shear_peak(self) -> float:
+        """The largest shear stress of a shear force over the mean one."""
+        return 1.5
+
+    def torsional_stress(self, torque: Array, uniform: Array) -> Array:
+        """Largest shear stress [Pa] of a torque of which a share `uniform` is carried as Saint-Venant has it, the rest by warping."""
+        raise NotImplementedError
+
+    def each(self, function: Callable[[Number], Any]) -> Self:
+        """The section with a function of each of its numbers in their place."""
+        return type(self)(**{item.name: function(getattr(self, item.name)) for item in fields(self)})
+
+    @property
+    def first(self) -> Self:
+        """That of the first design, in floats."""
+        return self.each(single)
+
+
+@dataclass(frozen=True, eq=False)
+class Rectangle(Section):
+    """The rectangle `height` x `width`.
+
+    >>> section = Rectangle(0.001, 0.01)
+    >>> round(section.area, 12), round(section.inertia_z * 12e12, 9)
+    (1e-05, 10.0)
+    """
+
+    @cached_property
+    def area(self) -> Number:
+        """Height times width [m^2]."""
+        return self.height * self.width
+
+    @cached_property
+    def inertia_y(self) -> Number:
+        """A b^2 / 12 [m^4]."""
+        return self.area * self.width * self.width / 12.0
+
+    @cached_property
+    def inertia_z(self) -> Number:
+        """A t^2 / 12 [m^4]."""
+        return self.area * self.height * self.height / 12.0
+
+    @cached_property
+    def torsion(self) -> Number:
+        """As `rectangle_torsion` has it [m^4]."""
+        return rectangle_torsion(self.height, self.width)
+
+    @cached_property
+    def warping(self) -> Number:
+        """That of the shape y z, b^3 t^3 / 144 [m^6] (see `beams.torsion`)."""
+        return self.area * self.area * self.area / 144.0
+
+    def outline(self, angles: Array) -> Array:  # noqa: ARG002
+        """Its four corners."""
+        section = self.first
+        return 0.5 * np.array([section.height, section.width]) * [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+
+    def torsional_stress(self, torque: Array, uniform: Array) -> Array:
+        """Saint-Venant's in the middle of the longer sides, and the shear of strips that bend."""
+        short, long = np.minimum(self.height, self.width), np.maximum(self.height, self.width)
+        ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
+        crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
+        strips = 9.0 * magnitude(1.0 - uniform) / (long * long * short)
+        return torque * (magnitude(uniform) * crest * short / self.torsion + strips)
+
+
+@dataclass(frozen=True, eq=False)
+class Circle(Section):
+    """The circle whose diameter is its height and its width."""
+
+    @cached_property
+    def area(self) -> Number:
+        """Pi d^2 / 4 [m^2]."""
+        return 0.25 * np.pi * self.height * self.height
+
+    @cached_property
+    def inertia_y(self) -> Number:
+        """A d^2 / 16 [m^4]."""
+        return self.area * self.height * self.height / 16.0
+
+    @property
+    def inertia_z(self) -> Number:
+        """That about y [m^4]."""
+        return self.inertia_y
+
+    @property
+    def torsion(self) -> Number:
+        """The polar second moment [m^4]."""
+        return 2.0 * self.inertia_y
+
+    @property
+    def is_axisymmetric(self) -> bool:
+        """It is."""
+        return True
+
+    def outline(self, angles: Array) -> Array:
+        """Points at the angles."""
+        return 0.5 * single(self.height) * np.column_stack([np.cos(angles), np.sin(angles)])
+
+    def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
+        """Bending about both axes adds up as a vector."""
+        return axial + 0.5 * self.height * np.sqrt(about_y * about_y + about_z * about_z)
+
+    @property
+    def shear_peak(self) -> float:
+        """Parabolic, 4/3."""
+        return 4.0 / 3.0
+
+    def torsional_stress(self, torque: Array, uniform: Array) -> Array:  # noqa: ARG002  (it does not warp)
+        """Torque times radius over J [Pa]."""
+        return torque * 0.5 * self.height / self.torsion
+
+
+def circle(diameter: Number, shear: Number = 10.0 / 9.0) -> Circle:
+    """The circle of `diameter` [m]; `shear` that of the energy of the parabolic stress unless stated.
+
+    >>> section = circle(2.0, cowper_circle(0.3))
+    >>> round(section.area / np.pi, 12), round(section.torsion / np.pi, 12)
+    (1.0, 0.5)
+    """
+    return Circle(diameter, diameter, shear)
+
+
+def rectangle_torsion(thickness: Number, width: Number) -> Array:
+    """Saint-Venant torsion constant J [m^4] of a rectangle, either side the longer, correct to rounding.
+
+    J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
+    section 109). The sum is (31/32) zeta(5) less a series in exp(-n pi c / a), of which four terms leave out less than 1e-17.
+
+    >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
+    (0.140577015, 33.1233)
+    """
+    tall = np.real(width) < np.real(thickness)
+    short, long = np.where(tall, width, thickness), np.where(tall, thickness, width)
+    ratio = long / short
+    decay = np.exp(-np.pi * np.real(ratio))
+    square, series, slope = decay * decay, _ODD_FIFTH_POWERS, 0.0
+    for odd in (1.0, 3.0, 5.0, 7.0):
+        share = decay / (1.0 + decay)
+        series = series - 2.0 / odd**5 * share
+        slope = slope + 2.0 * np.pi / odd**4 * share / (1.0 + decay)
+        decay = decay * square
+    series = with_step(series, slope, ratio)
+    return short**3 * (long - 192.0 / np.pi**5 * short * series) / 3.0
+
+
+def cowper_rectangle(poisson: Number) -> Number:
+    """Shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+
+    >>> round(cowper_rectangle(0.3), 6)
+    1.176923
+    """
+    return (12.0 + 11.0 * poisson) / (10.0 * (1.0 + poisson))
+
+
+def cowper_circle(poisson: Number) -> Number:
+    """Shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+
+    >>> round(cowper_circle(0.3), 6)
+    1.128205
+    """
+    return (7.0 + 6.0 * poisson) / (6.0 * (1.0 + poisson))
