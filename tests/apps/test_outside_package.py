@@ -200,3 +200,95 @@ def test_another_version_has_other_digests(work, package, tmp_path):
     ]
     first, second = (each.stdout for each in told)
     assert first != second
+
+
+CRUCIFORM = """format = "flexstage 1"
+name = "block on a torsion hinge"
+[materials.steel]
+like = "17-4PH"
+[parts]
+pivot = { kind = "cruciform", material = "steel", length = "30 mm", thickness = "2 mm", width = "10 mm" }
+[bodies.platform]
+solids = { block = { shape = "block", material = "steel", size = ["20 mm", "30 mm", "30 mm"] } }
+[links]
+pivot = { joins = ["ground", "platform"], part = "pivot", at = ["-25 mm", "0 mm", "0 mm"], along = "x", bends = "z" }
+[damping]
+law = "modal"
+ratio = 0.01
+"""
+
+
+@pytest.fixture(scope="module")
+def crossed(tmp_path_factory):
+    """A stage on the cruciform hinge, the same on a hinge `plus`, and a package that offers it: our part and law."""
+    folder = tmp_path_factory.mktemp("crossed")
+    (folder / "own.toml").write_text(CRUCIFORM)
+    (folder / "plus.toml").write_text(CRUCIFORM.replace('"cruciform"', '"plus"'))
+    package = folder / "site" / "plus_hinge"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    ours = PACKAGE.parents[1] / "src" / "flexstage"
+    for floor, module in (("parts", "part"), ("beams", "law")):
+        text = (ours / floor / "cruciform.py").read_text()
+        text = text.replace("flexstage.parts.cruciform", "plus_hinge.part").replace('"cruciform"', '"plus"').replace("Cruciform", "Plus")
+        (package / f"{module}.py").write_text(text)
+    (package / "shape.py").write_text("from flexstage.solid.fea.draw import Shape, prism\n\nPLUS = Shape(prism)\n")
+    told = folder / "site" / "plus_hinge-1.0.dist-info"
+    told.mkdir()
+    (told / "METADATA").write_text("Metadata-Version: 2.1\nName: plus-hinge\nVersion: 1.0\n")
+    offers = {"parts": "part:Plus", "laws": "law:CRUCIFORM", "shapes": "shape:PLUS"}
+    lines = [f"[flexstage.{group}]\nplus = plus_hinge.{entry}\n" for group, entry in offers.items()]
+    (told / "entry_points.txt").write_text("\n".join(lines))
+    return folder
+
+
+def test_a_hinge_of_any_section_is_as_known_from_outside_as_from_inside(crossed):
+    """Every number of theory is that of our own: nobody but the registers knows either kind."""
+    told = alike(crossed, "check {0}.toml", "analyse {0}.toml --json {0}-analyse.json")
+    assert told.count("no findings") == 2
+    assert '"const": "plus"' in told
+    assert '"const": "cruciform"' in told
+
+
+@pytest.mark.full
+def test_every_command_knows_a_hinge_of_any_section(crossed):
+    alike(
+        crossed,
+        "analyse {0}.toml --report {0}.html",
+        *(f"{name} {{0}}.toml --json {{0}}-{name}.json" for name in ("buckle", "sensitivities")),
+    )
+
+
+def alike(folder, *commands):
+    """Commands of both stages, whose documents have the same numbers, and the schema; what they say."""
+    told = flexstage(folder, *(words.format(name) for name in ("own", "plus") for words in commands), "schema", path=folder / "site")
+    for document in folder.glob("own-*.json"):
+        own, plus = (json.loads(path.read_text()) for path in (document, document.with_name(document.name.replace("own", "plus"))))
+        assert numbers(own) == numbers(plus)
+    return told
+
+
+def numbers(document):
+    """All numbers of a JSON document, in order."""
+    if isinstance(document, dict | list):
+        values = document.values() if isinstance(document, dict) else document
+        return [number for value in values for number in numbers(value)]
+    return [document] if isinstance(document, float) else []
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", ["own", "plus"])
+def test_finite_elements_verify_and_calibrate_a_hinge_of_any_section(crossed, name):
+    commands = (f"verify {name}.toml {ROUGH} --json verify.json", f"calibrate {name}.toml -o calibrated.toml {ROUGH}")
+    flexstage(crossed, *commands, path=crossed / "site")
+    rows = json.loads((crossed / "verify.json").read_text())["rows"]
+    twist = next(row for row in rows if row["group"] == "hinge pivot" and row["figure"] == "compliance rx")
+    assert twist["theory"] == pytest.approx(twist["fea"], rel=0.1)  # the block that it grows on yields, too
+    given = tomllib.loads((crossed / "calibrated.toml").read_text())["parts"]
+    assert given["pivot-drawn"]["kind"] == ("plus" if name == "plus" else "cruciform")
+
+
+def test_nothing_but_its_files_and_registers_names_the_cruciform_hinge():
+    sources = PACKAGE.parents[1] / "src" / "flexstage"
+    naming = {path.relative_to(sources).as_posix() for path in sources.rglob("*.py") if "cruciform" in path.read_text().lower()}
+    assert naming == {"parts/cruciform.py", "beams/cruciform.py", "parts/__init__.py", "beams/__init__.py", "solid/fea/draw.py"}

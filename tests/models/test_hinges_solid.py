@@ -18,12 +18,13 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Filleted, FreeForm, Straight
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
+from flexstage.parts.section import Rectangle, circle
 from flexstage.solid.fea.draw import SHAPES, Shape, draw_form
 from flexstage.solid.fea.estimate import Accuracy
 from flexstage.solid.fea.hinge import hinge_compliance
 from flexstage.solid.fea.piece import medium
 from flexstage.solid.fea.roots import Roots
-from flexstage.solid.fea.stub import beam, circle, rectangle
+from flexstage.solid.fea.stub import beam
 from flexstage.spatial.frame import transport
 from tests.analytic.hinges import STEEL as IN_MILLIMETRES
 from tests.analytic.test_leaf_plate import REINFORCED, reinforced_in_mm
@@ -89,7 +90,7 @@ def test_stubs_are_of_full_height_and_taken_off():
     """5 mm high and as long, 3 mm wide: as beams beyond the arcs' ends, 2 mm and 7 mm from the centre."""
     found = hinge_compliance(NOTCH, STEEL, ONCE)
     assert found.stub == pytest.approx(5.0 * MM)
-    alone = beam(rectangle(5.0 * MM, 3.0 * MM), 5.0 * MM, medium(STEEL))
+    alone = beam(Rectangle(5.0 * MM, 3.0 * MM), 5.0 * MM, medium(STEEL))
     taken = sum(arm @ alone @ arm.T for arm in (transport(np.array([x, 0.0, 0.0])) for x in (-4.5 * MM, 4.5 * MM)))
     np.testing.assert_allclose(found.whole - found.compliance, taken, rtol=1e-9, atol=1e-9 * np.max(np.abs(taken)))
     np.testing.assert_allclose(found.compliance @ found.stiffness, np.eye(6), atol=1e-9)
@@ -120,7 +121,7 @@ def test_torsion_of_stubs_is_vlasovs(width):
     """
     size = 6.0 * MM
     found = hinge_compliance(Notch("m", 1.0 * MM, width * MM, Straight(size)), STEEL, Accuracy(error=0.0, orders=(4, 4), meshes=1))
-    halves = 2.0 * beam(rectangle(1.0 * MM, width * MM), 0.5 * size, medium(STEEL))[3, 3]
+    halves = 2.0 * beam(Rectangle(1.0 * MM, width * MM), 0.5 * size, medium(STEEL))[3, 3]
     assert found.compliance[3, 3] == pytest.approx(halves, rel=0.06)
 
 

@@ -1,6 +1,9 @@
-"""Cruciform torsion hinges by beam theory: Vlasov's torsion with ends that cannot warp."""
+"""Cruciform torsion hinges by beam theory, with ends that cannot warp."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -8,17 +11,30 @@ from flexstage.base.number import Number
 from flexstage.beams.beam import Beam, flexibility, inertia, shear_across
 from flexstage.beams.law import PartLaw, Range, ratio
 from flexstage.beams.quadrature import stations
-from flexstage.beams.torsion import Twisting, decays
+from flexstage.beams.torsion import Twisting, constrained_twist
 from flexstage.parts.cruciform import Cruciform, cross
 from flexstage.parts.material import Material
 from flexstage.parts.profile import Straight
+from flexstage.parts.section import Rectangle
+
+
+@dataclass(frozen=True, eq=False)
+class _HalfCross(Rectangle):
+    """One of both leaves, with half of the torsion constant of the `whole`."""
+
+    whole: Number = 0.0
+
+    @cached_property
+    def torsion(self) -> Number:
+        """Half of the whole's [m^4]."""
+        return 0.5 * self.whole
 
 
 def cruciform_beam(part: Cruciform, material: Material) -> Beam:
-    """The hinge as a Timoshenko beam with the twist rate of Vlasov between ends that cannot warp.
+    """The hinge as a Timoshenko beam whose leaves share a torque equally, each with the restrained warping of `beams.torsion`.
 
-    phi' = T / (G J) (1 - cosh(k x) / cosh(k L / 2)), k^2 = G J / (E C_w) (Vlasov, Thin-Walled Elastic Beams, 1961): the hinge is stiffer
-    than G J / L by 1 / (1 - tanh(k L / 2) / (k L / 2)). Not counted: contraction that rigid ends prevent, and that leaves stay plane.
+    Thin leaves end in Vlasov's torsion (Thin-Walled Elastic Beams, 1961): K = G J / L / (1 - tanh(k L / 2) / (k L / 2)),
+    k^2 = G J / (E C_w). Not counted: contraction that rigid ends prevent.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> hinge = cruciform_beam(Cruciform("steel", length=0.03, thickness=0.001, width=0.01), steel)
@@ -28,10 +44,8 @@ def cruciform_beam(part: Cruciform, material: Material) -> Beam:
     points = stations(Straight(part.length), part.thickness)
     section = cross(np.asarray(part.thickness)[..., None] + points.growth, np.asarray(part.width)[..., None])
     young, shear, density = (np.asarray(each)[..., None] for each in (material.modulus, material.shear, material.density))
-    rigidity, warping = shear * section.torsion, young * section.warping
-    wavenumber = np.sqrt(rigidity / warping)
-    straight, sloping = decays(points, wavenumber)
-    twisting = Twisting((1.0 - straight) / rigidity, -warping * wavenumber * sloping / rigidity)
+    leaf = constrained_twist(_HalfCross(section.thickness, section.width, whole=section.torsion), points, young, shear)
+    twisting = Twisting(0.5 * leaf.rate, leaf.bimoment)
     return Beam(points, section, flexibility(section, young, shear, twisting, shear_across(material)), inertia(section, density), twisting)
 
 
@@ -46,7 +60,7 @@ def torsional_buckling(part: Cruciform, material: Material) -> Number:
 
 def _ranges(part: Cruciform) -> tuple[Range, ...]:
     thin = Range("thickness over width", ratio(part.thickness, part.width), high=0.25)
-    return thin, Range("length over width", ratio(part.length, part.width), low=1.0)
+    return thin, Range("length over width", ratio(part.length, part.width), low=2.0)
 
 
 CRUCIFORM = PartLaw(cruciform_beam, concentration=lambda _: 1.0, ranges=_ranges, twisting_load=torsional_buckling)

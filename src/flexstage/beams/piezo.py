@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +21,12 @@ from flexstage.parts.section import Circle, circle, cowper_circle
 class _Cased(Circle):
     """A stack's ceramic in a casing: the second moment that its bending rigidity has."""
 
-    inertia_y: Number = 0.0
+    moment: Number = 0.0
+
+    @cached_property
+    def inertia_y(self) -> Number:
+        """As stated [m^4]."""
+        return self.moment
 
 
 def piezo_beam(part: Piezo) -> Beam:

@@ -78,7 +78,7 @@ def _slab(stations: tuple[float, float], sections: tuple[Section, Section], angl
 
 def _angles(form: Shaped) -> Array:
     """Where a round outline has corners."""
-    count = _corners(0.5 * max(max(section.height, section.width) for _, section in form.silhouette))
+    count = _corners(0.5 * max(single(np.maximum(section.height, section.width)) for _, section in form.silhouette))
     return 2.0 * np.pi * np.arange(count) / count
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -26,23 +27,23 @@ class Cross(Section):
 
     thickness: Number = 0.0
 
-    @property
+    @cached_property
     def area(self) -> Number:
         """That of both leaves, t (2 b - t) [m^2]."""
         return self.thickness * (2.0 * self.width - self.thickness)
 
-    @property
+    @cached_property
     def inertia_y(self) -> Number:
         """(t b^3 + (b - t) t^3) / 12 [m^4]."""
         cubes = self.thickness * self.width**3 + (self.width - self.thickness) * self.thickness**3
         return cubes / 12.0
 
-    @property
+    @cached_property
     def inertia_z(self) -> Number:
         """That about y [m^4]."""
         return self.inertia_y
 
-    @property
+    @cached_property
     def torsion(self) -> Number:
         """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 from b = 3 t up.
 
@@ -52,12 +53,12 @@ class Cross(Section):
         slender = self.width / self.thickness
         return self.thickness**4 * (2.0 / 3.0 * slender - 0.08476 - 4.6 * np.exp(-0.5 * np.pi * slender))
 
-    @property
+    @cached_property
     def warping(self) -> Number:
         """C_w = b^3 t^3 / 72 [m^6]: leaves warp across their thickness alone (Timoshenko & Gere, Theory of Elastic Stability, 5.3)."""
         return (self.width * self.thickness) ** 3 / 72.0
 
-    @property
+    @cached_property
     def sectorial(self) -> Number:
         """b t / 4 [m^2], at the corners of the leaves' ends."""
         return 0.25 * self.width * self.thickness

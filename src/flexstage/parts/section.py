@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -33,33 +33,37 @@ class Section:
     height: Number
     width: Number
     shear: Number = PARABOLIC
+    is_axisymmetric: ClassVar[bool] = False
+    """Whether the outline is a circle about x."""
+    shear_peak: ClassVar[float] = 1.5
+    """The largest shear stress of a shear force over the mean one."""
 
-    @property
+    @cached_property
     def area(self) -> Number:
         """Area [m^2]."""
         raise NotImplementedError
 
-    @property
+    @cached_property
     def inertia_y(self) -> Number:
         """Second moment of area about y [m^4]."""
         raise NotImplementedError
 
-    @property
+    @cached_property
     def inertia_z(self) -> Number:
         """Second moment of area about z [m^4]."""
         raise NotImplementedError
 
-    @property
+    @cached_property
     def torsion(self) -> Number:
         """Saint-Venant's torsion constant J [m^4]."""
         raise NotImplementedError
 
-    @property
+    @cached_property
     def warping(self) -> Number | None:
         """Warping constant C_w [m^6]; `None` where plane sections stay plane in torsion, or are taken to."""
         return None
 
-    @property
+    @cached_property
     def sectorial(self) -> Number:
         """Largest value of the warping function [m^2]: the stress by a bimoment B is B sectorial / C_w."""
         return 0.25 * self.height * self.width
@@ -79,11 +83,6 @@ class Section:
         """Least thickness of its material [m]."""
         return np.minimum(self.height, self.width)
 
-    @property
-    def is_axisymmetric(self) -> bool:
-        """Whether its outline is a circle about x."""
-        return False
-
     def outline(self, angles: Array) -> Array:
         """Corners (n, 2) of the outline, counter-clockwise, of the first design [m]; of a curve its points at `angles` [rad] from y."""
         raise NotImplementedError
@@ -95,11 +94,6 @@ class Section:
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
         """An upper bound of the normal stress of an `axial` stress and of bending by |M_y| / I_y and |M_z| / I_z [Pa/m]."""
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
-
-    @property
-    def shear_peak(self) -> float:
-        """The largest shear stress of a shear force over the mean one."""
-        return 1.5
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
         """Largest shear stress [Pa] of a torque of which a share `uniform` is carried as Saint-Venant has it, the rest by warping."""
@@ -167,6 +161,9 @@ class Rectangle(Section):
 class Circle(Section):
     """The circle whose diameter is its height and its width."""
 
+    is_axisymmetric: ClassVar[bool] = True
+    shear_peak: ClassVar[float] = 4.0 / 3.0
+
     @cached_property
     def area(self) -> Number:
         """Pi d^2 / 4 [m^2]."""
@@ -177,20 +174,15 @@ class Circle(Section):
         """A d^2 / 16 [m^4]."""
         return self.area * self.height * self.height / 16.0
 
-    @property
+    @cached_property
     def inertia_z(self) -> Number:
         """That about y [m^4]."""
         return self.inertia_y
 
-    @property
+    @cached_property
     def torsion(self) -> Number:
         """The polar second moment [m^4]."""
         return 2.0 * self.inertia_y
-
-    @property
-    def is_axisymmetric(self) -> bool:
-        """It is."""
-        return True
 
     def outline(self, angles: Array) -> Array:
         """Points at the angles."""
@@ -199,11 +191,6 @@ class Circle(Section):
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
         """Bending about both axes adds up as a vector."""
         return axial + 0.5 * self.height * np.sqrt(about_y * about_y + about_z * about_z)
-
-    @property
-    def shear_peak(self) -> float:
-        """Parabolic, 4/3."""
-        return 4.0 / 3.0
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:  # noqa: ARG002  (it does not warp)
         """Torque times radius over J [Pa]."""

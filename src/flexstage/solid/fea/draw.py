@@ -123,9 +123,12 @@ def _tube(form: Cylinder) -> occ.Solid:
 
 def _extrusion(form: Extrusion) -> occ.Solid:
     half = 0.5 * _mm(form.height)
-    corners = [occ.Pnt(_mm(x), _mm(y), -half) for x, y in np.real(form.corners)]
+    return _prism([occ.Pnt(_mm(x), _mm(y), -half) for x, y in np.real(form.corners)], occ.Vec(0, 0, 2.0 * half))
+
+
+def _prism(corners: list[occ.Pnt], along: occ.Vec) -> occ.Solid:
     sides = [occ.Segment(here, there) for here, there in pairwise([*corners, corners[0]])]
-    return occ.Face(occ.Wire(sides)).Extrude(occ.Vec(0, 0, 2.0 * half))
+    return occ.Face(occ.Wire(sides)).Extrude(along)
 
 
 def _pierced(form: Pierced) -> occ.Solid:
@@ -233,9 +236,7 @@ def _polyline(points: list[tuple[float, float]]) -> Curve:
 def prism(form: Shaped) -> occ.Solid:
     """A part of one section, drawn by the corners of its outline [mm]."""
     half = 0.5 * _mm(form.span)
-    corners = [occ.Pnt(-half, _mm(y), _mm(z)) for y, z in form.throat.outline(np.zeros(0))]
-    sides = [occ.Segment(here, there) for here, there in pairwise([*corners, corners[0]])]
-    return occ.Face(occ.Wire(sides)).Extrude(occ.Vec(2.0 * half, 0, 0))
+    return _prism([occ.Pnt(-half, _mm(y), _mm(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ from flexstage.solid.fea.piece import Medium, is_mirrored, medium, span
 from flexstage.solid.fea.progress import Report, Stage, silent
 from flexstage.solid.fea.roots import Roots, own_roots, rises
 from flexstage.solid.fea.specimen import END, START, Specimen, own_stub
-from flexstage.solid.fea.stub import beam, circle, rectangle
+from flexstage.solid.fea.stub import beam
 from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
@@ -95,10 +95,9 @@ class _Subject:
     def stubs(self) -> Array:
         """Compliance (6, 6) of both stubs about the hinge's centre."""
         section, total = own_stub(self.part)[0], np.zeros((6, 6))
-        form = circle(float(section.height)) if section.is_axisymmetric else rectangle(float(section.height), float(section.width))
         for sign, length in ((-1.0, self.first), (1.0, self.second)):
             if length > 0.0:
-                total += _about_centre(beam(form, length, self.medium), sign * 0.5 * (span(self.part) + length))
+                total += _about_centre(beam(section, length, self.medium), sign * 0.5 * (span(self.part) + length))
         return total
 
     def draw(self, size: float) -> Specimen:
