@@ -110,6 +110,8 @@ def test_stress_far_from_the_ends_is_that_of_uniform_torsion_and_in_bending_mome
     section = part.throat
     assert float(beam.twisting.rate[0]) == pytest.approx(1.0 / (STEEL.shear * section.torsion), rel=1e-7)
     assert section.torsional_stress(np.asarray(2.0), np.asarray(1.0)) == pytest.approx(2.0 * 1e-3 / section.torsion)
+    strips = Rectangle(part.thickness, part.width).torsional_stress(np.asarray(1.0), np.asarray(0.0))
+    assert section.torsional_stress(np.asarray(2.0), np.asarray(0.0)) == pytest.approx(strips, rel=1e-12)  # each leaf carries half of it
     bent = stress(part, STEEL, np.array([0.0, 0.0, 0.0, 0.0, 0.0, 3.0]))
     assert bent is not None
     assert bent.nominal == pytest.approx(3.0 * 0.005 / section.inertia_z, rel=1e-12)

@@ -22,7 +22,7 @@ class Cross(Section):
 
     >>> section = cross(1e-3, 10e-3)
     >>> [round(float(value), 4) for value in (section.area * 1e6, section.inertia_y * 1e12, section.torsion * 1e12, section.shear)]
-    [19.0, 84.0833, 6.5819, 2.3201]
+    [19.0, 84.0833, 6.5819, 1.8693]
     """
 
     thickness: Number = 0.0

@@ -17,6 +17,8 @@ from flexstage.parts.profile import single
 
 PARABOLIC = 6.0 / 5.0
 """Shear factor of a rectangle from the energy of the parabolic shear stress (Castigliano); that of the notch formulas."""
+ROUND = 10.0 / 9.0
+"""That of a circle from the energy of its parabolic shear stress."""
 _ODD = np.arange(1.0, 8.0, 2.0)
 _ODD_FIFTH_POWERS = 1.00452376279513961613
 """Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
@@ -159,8 +161,13 @@ class Rectangle(Section):
 
 @dataclass(frozen=True, eq=False)
 class Circle(Section):
-    """The circle whose diameter is its height and its width."""
+    """The circle whose diameter is its height and its width.
 
+    >>> round(Circle(1.0, 1.0).shear, 6)
+    1.111111
+    """
+
+    shear: Number = ROUND
     is_axisymmetric: ClassVar[bool] = True
     shear_peak: ClassVar[float] = 4.0 / 3.0
 
@@ -197,7 +204,7 @@ class Circle(Section):
         return torque * 0.5 * self.height / self.torsion
 
 
-def circle(diameter: Number, shear: Number = 10.0 / 9.0) -> Circle:
+def circle(diameter: Number, shear: Number = ROUND) -> Circle:
     """The circle of `diameter` [m]; `shear` that of the energy of the parabolic stress unless stated.
 
     >>> section = circle(2.0, cowper_circle(0.3))

@@ -58,8 +58,7 @@ def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
 
     It is thin along y and wide along z. Raises `DesignError` for a kind whose shape nobody offers.
 
-    >>> from flexstage.parts.cruciform import Cruciform
-    from flexstage.parts.leaf import Leaf
+    >>> from flexstage.parts.leaf import Leaf
     >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
     >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
     (2.0, ['end', 'start'])
