@@ -38,7 +38,7 @@ def cruciform_beam(part: Cruciform, material: Material) -> Beam:
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> hinge = Cruciform("steel", length=0.03, thickness=0.001, width=0.01)
-    >>> round(float(1.0 / cruciform_beam(hinge, steel).diagonal()[3]), 2), round(hinge.throat.torsion * steel.shear / 0.03, 2)
+    >>> round(float(1.0 / cruciform_beam(hinge, steel).diagonal()[3]), 2), round(float(hinge.throat.torsion) * steel.shear / 0.03, 2)
     (19.84, 16.88)
     """
     points = stations(Straight(part.length), part.thickness)
