@@ -10,20 +10,20 @@ from tools.weight import weigh, weights
 CEILINGS = {
     "base": 29_500,
     "spatial": 3_900,
-    "parts": 44_300,
-    "beams": 27_000,
+    "parts": 46_000,
+    "beams": 26_800,
     "mechanism": 60_100,
     "cases": 13_700,
     "models": 111_700,
     "analysis": 68_800,
-    "show": 78_100,
+    "show": 78_300,
     "solid": 81_000,
     "experiment": 104_200,
     "control": 175_900,
     "studies": 55_300,
     "apps": 40_100,
     ".": 400,
-    "all": 893_300,
+    "all": 894_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
