@@ -95,13 +95,14 @@ def _first_event(course: Course, last: Point, point: Point, bent: Point | None, 
 def continued(start: Task, end: Task) -> Found:
     """The equilibrium (of one case) that continues that of `start` as loads and held coordinates go in proportion to those of `end`.
 
-    An equilibrium of `end` that is not stable, or the path of which begins at one that is not, is returned as it is. Else `status` is
-    `CRITICAL` where the path has a limit point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share `reached`.
+    An equilibrium of `end` that is next to the start, that is not stable, or the path of which begins at one that is not, is returned as
+    it is. Else `status` is `CRITICAL` where the path has a limit point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share
+    `reached`.
     """
     model, hold = end.model, end.hold
     whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))
     kept = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
-    if count_descents(model, assemble(model, end.start, end.loads, hold), kept)[0]:
+    if apart(model, start.start, end.start) < _SAME or count_descents(model, assemble(model, end.start, end.loads, hold), kept)[0]:
         return whole
     gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
     course = Course(model, start.loads, start.hold, gain, hold.value - start.hold.value, NEAR, kept)
