@@ -96,8 +96,8 @@ def continued(start: Task, end: Task) -> Found:
     """The equilibrium (of one case) that continues that of `start` as loads and held coordinates go in proportion to those of `end`.
 
     An equilibrium of `end` that is next to the start, that is not stable, or the path of which begins at one that is not, is returned as
-    it is. Else `status` is `CRITICAL` where the path has a limit point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the share
-    `reached`.
+    it is. Else `status` is `CRITICAL` where the path has a limit point or a bifurcation, and `NOT_FOLLOWED` where it ends, each at the
+    share `reached`.
     """
     model, hold = end.model, end.hold
     whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))
