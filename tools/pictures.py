@@ -20,11 +20,6 @@ from threadpoolctl import threadpool_limits
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.modes import clusters
-from flexstage.beams.closed_forms import (
-    paros_weisbord_rotation_simplified,
-    schotborgh_rotation_stiffness,
-    smith_toroid_rotation_stiffness,
-)
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.figures.diagram import loop_diagram
@@ -70,6 +65,11 @@ from flexstage.studies.tolerances.figures import crosstalk_figure, distributions
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced, tolerance
 from tests.analytic import test_paros_weisbord, test_smith_toroid
+from tests.analytic.closed_forms import (
+    paros_weisbord_rotation_simplified,
+    schotborgh_rotation_stiffness,
+    smith_toroid_rotation_stiffness,
+)
 from tests.analytic.hinges import UNIT, circular, diagonal, error
 from tests.docs.pages import blocks
 from tools.gallery import SHOWN

@@ -10,11 +10,11 @@ import scipy
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 
-from flexstage.beams import closed_forms
 from flexstage.beams.stress import stress
 from flexstage.mechanism.pieces import SAGITTA, pieces
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, FreeForm, Hyperbolic, Parabolic, Power, Straight, Vee
+from tests.analytic import closed_forms
 from tests.analytic.hinges import PERCENT_DIGIT, STEEL, UNIT, diagonal, error
 
 # length, fillet, t | C_rz, C_x, C_y about the centre by plane elements, each with the error of beam theory

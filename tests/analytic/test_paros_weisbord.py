@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.beams import closed_forms
 from flexstage.spatial.frame import transport
+from tests.analytic import closed_forms
 from tests.analytic.hinges import PERCENT_DIGIT, STEEL, UNIT, circular, diagonal, error
 
 # t/R | C_rz: elements, error of Paros-Weisbord full, simplified, of Schotborgh | C_x: elements, error | C_y: elements, error

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.beams import closed_forms
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Circular, Straight
+from tests.analytic import closed_forms
 from tests.analytic.hinges import PERCENT_DIGIT, UNIT, diagonal, error
 
 # t/R | C_rz: elements, error of beam theory, of Smith | C_x: elements, error of beam theory

@@ -8,11 +8,10 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.base.number import Array
-from flexstage.beams import closed_forms
 from flexstage.beams.profiled import concentration
 from flexstage.parts.part import Elastic
 from flexstage.spatial.frame import transport
-from tests.analytic import test_leaf_plate, test_notch_profiles, test_paros_weisbord, test_smith_toroid
+from tests.analytic import closed_forms, test_leaf_plate, test_notch_profiles, test_paros_weisbord, test_smith_toroid
 from tests.analytic.hinges import STEEL, UNIT, circular, diagonal, error
 from tests.elsewhere import test_notch_elements
 from tools.validation.row import Row, Section, Tolerance, beam_error, relative, table

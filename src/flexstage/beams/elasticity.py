@@ -14,7 +14,6 @@ from types import MappingProxyType
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.beams.closed_forms import wu_zhou_rotation
 from flexstage.beams.plate import moment_factor, shear_factor
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
@@ -124,6 +123,18 @@ def _root_rotation(slot: Slot, p: Numbers) -> Array:
     """What the roots turn: as those of the circular notch with the same throat."""
     circle = np.asarray(wu_zhou_rotation(1.0, slot.width, slot.thickness, slot.radius))
     return circle * (p[0] * slot.root**2 + p[1] * slot.root**3)
+
+
+def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
+    """Rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev. Sci. Instrum. 73, 2002), s = R/t.
+
+    >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
+    1.539997e-05
+    """
+    s = radius / thickness
+    q = np.sqrt(4.0 * s + 1.0)
+    first = 2.0 * s**3 * (6.0 * s * s + 4.0 * s + 1.0) / ((2.0 * s + 1.0) * q**4)
+    return 12.0 / (young * width * radius * radius) * (first + 12.0 * s**4 * (2.0 * s + 1.0) / q**5 * np.arctan(q))
 
 
 def bar_x(slot: Slot, p: Numbers) -> Array:

@@ -1,4 +1,4 @@
-"""Closed forms of the literature for notch hinges, as named alternatives to the quadrature and for its tests.
+"""Closed forms of the literature for notch hinges, which the quadrature of `flexstage.beams` is compared with.
 
 Names as in `flexstage.parts`: `thickness` t, `width` b, `radius` R; s = R/t. Compliances are about the hinge centre unless said. All are
 plane-stress beam theory between the arc ends, in SI or any coherent units: against elasticity they err as `beams.validity` says.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Number
+from flexstage.beams.elasticity import wu_zhou_rotation
 from flexstage.parts.section import PARABOLIC
 
 
@@ -42,18 +43,6 @@ def paros_weisbord_axial_simplified(young: Number, width: Number, thickness: Num
     28.846
     """
     return (np.pi * np.sqrt(radius / thickness) - 2.57) / (young * width)
-
-
-def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
-    """Rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev. Sci. Instrum. 73, 2002), s = R/t.
-
-    >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
-    1.539997e-05
-    """
-    s = radius / thickness
-    q, turn = _root_and_angle(s)
-    first = 2.0 * s**3 * (6.0 * s * s + 4.0 * s + 1.0) / ((2.0 * s + 1.0) * q**4)
-    return 12.0 / (young * width * radius * radius) * (first + 12.0 * s**4 * (2.0 * s + 1.0) / q**5 * turn)
 
 
 def wu_zhou_axial(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
