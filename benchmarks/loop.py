@@ -33,7 +33,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from flexstage.base.native import compiler
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.controllers.decentralised import Decentralised
-from flexstage.control.export.code.compiled import simulate_compiled
 from flexstage.control.export.code.hardware import FLAGS, hardware_code
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.simulation.result import Simulated
@@ -43,6 +42,7 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
+from tests.elsewhere.compiled_loop import simulate_compiled
 from tests.elsewhere.independent_loop import Stepped
 from tests.elsewhere.loops import PLATFORM, RATE, full_loop, way
 from tests.elsewhere.test_loop_simulation import worst

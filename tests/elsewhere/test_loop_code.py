@@ -16,7 +16,6 @@ from flexstage.base.native import compiler
 from flexstage.base.number import Table
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.example import integral_loop
-from flexstage.control.export.code.compiled import _run_program, simulate_compiled
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.legs import with_legs
 from flexstage.control.export.code.program import FLAGS, WARNINGS, Program
@@ -32,6 +31,7 @@ from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.system import static
 from flexstage.models.linear.model import Channel
+from tests.elsewhere.compiled_loop import run_program, simulate_compiled
 from tests.elsewhere.independent_loop import Computer
 from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way
 from tests.elsewhere.test_loop_simulation import worst
@@ -146,7 +146,7 @@ def test_force_feedback_is_part_of_the_exported_controller():
     program = with_legs(controller_code(given), given, inner)
     assert program.step == inner.step
     assert [line.partition(":")[0] for line in program.about if "step every" in line] == [f"One call of the step every {inner.step:.12g} s"]
-    rows = _run_program(program, np.hstack([np.repeat(known.reference, 3, axis=0), np.repeat(known.readings, 3, axis=0), tensions]))
+    rows = run_program(program, np.hstack([np.repeat(known.reference, 3, axis=0), np.repeat(known.readings, 3, axis=0), tensions]))
     ends = np.cumsum([0, *(len(signal.channels) for signal in program.outputs)])
     found = {signal.field: rows[:, slice(*ends[place : place + 2])] for place, signal in enumerate(program.outputs)}
     assert found["given"] == pytest.approx(np.repeat(known.given, 3, axis=0), abs=1e-12 * np.max(np.abs(known.given)))

@@ -1,4 +1,4 @@
-"""The simulation by generated C: what `simulate` computes, many times faster."""
+"""The simulation by generated C, compiled and loaded: what `simulate` computes, from the code that is exported."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     entering = inflow(given, reference, disturbances)
     felt = tuple(index for index, channel in enumerate(given.disturbances) if channel.name in disturbances)
     program = loop_code(_without_idle_disturbances(given, felt))
-    rows = _run_program(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
+    rows = run_program(program, np.hstack([entering.reference, entering.disturbances[:, felt], entering.readings, entering.strokes]))
     series = _series(program, rows)
     require_finite(given, np.hstack([series.motions, series.command, series.stroke]))
     return simulation_result(given, entering.reference, series)
@@ -81,7 +81,7 @@ def _series(program: Program, rows: Array) -> Series:
     )
 
 
-def _run_program(program: Program, inputs: Array) -> Array:
+def run_program(program: Program, inputs: Array) -> Array:
     """Outputs (n, outputs) of a program for inputs (n, inputs), from rest."""
     numbers = sum(math.prod(state.sizes) for state in program.states)
     library = _load(program.name, program.header, program.source + _driver(program), numbers)
