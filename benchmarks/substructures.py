@@ -31,6 +31,8 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
 PERIOD = 0.05
 """Seconds between two looks at the memory of the processes."""
 MEGABYTE = 1024.0
@@ -117,7 +119,7 @@ def child(how: str, folder: Path) -> None:
     from flexstage.solid.fea.cache import Cache
     from flexstage.solid.fea.fineness import Fineness, Reduction
     from flexstage.solid.fea.model import model as solid
-    from flexstage.solid.fea.monolithic import monolithic
+    from tests.models.monolithic import monolithic
 
     told = [(0.0, "")]
 

@@ -17,9 +17,9 @@ from flexstage.solid.fea.assemble import linear_model
 from flexstage.solid.fea.component import Component, Cut, components, groups
 from flexstage.solid.fea.fineness import Fineness, Reduction
 from flexstage.solid.fea.model import model as solid
-from flexstage.solid.fea.monolithic import monolithic
 from flexstage.solid.fea.superelement import Skin, Superelement
 from flexstage.spatial.frame import COMPONENTS
+from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE as SMALL
 from tests.models.small_solids import propped
 from tests.models.solids import COARSE, read

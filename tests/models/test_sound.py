@@ -18,9 +18,9 @@ from flexstage.mechanism.restrict import isolate
 from flexstage.solid.fea import sound
 from flexstage.solid.fea.cache import Cache
 from flexstage.solid.fea.model import model_with_parts
-from flexstage.solid.fea.monolithic import monolithic
 from flexstage.solid.fea.sound import stage_findings
 from flexstage.solid.read import read_solid, solids
+from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE, propped
 
 Reads = Callable[[Mechanism], object]
@@ -47,9 +47,8 @@ def gaping() -> Mechanism:
     ids=["solid", "model_with_parts", "monolithic", "read_solid"],
 )
 def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("model", "monolithic"):
-        monkeypatch.setattr(f"flexstage.solid.fea.{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
-    monkeypatch.setattr("flexstage.solid.read.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
+    for module in ("flexstage.solid.fea.model", "tests.models.monolithic", "flexstage.solid.read"):
+        monkeypatch.setattr(f"{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
     with pytest.raises(DesignError) as caught:
         reads(gaping())
     assert [finding.where for finding in caught.value.findings] == ["left", "platform"]
