@@ -10,9 +10,9 @@ from typing import Any
 import ngsolve
 import numpy as np
 import pytest
+import scipy
 from scipy.linalg import eigh
 
-from flexstage.base.sparse import Compressed
 from flexstage.solid.fea import frontal
 from flexstage.solid.fea.bar import bar
 from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
@@ -57,7 +57,7 @@ def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver
     parts = [stiffness(space, half), stiffness(space, ~half)]
     expected = factorise_kinds(space, [stiffness(space)])(forces)
 
-    def refuse(order: Fronts, matrices: Sequence[Compressed], held: np.ndarray) -> Iterator[Factorised]:
+    def refuse(order: Fronts, matrices: Sequence[scipy.sparse.csr_array], held: np.ndarray) -> Iterator[Factorised]:
         yield from islice(factorise_fronts(order, matrices, held), definite)
         raise np.linalg.LinAlgError
 
@@ -119,9 +119,9 @@ def test_what_is_solved_once_has_one_factor_at_a_time(monkeypatch: pytest.Monkey
     assert len(used) == 5
 
 
-def sparse(factor: float) -> Compressed:
+def sparse(factor: float) -> scipy.sparse.csr_array:
     values, columns, starts = ELASTIC.mat.CSR()
-    return Compressed(np.asarray(starts, dtype=np.int64), np.asarray(columns), factor * np.asarray(values), SPACE.size)
+    return scipy.sparse.csr_array((factor * np.asarray(values), np.asarray(columns), np.asarray(starts)), shape=(SPACE.size, SPACE.size))
 
 
 def test_matrices_are_added() -> None:

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.modes import Modes, clusters
-from flexstage.base.assignment import assignment
 from flexstage.base.number import Array, first_design
 from flexstage.models.linear.model import LinearModel
 
@@ -65,7 +65,7 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     frequencies, others = (first_design(each.modes.frequencies, 1) for each in (own, other))
     highest = max((frequencies[index] for index in own.modes.platform), default=0.0) * (1.0 + _CLOSE)
     near = np.flatnonzero(frequencies <= highest)
-    rows, columns = assignment(-((first[:, near].T @ second) ** 2))
+    rows, columns = scipy.optimize.linear_sum_assignment(-((first[:, near].T @ second) ** 2))
     partner = dict(zip(near[rows].tolist(), columns.tolist(), strict=True))
     found: dict[int, Pair] = {}
     for group in clusters(frequencies[near], _CLOSE):

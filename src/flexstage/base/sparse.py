@@ -1,4 +1,4 @@
-"""Matrices without their zeros: rows of large stages that are zero but in few columns, what is made of them, and those of solids."""
+"""Matrices without their zeros: rows of large stages that are zero but in few columns, and what is made of them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from flexstage.base.binding import binding
 from flexstage.base.number import Array
-
-_FEW = 0.5
-"""Share of the entries of vectors below which those alone are multiplied that are not nought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,61 +197,3 @@ class Rows:
     def swapaxes(self, first: int, second: int) -> Array:
         """The dense transpose."""
         return np.swapaxes(np.asarray(self), first, second)
-
-
-@dataclass(frozen=True, eq=False)
-class Compressed:
-    """A real matrix (m, n) by rows: of row i the entries from `starts[i]` to `starts[i + 1]`, in `columns`, n being its `width`.
-
-    Products are those of `scipy.sparse`, by its bindings without what else it imports.
-    """
-
-    starts: Array
-    columns: Array
-    values: Array
-    width: int
-
-    @staticmethod
-    def of_entries(rows: Array, values: Array, count: int) -> Compressed:
-        """The matrix of `count` rows with one of the values (n,) in each column, in a row of its own choice.
-
-        >>> import numpy as np
-        >>> (Compressed.of_entries(np.array([1, 0]), np.array([3.0, 4.0]), 2) @ np.eye(2)).tolist()
-        [[0.0, 4.0], [3.0, 0.0]]
-        """
-        order = np.argsort(rows, kind="stable")
-        starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=count))])
-        return Compressed(starts, order, values[order], len(rows))
-
-    def __matmul__(self, vectors: Array) -> Array:
-        """Times vectors (n, k). Raises `ValueError` for vectors of another length."""
-        if len(vectors) != self.width:
-            raise ValueError(f"vectors of {len(vectors)} entries for a matrix of {self.width} columns")
-        rows, count = len(self.starts) - 1, vectors.shape[1]
-        result = np.zeros((rows, count))
-        _products().csr_matvecs(rows, self.width, count, *self._indices(), self.values, vectors.ravel(), result.ravel())
-        return result
-
-    def symmetric_times(self, vectors: Array) -> Array:
-        """Times vectors (n, k), of a symmetric matrix: by those of its columns alone, should they be few, where these are not nought."""
-        moving = vectors.any(axis=1)
-        return self @ vectors if np.mean(moving) > _FEW else self._transpose_times(np.flatnonzero(moving), vectors[moving])
-
-    def _transpose_times(self, rows: Array, vectors: Array) -> Array:
-        """The transpose of some rows (c,), times vectors (c, k)."""
-        starts, columns = self._indices()
-        some = np.concatenate([[0], np.cumsum(np.diff(starts)[rows])]).astype(columns.dtype)
-        places, values = np.empty(some[-1], columns.dtype), np.empty(some[-1])
-        _products().csr_row_index(len(rows), rows.astype(columns.dtype), starts, columns, self.values, places, values)
-        result = np.zeros((self.width, vectors.shape[1]))
-        _products().csc_matvecs(self.width, len(rows), vectors.shape[1], some, places, values, vectors.ravel(), result.ravel())
-        return result
-
-    def _indices(self) -> tuple[Array, Array]:
-        """Starts and columns, of the one kind that both fit into."""
-        kind = np.result_type(self.columns, np.min_scalar_type(-self.values.size))
-        return self.starts.astype(kind, copy=False), self.columns.astype(kind, copy=False)
-
-
-def _products() -> Any:
-    return binding("scipy.sparse._sparsetools", "scipy.sparse._sparsetools")

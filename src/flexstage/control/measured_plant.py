@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-from flexstage.base.assignment import assignment
 from flexstage.base.dimension import dimension_of
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
@@ -105,7 +104,7 @@ def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
         [[_assurance(seen[:, row], shapes, given.frequencies, column) for column in range(len(kept))] for row in range(seen.shape[1])]
     ).reshape(seen.shape[1], len(kept))
     apart = np.abs(np.log(found.frequencies[:, None] / given.frequencies))
-    solved: Any = assignment(1.0 - assurance + apart)
+    solved: Any = scipy.optimize.linear_sum_assignment(1.0 - assurance + apart)
     good = (assurance[solved] > _ALIKE) & (apart[solved] < _APART)
     return Pairs(solved[1][good], solved[0][good])
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+import scipy
 
-from flexstage.base.assignment import assignment
 from flexstage.base.number import Array
 
 _ALIKE, _UNLIKE = 0.9, 0.6
@@ -199,7 +199,7 @@ def _correlations(theory: Array, measured: Array) -> Array:
 
 def _assigned(likeness: Array) -> tuple[Array, Array]:
     """Which measured channel is most like each of theory's, no one twice, and with which sign."""
-    _, order = assignment(-np.abs(likeness))
+    _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
     return order, np.where(likeness[np.arange(len(order)), order] < 0.0, -1.0, 1.0)
 
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.complete import platform_modes, read
 from flexstage.analysis.modes import Modes, clusters
 from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.solid_modes import FeaModes
 from flexstage.base.arguments import check_arguments
-from flexstage.base.assignment import assignment
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
@@ -258,7 +258,7 @@ def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int
         return {}, likeness
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
     fitting = (likeness >= _PAIRED) & (apart <= _FARTHEST)
-    first, second = assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
+    first, second = scipy.optimize.linear_sum_assignment(np.where(fitting, _FAR * apart - likeness, 0.0))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if fitting[i, j]}
     return _sort_within_groups(found, [group for group, _ in bases]), likeness
 
@@ -266,7 +266,7 @@ def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:
     """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
-    first, second = assignment(np.minimum(apart, _FARTHEST))
+    first, second = scipy.optimize.linear_sum_assignment(np.minimum(apart, _FARTHEST))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
     whole = [group for group in groups if all(index in found for index in group)]
     theory = _sizes(own, whole)

@@ -20,7 +20,6 @@ import scipy
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
 from flexstage.beams.compliance import law
@@ -433,7 +432,7 @@ def _split_by_energy(energy: Array) -> tuple[list[int], Array]:
     scaled = energy / root / root[:, None]
     values, vectors = np.linalg.eigh(scaled)
     loose = values < _ENERGYLESS
-    order = pivoted_qr(scaled)[2][: int(np.sum(~loose))]
+    order = scipy.linalg.qr(scaled, pivoting=True)[2][: int(np.sum(~loose))]
     return sorted(int(index) for index in order), (vectors / root[:, None])[:, loose]
 
 

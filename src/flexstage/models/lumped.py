@@ -12,11 +12,11 @@ from enum import Enum
 from typing import TypeVar, cast
 
 import numpy as np
+import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, below
 from flexstage.beams.compliance import Law, law, law_of, viscous_damping
@@ -458,7 +458,7 @@ def _heavy(mass: Array, largest: Array) -> tuple[int, ...]:
     if not len(some):
         return ()
     root = np.sqrt(np.diag(mass)[some])
-    _, triangle, order = pivoted_qr(mass[np.ix_(some, some)] / root / root[:, None])
+    _, triangle, order = scipy.linalg.qr(mass[np.ix_(some, some)] / root / root[:, None], pivoting=True)
     rank = int(np.sum(np.abs(np.diag(triangle)) > _MASSLESS))
     return tuple(sorted(int(some[index]) for index in order[:rank]))
 
@@ -597,7 +597,7 @@ def _loose_coordinates(stage: _Stage, loose: Array, independent: tuple[int, ...]
             f"{', '.join(_moving(stage, loose, independent))}",
             "Add a link that holds this motion, or check which freedoms the links leave free",
         )
-    order = pivoted_qr(_as_ones(loose).T)[2]
+    order = scipy.linalg.qr(_as_ones(loose).T, pivoting=True)[2]
     return sorted(int(index) for index in order[: loose.shape[1]])
 
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
+import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, Number
 from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
@@ -197,7 +197,7 @@ def _idle_wrenches(kinematics: Kinematics) -> Array:
     """Wrenches (..., 6, 6 - f) that do no work in any ideal motion."""
     rest = np.eye(6) - np.swapaxes(kinematics.projection, -1, -2) @ np.swapaxes(kinematics.motion, -1, -2)
     count = 6 - kinematics.mobility
-    chosen = np.array([pivoted_qr(each)[2][:count] for each in np.real(rest).reshape(-1, 6, 6)], dtype=int)
+    chosen = np.array([scipy.linalg.qr(each, pivoting=True)[2][:count] for each in np.real(rest).reshape(-1, 6, 6)], dtype=int)
     return np.take_along_axis(rest, chosen.reshape(*rest.shape[:-2], 1, count), axis=-1)
 
 
@@ -251,13 +251,13 @@ def _bearing(system: Array, rigid: Array) -> tuple[Array, Array] | None:
     columns = _normal(system[:, :-1].T).T
     open_ = np.max(np.abs(null_space(columns)), axis=1, initial=0.0)[:count] > _COLLINEAR
     candidates = np.append(np.flatnonzero(rigid | ~open_), np.arange(count, columns.shape[1]))
-    _, triangle, order = pivoted_qr(columns[:, candidates])
+    _, triangle, order = scipy.linalg.qr(columns[:, candidates], pivoting=True)
     diagonal = np.abs(np.diag(triangle))
     chosen = candidates[order[: int(np.sum(diagonal > _COLLINEAR * diagonal[0]))]]
     missed = wanted - columns[:, chosen] @ np.linalg.lstsq(columns[:, chosen], wanted, rcond=None)[0]
     if np.max(np.abs(missed)) > _COLLINEAR * np.max(np.abs(wanted)):
         return None
-    return pivoted_qr(columns[:, chosen].T)[2][: len(chosen)], chosen
+    return scipy.linalg.qr(columns[:, chosen].T, pivoting=True)[2][: len(chosen)], chosen
 
 
 def _normal(rows: Array) -> Array:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
+import scipy
 
-from flexstage.base.assignment import assignment
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Table
 from flexstage.base.quantity import FREQUENCY, RATE
@@ -133,7 +133,7 @@ def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
         poles = poles[np.imag(poles) >= -1e-9 * np.abs(poles)]
         distance = np.abs(modes[:, None] - poles[None, :])
-        modes = poles[assignment(distance)[1]] if len(poles) >= len(modes) else poles[np.argmin(distance, axis=1)]
+        modes = poles[scipy.optimize.linear_sum_assignment(distance)[1]] if len(poles) >= len(modes) else poles[np.argmin(distance, axis=1)]
         found.append(modes)
     return np.array(found)
 

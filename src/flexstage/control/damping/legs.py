@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
-from flexstage.base.assignment import assignment
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.mechanism.expand import Assembly, expand
@@ -114,7 +114,7 @@ def pair_modes(model: LinearModel, other: LinearModel) -> Pairs:
     """Modes of a model and of another of the same masses, each by the shape that is most like its own (kinetic energy)."""
     stiff, soft = eigen(model), eigen(other)
     alike = (stiff.shapes.T @ model.inertia_matrix @ soft.shapes) ** 2
-    rows, columns = assignment(-alike)
+    rows, columns = scipy.optimize.linear_sum_assignment(-alike)
     frequencies = np.sqrt(stiff.values) / (2.0 * np.pi)
     others = np.sqrt(np.maximum(soft.values, 0.0)) / (2.0 * np.pi)
     return Pairs(frequencies[rows], others[columns])

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.sensitivities import project, slope, step_parameters, steppable
-from flexstage.base.assignment import assignment
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.experiment.comparison import Compared
@@ -107,7 +107,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     for modes in before.modes:
         inside = np.sum((weighted[:, list(modes)].T @ solved.shapes) ** 2, axis=0)
         likeness += [np.nan_to_num(inside)] * len(modes)
-    _, columns = assignment(-np.array(likeness))
+    _, columns = scipy.optimize.linear_sum_assignment(-np.array(likeness))
     ends = np.cumsum([len(modes) for modes in before.modes])[:-1]
     groups = tuple(tuple(sorted(group.tolist())) for group in np.split(columns, ends))
     return Design(mechanism, model, solved, groups)

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array
 from flexstage.base.sparse import Sparse
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate, null_space
@@ -155,7 +154,7 @@ def _eliminate(block: int, group: _Group, starts: Array, stresses: list[tuple[Ar
     if not len(group.rows):
         every = np.arange(width)
         return _Given(every, every[:0], np.zeros((0, width)), (), np.zeros((0, 0))), None
-    turn, triangle, order = pivoted_qr(group.rows[:, :width])
+    turn, triangle, order = scipy.linalg.qr(group.rows[:, :width], pivoting=True)
     rank = int(np.sum(np.abs(np.diag(triangle)) > _RANK))
     rest, shares = turn.T @ group.rows[:, width:], turn.T @ group.shares
     solved = -np.linalg.solve(triangle[:rank, :rank], np.concatenate([triangle[:rank, rank:], rest[:rank]], axis=1))

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.lapack import pivoted_qr
 from flexstage.base.number import Array, first_design
 
 _RANK = 1e-9
@@ -175,7 +175,7 @@ def _pivot_columns(first: Array, keep: tuple[int, ...]) -> list[int]:
     outside = _without(first.shape[1], keep)
     if not first.size:
         return []
-    orthogonal, triangle, order = pivoted_qr(_preference(first[:, outside]))
+    orthogonal, triangle, order = scipy.linalg.qr(_preference(first[:, outside]), pivoting=True)
     rank = _rank(triangle)
     dependent = [outside[index] for index in order[:rank]]
     left = (orthogonal.T @ first[:, list(keep)])[rank:]
@@ -188,7 +188,7 @@ def _pivots(matrix: Array) -> list[int]:
     """Indices of a maximal set of independent columns, best conditioned first."""
     if not matrix.size:
         return []
-    _, triangle, order = pivoted_qr(_preference(matrix))
+    _, triangle, order = scipy.linalg.qr(_preference(matrix), pivoting=True)
     return [int(index) for index in order[: _rank(triangle)]]
 
 
@@ -226,6 +226,6 @@ def null_space(matrix: Array) -> Array:
     """
     if not matrix.size:
         return np.eye(matrix.shape[1])
-    orthogonal, triangle, _ = pivoted_qr(_preference(matrix.T))
+    orthogonal, triangle, _ = scipy.linalg.qr(_preference(matrix.T), pivoting=True)
     diagonal = np.abs(np.diag(triangle))
     return orthogonal[:, int(np.sum(diagonal > _RANK * diagonal[0])) :]

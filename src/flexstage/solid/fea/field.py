@@ -5,15 +5,15 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
 
 import ngsolve
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
-from flexstage.base.sparse import Compressed
 from flexstage.solid.fea.frontal import Fronts, Grid, dissect, factorise_fronts
 from flexstage.solid.fea.mesh import PieceMesh, centroids
 from flexstage.solid.fea.mirror import MIRRORS, Mirrors
@@ -23,6 +23,8 @@ from flexstage.spatial.frame import Frame
 _PER_METRE = 1.0 / MILLIMETRES
 """Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
 _PER_VOLUME = 1.0 / MILLIMETRES**3
+_FEW = 0.5
+"""Share of rows with entries below which a product takes these rows only."""
 _BELL = 6
 """By how much the order of integration is raised where a bell is integrated."""
 
@@ -181,20 +183,20 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 class Inertia:
     """int rho u . v dV [kg] by the sum of `scalar` matrices (n / 3, n / 3): the same for each component, and nothing between them."""
 
-    scalar: tuple[Compressed, ...]
+    scalar: tuple[Any, ...]
 
     def times(self, vectors: Array) -> Array:
         """The momenta (n, k) of unit velocities (n, k)."""
         count, columns = len(vectors) // 3, vectors.shape[1]
         each = vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
-        moved = functools.reduce(operator.iadd, (matrix.symmetric_times(each) for matrix in self.scalar))
+        moved = functools.reduce(operator.iadd, (_symmetric_times(matrix, each) for matrix in self.scalar))
         return moved.reshape(count, 3, columns).transpose(1, 0, 2).reshape(3 * count, columns)
 
 
 def total(parts: Sequence[Inertia]) -> Inertia:
     """The inertia of what has some inertias.
 
-    >>> one = Inertia((Compressed(np.array([0, 1]), np.array([0]), np.array([1.0]), 1),))
+    >>> one = Inertia((scipy.sparse.csr_array(np.eye(1)),))
     >>> total([one, one]).times(np.ones((3, 1))).tolist()
     [[2.0], [2.0], [2.0]]
     """
@@ -217,8 +219,7 @@ def inertia(space: Field, elements: Array | None = None) -> Inertia:
     form = ngsolve.BilinearForm(scalar, symmetric=True)
     form += _PER_VOLUME * space.density * u * v * _volume(elements)
     form.Assemble()
-    shared = _matrix(form)
-    return Inertia((replace(shared, columns=shared.columns.copy(), values=shared.values.copy()),))
+    return Inertia((_matrix(form).copy(),))
 
 
 def _volume(elements: Array | None) -> object:
@@ -448,13 +449,18 @@ def times(forms: Forms, vectors: Array) -> Array:
     >>> times([stiffness(space)], np.zeros((space.size, 2))).shape == (space.size, 2)
     True
     """
-    return functools.reduce(operator.iadd, (matrix.symmetric_times(vectors) for matrix in map(_matrix, forms)))
+    return functools.reduce(operator.iadd, (_symmetric_times(matrix, vectors) for matrix in map(_matrix, forms)))
 
 
-def _matrix(form: ngsolve.BilinearForm) -> Compressed:
-    """The matrix (n, n) of a form, whose memory it shares."""
-    values, columns, starts = (np.asarray(each) for each in form.mat.CSR())
-    return Compressed(starts.astype(np.int64), columns, values, form.mat.width)
+def _symmetric_times(matrix: Any, vectors: Array) -> Array:
+    """A symmetric matrix times vectors (n, k): where few of their entries are not zero, by the rows of these."""
+    moving = vectors.any(axis=1)
+    return matrix @ vectors if np.mean(moving) > _FEW else matrix[moving].T @ vectors[moving]
+
+
+def _matrix(form: ngsolve.BilinearForm) -> Any:
+    """The matrix (n, n) of a form as `scipy.sparse.csr_array`, whose memory it shares."""
+    return scipy.sparse.csr_array(tuple(np.asarray(each) for each in form.mat.CSR()), shape=(form.mat.height, form.mat.width))
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
@@ -593,10 +599,9 @@ def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> Iterator[Solve
             del solve  # its factor is as large as the next one
             done += 1
     except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
-        rows = [np.repeat(np.arange(space.size), np.diff(matrix.starts)) for matrix in matrices]
-        create = cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)  # adds up what is named twice
-        entries = (rows, [matrix.columns for matrix in matrices], [matrix.values for matrix in matrices])
-        law = create(*(np.concatenate(each) for each in entries), space.size, space.size)
+        entries = functools.reduce(operator.add, matrices).tocoo()
+        create = cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)
+        law = create(entries.row, entries.col, entries.data, space.size, space.size)
         for also in held[done:]:
             inverse = law.Inverse(ngsolve.BitArray((space.free & ~also).tolist()), inverse="sparsecholesky")
             yield functools.partial(_apply_held, inverse.Mult, also)

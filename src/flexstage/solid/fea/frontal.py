@@ -11,14 +11,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+import scipy
 
-from flexstage.base.lapack import blas, lapack
 from flexstage.base.number import Array
-from flexstage.base.sparse import Compressed
 
-_dtrsm, _dsyrk, _dpotrf = blas().dtrsm, blas().dsyrk, lapack().dpotrf
+_dtrsm, _dsyrk, _dpotrf = scipy.linalg.blas.dtrsm, scipy.linalg.blas.dsyrk, scipy.linalg.lapack.dpotrf
 
 _AT_HAND = 8
 """Meshes whose cuts are kept for the next order."""
@@ -227,11 +227,11 @@ class Factorised:
         return result.reshape(size, columns)
 
 
-def factorise_fronts(order: Fronts, matrices: Sequence[Compressed], held: Array) -> Iterator[Factorised]:
+def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Iterator[Factorised]:
     """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
-    Matrices are whole, both triangles. Degrees of freedom are in the order of components: those of all nodes along x, then along y, then
-    along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are coupled to no other.
+    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are in the order of components: those of all nodes along
+    x, then along y, then along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are coupled to no other.
     A front that meets none of any set, nor do those before it, is the same for all. The sets are done one after another, as they are
     asked for: what is not the same takes no memory but in what was given out.
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
@@ -337,26 +337,26 @@ def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
 class _Entries:
     """Entries of a matrix by nodes; `rank` is that of elimination, -1 of nodes that are held."""
 
-    matrix: Compressed
+    matrix: Any
     nodes: Array
     rank: Array
 
     @staticmethod
-    def of(order: Fronts, matrix: Compressed) -> _Entries:
+    def of(order: Fronts, matrix: Any) -> _Entries:
         """The entries, to be taken in an order."""
-        rank = np.full((len(matrix.starts) - 1) // 3, -1, dtype=np.int64)
+        rank = np.full((matrix.shape[0]) // 3, -1, dtype=np.int64)
         rank[order.nodes] = np.arange(len(order.nodes))
         return _Entries(matrix, order.nodes, rank)
 
     def add(self, panel: _Panel, front: _Front, local: Array) -> None:
         """Add the entries of a front's own nodes, with those eliminated later, to its lower triangle."""
-        own, starts = self.nodes[front.first : front.last], self.matrix.starts
+        own, starts = self.nodes[front.first : front.last], self.matrix.indptr
         degree = (starts[own + 1] - starts[own]) // 3
         if not degree.any():
             return
         column = np.repeat(own, degree)
         place = np.arange(len(column)) - np.repeat(np.cumsum(degree) - degree, degree)
-        row = self.matrix.columns[starts[column] + place]
+        row = self.matrix.indices[starts[column] + place]
         later = self.rank[row] >= self.rank[column]
         row, column, place, degree = row[later], column[later], place[later], np.repeat(degree, degree)[later]
         here, there = (3 * local[self.rank[each]] for each in (row, column))
@@ -366,4 +366,4 @@ class _Entries:
         for b in range(3):
             start = starts[b * len(self.rank) + column] + place
             for a in range(3):
-                panel.entries[first + a + b * height] += self.matrix.values[start + a * degree]
+                panel.entries[first + a + b * height] += self.matrix.data[start + a * degree]

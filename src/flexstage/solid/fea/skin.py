@@ -7,9 +7,9 @@ from typing import Any
 
 import ngsolve
 import numpy as np
+import scipy
 
 from flexstage.base.number import Array
-from flexstage.base.sparse import Compressed
 from flexstage.solid.fea.field import Columns, Field, hooke
 from flexstage.solid.fea.mirror import MIRRORS
 from flexstage.solid.fea.piece import MILLIMETRES
@@ -94,7 +94,7 @@ def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
     )
 
 
-def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Compressed:
+def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Any:
     """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind.
 
     Elements whose corners are numbered in the same order have the same functions where all are of one order: those are evaluated once.
@@ -125,7 +125,7 @@ def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Compr
         at = starts[9 * np.array(triangles)][:, None] + np.arange(slopes[0].size)
         values[at] = slopes.reshape(len(triangles), -1)
         columns[at] = np.tile(np.array([nodes[triangle] for triangle in triangles]), 9)
-    return Compressed(starts, columns, values, scalar.ndof)
+    return scipy.sparse.csr_array((values, columns, starts), shape=(len(starts) - 1, scalar.ndof))
 
 
 def _media(space: Field) -> Array:
@@ -139,11 +139,11 @@ def _weights(points: Any) -> Array:
     return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
 
 
-def _mean_by_vertex(triangles: Array, weights: Array) -> Compressed:
+def _mean_by_vertex(triangles: Array, weights: Array) -> Any:
     """What makes weighted means at vertices of values at the corners of all triangles."""
     count = int(triangles.max()) + 1
     shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
-    return Compressed.of_entries(triangles.ravel(), shares, count)
+    return scipy.sparse.csr_array((shares, (triangles.ravel(), np.arange(len(shares)))), shape=(count, len(shares)))
 
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
