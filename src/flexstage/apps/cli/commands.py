@@ -1,4 +1,4 @@
-"""The commands by purpose, one line each, and the application that imports the module of a command when it is called."""
+"""The commands by purpose, one line each, and the application that imports the module of a command when it or its help is called."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from flexstage.apps.cli.plain import PlainOptions
-from flexstage.apps.cli.signature import signature_of
 from flexstage.base.finding import Finding, require
 from flexstage.show.command.models import Models
 
@@ -33,11 +31,6 @@ class Command(NamedTuple):
         """The function or `Typer`, from its module."""
         module, _, name = self.home.partition(":")
         return getattr(import_module(module), name)
-
-    def signature(self) -> Any:
-        """What reads its options and shows its help, and imports its module when it is called."""
-        module, _, name = self.home.partition(":")
-        return signature_of(module, name)
 
 
 _DESCRIBE, _ANALYSE, _PROVE, _TEST, _CONTROL, _IMPROVE, _INSTALLATION = (
@@ -150,18 +143,14 @@ class LazyCommand(TyperCommand):
 
     def load(self) -> Any:
         """The command itself, or a group of commands."""
-        home = self.command.signature()
+        home = self.command.load()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
-            home.command(self.command.name, cls=PlainCommand, epilog=f"Example: {self.command.example}")(function)
+            home.command(self.command.name, epilog=f"Example: {self.command.example}")(function)
         return get_command(home)
 
 
-class PlainCommand(PlainOptions, TyperCommand):
-    """A command whose options need no pydantic for texts and paths."""
-
-
-class GroupedCommands(PlainOptions, TyperGroup):
+class GroupedCommands(TyperGroup):
     """A group that lists its commands by purpose, and loads the one that is called."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:

@@ -231,7 +231,7 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are in the order of components: those of all nodes along
-    x, then along y, then along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are coupled to no other.
+    x, then along y, then along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are not coupled.
     A front that meets none of any set, nor do those before it, is the same for all. The sets are done one after another, as they are
     asked for: what is not the same takes no memory but in what was given out.
     Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
