@@ -31,13 +31,12 @@ def to_svg(figure: Any, name: str, description: str) -> str:
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
     '<svg viewBox="0 0 72 72" role="im'
     """
-    from flexstage.show.figures.pen import Pen  # both load matplotlib
-    from flexstage.show.figures.ruler import ruled
+    from flexstage.show.figures.pen import Pen  # loads matplotlib
 
     wide, high = 72.0 * figure.get_size_inches()
     dots, pen = figure.dpi, Pen(wide, high, name)
     scenery = [each for axes in figure.axes for each in axes.artists if each.get_gid() == SCENERY]
-    with style_context(), ruled(figure):
+    with style_context():
         figure.dpi = 72.0
         for each in scenery:
             each.set_visible(False)
