@@ -136,15 +136,6 @@ def quantity_of_unit(unit: str) -> Quantity:
     return quantity_of_dimension(dimension_of(unit), unit)
 
 
-def si_unit(dimension: Dimension) -> str:
-    """The coherent SI unit of a dimension.
-
-    >>> si_unit(dimension_of("N/um")), si_unit(dimension_of("mm^3"))
-    ('kg/s^2', 'm^3')
-    """
-    return _si_text(dimension.powers)
-
-
 _SI_NAMES = {"length": "m", "mass": "kg", "time": "s", "temperature": "K", "angle": "rad", "memory": "B", "current": "A"}
 ANGLE_POWERS = (("[angle]", Fraction(1)),)
 

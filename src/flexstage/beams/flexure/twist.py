@@ -28,15 +28,6 @@ class Modes:
     slopes: Array
 
 
-def free_modes(count: int, places: Array) -> Modes:
-    """Polynomials: twist, or bending, of a flexure without layers at its ends.
-
-    >>> free_modes(1, np.array([0.0, 1.0])).values.tolist()
-    [[1.0, 1.0]]
-    """
-    return Modes(polynomials(count, places), slopes(count, places))
-
-
 def held_modes(count: int, places: Array, decay: Array) -> Modes:
     """Rates of twist (docs/nonlinear.md, 9), zero at ends that cannot warp: P_k - cosh(c u) / cosh(c), sinh for odd k; u = 2 s - 1.
 

@@ -26,11 +26,6 @@ class Recorder:
     _left: int = 0
     _skip: int = 0
 
-    @property
-    def is_recording(self) -> bool:
-        """Whether its tables are being filled."""
-        return self._left > 0
-
     def start(self) -> None:
         """Empty all tables, and fill them from the next sample on."""
         self.points = [np.empty(0)] * TABLES

@@ -80,11 +80,6 @@ class OneLoop:
         return float(np.sum(self.disturbed * np.abs(own) ** 2 + self.heard * np.abs(1.0 - own) ** 2))
 
 
-def encircles_nothing(returned: Array) -> Array:
-    """Whether curves (..., f) of 1 + L of stable plants and controllers that integrate encircle 0 nowhere: Nyquist's criterion."""
-    return np.abs(np.unwrap(np.angle(returned), axis=-1)[..., -1]) < 2.0
-
-
 def _bands(steps: Array) -> Array:
     """Bands of steps (w, n), the model's first."""
     return np.where(np.arange(len(steps)) == 0, BAND, _BAND_OFF)[:, None] * np.ones(steps.shape)
