@@ -11,7 +11,7 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.branches import branches_of
-from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials, stack_creeps
+from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
 from flexstage.control.hysteresis.creep_record import identify_creep
 from flexstage.control.hysteresis.envelope import Envelope, straight
 from flexstage.control.hysteresis.identify import identify_hysteresis
@@ -191,7 +191,7 @@ def test_creep_is_exact_between_samples():
     """Held inputs: equal to the closed form of the step response, and to the same system sampled by the loop's own means."""
     from flexstage.control.sampling import discretise
 
-    creep = stack_creeps((Creep([1.0], [0.1, 0.05], [2.0, 0.3]), Creep([0.9], [0.2], [5.0])))
+    creep = Creep([1.0, 0.9], [[0.1, 0.05], [0.2, 0.0]], [[2.0, 0.3], [5.0, 1.0]])
     times = 0.25 * np.arange(40)
     assert creep.run(np.ones((40, 2)), 0.25) == pytest.approx(creep.step_response(times), abs=1e-14)
     inputs = np.random.default_rng(4).normal(size=(40, 2))

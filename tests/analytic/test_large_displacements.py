@@ -17,7 +17,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Number
 from flexstage.base.scale import Z
 from flexstage.beams.flexure.law import DEFAULT, Resolution
-from flexstage.beams.flexure.strip import secant, stiffness
+from flexstage.beams.flexure.strip import stiffness
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tilt_stage import tilt_stage
@@ -38,6 +38,7 @@ from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.section import Rectangle, cowper_rectangle
 from tests.analytic.shooting import cross_pivot
+from tests.analytic.strips import secant
 
 SOFT = Material(young=1.0, poisson=0.3, density=0.0)
 THIN = Leaf("soft", length=1.0, thickness=3e-5, width=1e-2, section=LeafSection.BEAM)

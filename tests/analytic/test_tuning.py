@@ -23,7 +23,7 @@ from flexstage.control.plants import plant
 from flexstage.control.stability import verdict
 from flexstage.control.stability_margins import peaks
 from flexstage.control.tuning.attempt import Task, attempt
-from flexstage.control.tuning.goal import Goal, Kind, peak_for_margins
+from flexstage.control.tuning.goal import Goal, Kind
 from flexstage.control.tuning.laws import laws
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import resonances, view
@@ -179,12 +179,6 @@ def test_resonances_are_the_modes_that_show(oscillator, sampled):
     assert [round(each.gain, 2) for each in found] == [50.0]
     shown = resonances(view(sampled, platform_loops(sampled.coordinates), 0.0), 0)
     assert [each.frequency for each in shown] == [pytest.approx(sampled.frequencies[1])]
-
-
-def test_margins_as_peaks_of_sensitivity():
-    """Gain margin 2 and phase margin 60 deg need M = 2 and M = 1; both at once the lower."""
-    assert peak_for_margins(2.0) == 2.0
-    assert peak_for_margins(3.0, np.radians(29.0)) == pytest.approx(min(1.5, 0.5 / np.sin(np.radians(14.5))))
 
 
 BAD = {

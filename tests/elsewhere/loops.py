@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -71,3 +72,23 @@ def way(given: Machine, count: int, size: float = 20e-6) -> tuple[np.ndarray, di
     named |= {f"noise.{actuator}": 1e-9 * random.standard_normal(count) for actuator in given.actuators}
     named |= {"ground.x": 1e-6 * np.sin(2.0 * np.pi * 60.0 * times), "ground.rz": 1e-7 * np.sin(2.0 * np.pi * 45.0 * times)}
     return reference, {**named, "platform.fz": 5.0 * (times > 0.3 * times[-1])}
+
+
+def without_limits(given: Machine) -> Machine:
+    """The same machine without anything that is not linear: no limits and ranges, no rounding, no hysteresis and no inverse.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> example = integral_loop()
+    >>> bool(np.isinf(without_limits(machine(example.plant, example.controller)).amplifiers.high[0]))
+    True
+    """
+    count = len(given.actuators)
+    free = replace(
+        given.amplifiers,
+        low=np.full(count, -np.inf),
+        high=np.full(count, np.inf),
+        slew=np.full(count, np.inf),
+        step=np.zeros(count),
+    )
+    resolution = np.zeros(len(given.gauges))
+    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None, relief=None)

@@ -26,14 +26,14 @@ from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
 from flexstage.control.hysteresis.envelope import Envelope
 from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.preisach import Preisach
-from flexstage.control.simulation.machine import Machine, Relief, machine, without_limits
+from flexstage.control.simulation.machine import Machine, Relief, machine
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.system import static
 from flexstage.models.linear.model import Channel
 from tests.elsewhere.compiled_loop import run_program, simulate_compiled
 from tests.elsewhere.independent_loop import Computer
-from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way
+from tests.elsewhere.loops import PLATFORM, full_loop, plays, six_axes, way, without_limits
 from tests.elsewhere.test_loop_simulation import worst
 
 needs_compiler = pytest.mark.skipif(compiler() is None, reason="no compiler of C on the PATH")

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import scipy
 
-from flexstage.control.simulation.machine import machine, without_limits
+from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.models.linear.model import Channel
 from tests.elsewhere.independent_loop import Stepped, integrated
-from tests.elsewhere.loops import RATE, full_loop, six_axes, way
+from tests.elsewhere.loops import RATE, full_loop, six_axes, way, without_limits
 
 KINDS = ("pose", "command", "asked", "given", "stroke", "readings", "motions")
 COUNT = 1500 if os.environ.get("FLEXSTAGE_TESTS") == "full" else 200

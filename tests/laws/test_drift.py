@@ -10,11 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flexstage as fs
-from flexstage.analysis.drift import FIELDS, closed_loop_drift, drift
+from flexstage.analysis.drift import FIELDS, Drift, drift
 from flexstage.analysis.workspace.gauging import gauge_inverse
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Table
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.expand import expand
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.given import Given, Joint
 from flexstage.spatial.frame import COMPONENTS
 from tests.conftest import examples
@@ -51,6 +53,13 @@ def scaled_stress(found, model):
     """Largest stress resultant per kelvin against what locked ends would give, alpha K length."""
     stiffest = max(float(np.max(np.abs(part.law))) for part in model.stiffness.values())
     return np.max(np.abs(found.forces.values)) / (1e-5 * 0.1 * stiffest)
+
+
+def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
+    """Platform motion (6 x fields) when a control loop holds all gauge readings: x - S s, with S of `gauge_inverse`."""
+    moved = drifted.of(PLATFORM)
+    readings = drifted.gauges.part(gauge_inverse.columns, FIELDS)
+    return Matrix(moved.values - gauge_inverse.values @ readings.values, moved.rows, moved.columns, moved.unit)
 
 
 @examples(24, 1000)

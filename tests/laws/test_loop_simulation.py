@@ -19,7 +19,7 @@ from flexstage.control.creep_plant import add_creep
 from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
 from flexstage.control.simulation.kernel import Compensator
-from flexstage.control.simulation.machine import Machine, machine, without_limits
+from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.result import step_figures, tracking
 from flexstage.control.simulation.run import simulate
 from flexstage.control.system import System, static
@@ -27,7 +27,7 @@ from flexstage.control.trajectory.profile import Limits
 from flexstage.control.trajectory.step import Step
 from flexstage.models.linear.model import Channel
 from tests.conftest import examples
-from tests.elsewhere.loops import full_loop, plays, six_axes, way
+from tests.elsewhere.loops import full_loop, plays, six_axes, way, without_limits
 
 SIZES = st.floats(1e-6, 150e-6)
 

@@ -16,7 +16,7 @@ from flexstage.control.electronics import hardware
 from flexstage.control.measured_margins import MeasuredMargins, measured_margins
 from flexstage.control.noise import noise_budget
 from flexstage.control.plants import Plant
-from flexstage.control.simulation.machine import machine, without_limits
+from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.run import simulate
 from flexstage.control.stability_margins import bandwidths, peaks
 from flexstage.control.study.choices import Criterion, Following
@@ -45,6 +45,7 @@ from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
 from flexstage.models.lumped import lumped
 from tests.conftest import FULL
+from tests.elsewhere.loops import without_limits
 from tests.models.synthetic_records import record, truth
 
 COPIES = 200 if FULL else 60

@@ -9,7 +9,7 @@ from flexstage.control.closed import loop
 from flexstage.control.learning.learn import wanted_readings
 from flexstage.control.learning.repeat import Repetition, repeat, repeater
 from flexstage.control.learning.responses import readings
-from flexstage.control.simulation.machine import machine, without_limits
+from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.running import RunningLoop
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Following
@@ -17,6 +17,7 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import ControllerSetup, FollowSetup, GaugeSetup, LoopSetup, RasterMotion, StepMotion
+from tests.elsewhere.loops import without_limits
 
 FOLLOW = FollowSetup(Following.REPETITIVE)
 

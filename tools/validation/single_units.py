@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import flexstage as fs
-from flexstage.analysis.statics import equivalent_stiffness
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.cases.double_triangle import EQUATION_3, TABLE_2_FEA
+from tests.paper.test_disagreements import equivalent_stiffness
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Section, Tolerance, relative
 from tools.validation.stages import gain, known, load_term

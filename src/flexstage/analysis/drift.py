@@ -135,20 +135,6 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     )
 
 
-def closed_loop_drift(drifted: Drift, gauge_inverse: Matrix) -> Matrix:
-    """Platform motion (6 x fields) when a control loop holds all gauge readings: x - S s, with S of `gauge_inverse`.
-
-    >>> zero = Matrix(np.zeros((1, 4)), ("S1",), FIELDS, "m/K")
-    >>> moved = Matrix(np.eye(6)[:, :4], tuple(f"platform.{name}" for name in COMPONENTS), FIELDS, "m/K")
-    >>> free = Drift(moved, zero, zero, Ground(None, "as asked"), np.zeros(3), {}, "")
-    >>> closed_loop_drift(free, Matrix(np.ones((6, 1)), COMPONENTS, ("S1",), "1")).values[0].tolist()
-    [1.0, 0.0, 0.0, 0.0]
-    """
-    moved = drifted.of(PLATFORM)
-    readings = drifted.gauges.part(gauge_inverse.columns, FIELDS)
-    return Matrix(moved.values - gauge_inverse.values @ readings.values, moved.rows, moved.columns, moved.unit)
-
-
 def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
     """What has a stiffness and is no link; about a state, links whose deformation is not that of their two ends alone."""
     about = LOADED in model.stiffness

@@ -205,17 +205,3 @@ def centre_of_stiffness(stiffness: Array) -> Array:
         ],
         axis=-1,
     )
-
-
-def equivalent_stiffness(axial: Number, lateral: Number, angles: Array) -> Array:
-    """In-plane stiffness tensor (2, 2) of units pushing at `angles` [rad], each with axial and lateral stiffness (Eq. 1 of Shin & Moon).
-
-    For three units 120 degrees apart it is 1.5 (K_a + K_l) in every direction (Eq. 2).
-
-    >>> third = 2 * np.pi / 3
-    >>> equivalent_stiffness(10.30, 0.0012, np.array([0, third, -third])).diagonal().round(6).tolist()
-    [15.4518, 15.4518]
-    """
-    along = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    across = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
-    return axial * np.einsum("ki,kj->ij", along, along) + lateral * np.einsum("ki,kj->ij", across, across)

@@ -154,21 +154,6 @@ def _fit(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
     return float(solved[0]), sign * solved[1:]
 
 
-def stack_creeps(creeps: tuple[Creep, ...]) -> Creep:
-    """Creeps as one with all their axes; those with fewer exponentials get further ones of gain 0.
-
-    >>> stack_creeps((Creep([1.0], [0.1], [2.0]), Creep([1.0], [0.1, 0.2], [2.0, 3.0]))).gains.tolist()
-    [[0.1, 0.0], [0.1, 0.2]]
-    """
-    count = max(each.times.shape[1] for each in creeps)
-    more = [((0, 0), (0, count - each.times.shape[1])) for each in creeps]
-    return Creep(
-        np.concatenate([each.instant for each in creeps]),
-        np.concatenate([np.pad(each.gains, pad) for each, pad in zip(creeps, more, strict=True)]),
-        np.concatenate([np.pad(each.times, pad, constant_values=1.0) for each, pad in zip(creeps, more, strict=True)]),
-    )
-
-
 def _findings(creep: Creep) -> Iterator[Finding]:
     if creep.gains.shape != creep.times.shape or len(creep.instant) != len(creep.times):
         shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"

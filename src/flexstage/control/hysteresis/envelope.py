@@ -140,32 +140,3 @@ def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
         what = f"from {left:g} to {right:g} on axis {axis} it goes from {low:g} to {high:g}, and only what ascends can be inverted"
         found.append(Finding(where, what, "Keep the input to where it ascends, or identify from a record that ascends"))
     return found
-
-
-def broadcast(envelope: Envelope, axes: int) -> Envelope:
-    """An envelope that tells `axes` axes apart, be they alike.
-
-    >>> broadcast(IDENTITY, 3).axes
-    3
-    """
-    shape = (axes, envelope.knots.shape[1])
-    return Envelope(np.broadcast_to(envelope.knots, shape), np.broadcast_to(envelope.values, shape))
-
-
-def stack_envelopes(envelopes: Sequence[Envelope]) -> Envelope:
-    """Envelopes as one with all their axes; those with fewer knots get further ones on their last piece.
-
-    >>> stack_envelopes([IDENTITY, Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])]).at(np.array([2.5, 2.5])).tolist()
-    [2.5, 3.5]
-    """
-    count = max(each.knots.shape[1] for each in envelopes)
-    pairs = [_extend(each, count - each.knots.shape[1]) for each in envelopes]
-    knots, values = (np.concatenate(group) for group in zip(*pairs, strict=True))
-    return Envelope(knots, values)
-
-
-def _extend(envelope: Envelope, more: int) -> tuple[Array, Array]:
-    beyond = np.arange(1, more + 1) * (envelope.knots[:, -1:] - envelope.knots[:, -2:-1])
-    knots = np.concatenate([envelope.knots, envelope.knots[:, -1:] + beyond], axis=1)
-    values = np.concatenate([envelope.values, envelope.values[:, -1:] + envelope.slopes[:, -1:] * beyond], axis=1)
-    return knots, values

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, freeze
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, broadcast, stack_envelopes, straight
+from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
 from flexstage.control.hysteresis.protocol import Hysteresis
 
 
@@ -116,24 +116,3 @@ def proportional(gain: Sequence[float] | Array, offset: Sequence[float] | Array 
     """
     gain = np.atleast_1d(np.asarray(gain, dtype=float))
     return PrandtlIshlinskii(np.zeros((len(gain), 1)), gain[:, None], after=straight(np.ones(len(gain)), offset))
-
-
-def stack_models(models: Sequence[PrandtlIshlinskii]) -> PrandtlIshlinskii:
-    """Models as one with all their axes, for actuators that differ; those with fewer plays get further ones of weight 0.
-
-    >>> pair = stack_models([proportional([1e-7]), PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])])
-    >>> (1e6 * pair.run(np.array([[0.0, 0.0], [500.0, 500.0]])))[1].round(9).tolist()
-    [50.0, 70.0]
-    """
-    count = max(each.thresholds.shape[1] for each in models)
-    return PrandtlIshlinskii(
-        np.concatenate([_extra_plays(each.thresholds, count) for each in models]),
-        np.concatenate([np.pad(each.weights, ((0, 0), (0, count - each.weights.shape[1]))) for each in models]),
-        stack_envelopes([broadcast(each.before, each.axes) for each in models]),
-        stack_envelopes([broadcast(each.after, each.axes) for each in models]),
-    )
-
-
-def _extra_plays(thresholds: Array, count: int) -> Array:
-    last = thresholds[:, -1:]
-    return np.concatenate([thresholds, last + (1.0 + last) * np.arange(1, count - thresholds.shape[1] + 1)], axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -185,26 +185,6 @@ def _relief(powers: Sequence[Amplifier | None], step: float) -> Relief | None:
     left = np.array([1.0 if each is None else each.left for each in drives])
     corners = np.array([0.0 if each is None else each.corner for each in drives])
     return Relief(left, -np.expm1(-2.0 * np.pi * corners * step))
-
-
-def without_limits(given: Machine) -> Machine:
-    """The same machine without anything that is not linear: no limits and ranges, no rounding, no hysteresis and no inverse.
-
-    >>> from flexstage.control.example import integral_loop
-    >>> example = integral_loop()
-    >>> bool(np.isinf(without_limits(machine(example.plant, example.controller)).amplifiers.high[0]))
-    True
-    """
-    count = len(given.actuators)
-    free = replace(
-        given.amplifiers,
-        low=np.full(count, -np.inf),
-        high=np.full(count, np.inf),
-        slew=np.full(count, np.inf),
-        step=np.zeros(count),
-    )
-    resolution = np.zeros(len(given.gauges))
-    return replace(given, amplifiers=free, resolution=resolution, hysteresis=None, compensation=None, half_range=None, relief=None)
 
 
 def _findings(given: Machine) -> Iterator[Finding]:

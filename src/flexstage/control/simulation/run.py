@@ -32,9 +32,9 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     is no error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
 
     >>> from flexstage.control.example import integral_loop
-    >>> from flexstage.control.simulation.machine import machine, without_limits
+    >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
-    >>> found = simulate(without_limits(machine(example.plant, example.controller)), np.full((2000, 1), 1e-6))
+    >>> found = simulate(machine(example.plant, example.controller), np.full((2000, 1), 1e-6))
     >>> round(float(found.pose[-1, 0]) * 1e9, 2)  # an integrator leaves no error: 1000 nm
     1000.0
     """

@@ -5,28 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.analysis.workspace.polytope import Polytope
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
-def require_reach(poses: Array, times: Array, polytope: Polytope) -> None:
-    """Raise `DesignError` where poses (n, f) leave the `polytope` of what strokes reach: first and worst time, and the scale that fits.
+def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
+    """One finding where poses (n, f) leave the `polytope` of what strokes reach: first and worst time, and the scale that fits; or none.
 
     Columns are the polytope's coordinates; the boundary counts as reachable.
-
-    >>> from flexstage.analysis.workspace.polytope import reachable
-    >>> from flexstage.analysis.workspace.stroke import StrokeLimits
-    >>> span = StrokeLimits(("B",), np.array([-1e-6]), np.array([1e-6]))
-    >>> room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
-    >>> require_reach(np.array([[0.0], [1e-6]]), np.array([0.0, 1.0]), room)
-    """
-    require(reach_findings(poses, times, polytope))
-
-
-def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """What `require_reach` raises: one finding, or none.
 
     >>> from flexstage.analysis.workspace.polytope import reachable
     >>> from flexstage.analysis.workspace.stroke import StrokeLimits

@@ -29,8 +29,9 @@ class Kind(Enum):
 class Goal(CheckedFields):
     """What is wanted: `bandwidth` [Hz], where every loop's gain first passes 1; absent: the highest that the rest allows.
 
-    `sensitivity` is the highest peak of S allowed (poses as lengths; 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg,
-    `peak_for_margins`), and `spread` how much all modes may lie above or below the model's, relative: stability and peak hold there too.
+    `sensitivity` is the highest peak of S allowed (poses as lengths): 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg
+    (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is how much all modes may lie above or below the
+    model's, relative: stability and peak hold there too.
     """
 
     bandwidth: float | None = None
@@ -54,19 +55,6 @@ def goal_findings(goal: Goal, step: float | None) -> Iterator[Finding]:
         yield Finding("sensitivity", f"the highest peak of S allowed is {goal.sensitivity:g}, and it has to be above 1", advice)
     if not 0.0 <= goal.spread < 0.5:
         yield Finding("spread", f"modes are to be off by up to {goal.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
-
-
-def peak_for_margins(gain: float = 1.0, phase: float = 0.0) -> float:
-    """The peak of S that guarantees a gain margin [1] and a phase margin [rad]: min(g/(g - 1), 1/(2 sin(phase/2))).
-
-    Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47. For a `Goal.sensitivity`.
-
-    >>> peak_for_margins(gain=2.0), round(peak_for_margins(phase=np.pi / 3.0), 6)
-    (2.0, 1.0)
-    """
-    by_gain = gain / (gain - 1.0) if gain > 1.0 else np.inf
-    by_phase = 0.5 / np.sin(0.5 * phase) if phase > 0.0 else np.inf
-    return float(min(by_gain, by_phase))
 
 
 @dataclass(frozen=True)
