@@ -1,6 +1,6 @@
 """What people wait for, one process each: `flexstage --help` against the bare interpreter, and the longer commands on the shipped stage.
 
-Seconds are those of the processor where the machine has other work as well. Target of `--help`: under 0.3 s.
+Seconds are CPU time where the machine has other work as well. Targets of CPU time: `--help` 0.25 s, the help of a command 1 s.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import time
 from pathlib import Path
 
 REPEATS = 9
-TARGET = 0.3
+TARGET, HELP_TARGET = 0.25, 1.0
 HELP = [sys.executable, "-c", "from flexstage.apps.cli import main; main()", "--help"]
 BARE = [sys.executable, "-c", "pass"]
 COMMAND = Path(sys.executable).with_name("flexstage")
 LONGER = {
-    "analyse stage.toml": 0.7,
-    "analyse stage.toml --report report.html": 2.0,
-    "loop stage.toml": 3.0,
-    "loop stage.toml --controller lqg": 4.0,
+    **{f"{command} --help": HELP_TARGET for command in ("analyse", "modes", "verify", "identify", "loop", "serve", "sweep", "studio")},
+    "analyse stage.toml": 1.0,
+    "analyse stage.toml --report report.html": 3.0,
+    "loop stage.toml": 12.0,
+    "loop stage.toml --controller lqg": 12.0,
     "identify record.h5": 5.0,
 }
 """Commands, and the processor time [s] that each aims at; the record has twelve channels and lasts 60 s."""
@@ -55,7 +56,7 @@ def main() -> None:
     for name, (elapsed, spent) in {"python -c pass": bare, "flexstage --help": helped}.items():
         print(f"{name:20} {1e3 * elapsed:8.1f} ms elapsed {1e3 * spent:8.1f} ms of a processor")
     print(f"{'ratio':20} {helped[0] / bare[0]:8.1f}    elapsed {helped[1] / bare[1]:8.1f}    of a processor")
-    print(f"target {1e3 * TARGET:.0f} ms elapsed: {'met' if helped[0] < TARGET else 'MISSED'}")
+    print(f"target {1e3 * TARGET:.0f} ms of a processor: {'met' if helped[1] < TARGET else 'MISSED'}")
     longer()
 
 

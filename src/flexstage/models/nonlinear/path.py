@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+import scipy
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
@@ -319,5 +319,5 @@ def _turn(one: Point, other: Point) -> float:
     """The extreme factor between two points, of the cubic with their values and slopes; NaN where it goes one way."""
     if one.slope * other.slope >= 0.0:
         return np.nan
-    cubic = CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])
+    cubic = scipy.interpolate.CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])
     return float(cubic(cubic.derivative().roots(extrapolate=False)[0]))
