@@ -31,7 +31,7 @@ autodoc_typehints = "description"
 
 html_theme = "furo"
 html_title = "flexstage"
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "archive"]
 suppress_warnings: list[str] = []
 nitpicky = False
 
