@@ -14,9 +14,7 @@ from tools.imports import import_graph, named_modules, path_of, points_up, unrea
 LOADERS = {
     "flexstage": "the names of WINGS; nothing imports the root",
     "flexstage.base.lazy": "loads the names that its callers state",
-    "flexstage.base.binding": "modules of scipy",
     "flexstage.apps.cli.commands": "COMMANDS, in the same file",
-    "flexstage.apps.cli.signature": "COMMANDS, and modules that the signature of a command imports by statement",
     "flexstage.apps.doctor": "packages of others",
     "flexstage.apps.studio.engine": "TASKS, in the same file",
     "flexstage.show.command.models": "tables that the application states",

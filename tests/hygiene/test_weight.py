@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 29_500,
+    "base": 28_200,
     "spatial": 3_900,
     "parts": 46_000,
-    "beams": 26_800,
+    "beams": 25_500,
     "mechanism": 60_100,
     "cases": 13_700,
-    "models": 111_700,
-    "analysis": 68_800,
-    "show": 78_300,
-    "solid": 81_000,
+    "models": 113_600,
+    "analysis": 68_600,
+    "show": 77_300,
+    "solid": 80_600,
     "experiment": 104_200,
-    "control": 175_900,
+    "control": 174_300,
     "studies": 55_300,
-    "apps": 40_100,
+    "apps": 39_000,
     ".": 400,
-    "all": 894_500,
+    "all": 889_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -21,7 +21,7 @@ from flexstage.experiment.formats.write import write
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.record import Record
 from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
-from flexstage.experiment.virtual_rig.chain import butterworth, chain, density_shape
+from flexstage.experiment.virtual_rig.chain import amplitude_shape, butterworth, chain
 from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, StructuralDamping
@@ -62,8 +62,8 @@ def test_variances_are_those_of_the_random_response() -> None:
     setup = replace(BARE, seconds=240.0)
     test = simulate_test(mechanism, model, setup)
     grid = np.concatenate([np.linspace(0.25, 820.0, 400), np.linspace(820.5, 1023.5, 800)])
-    shape = np.maximum(density_shape(grid, test.plan.band), 1e-30)
-    area = np.trapezoid(density_shape(np.linspace(0.0, 1024.0, 20_001), test.plan.band), np.linspace(0.0, 1024.0, 20_001))
+    shape = np.maximum(amplitude_shape(grid, test.plan.band) ** 2, 1e-30)
+    area = np.trapezoid(amplitude_shape(np.linspace(0.0, 1024.0, 20_001), test.plan.band) ** 2, np.linspace(0.0, 1024.0, 20_001))
     spectra_in = {name: fs.Spectrum(rms**2 * shape / area, grid) for name, rms in zip(test.plan.actuators, test.plan.rms, strict=True)}
     expected = fs.random_response(model, test.plan.gauges, spectra_in, (0.25, 1023.5))
     np.testing.assert_allclose(test.chain.output_rms, expected.rms, rtol=1e-3)  # 0.25 Hz are left out
@@ -217,7 +217,7 @@ def test_strokes_are_as_fast_as_their_band_makes_them() -> None:
     mechanism, model = stage()
     plan = plan_test(mechanism, model, replace(BARE, seconds=1.0))
     lines = np.linspace(0.0, 1024.0, 20_001)
-    density = density_shape(lines, plan.band)
+    density = amplitude_shape(lines, plan.band) ** 2
     expected = 2.0 * np.pi * plan.rms * np.sqrt(np.trapezoid(lines**2 * density, lines) / np.trapezoid(density, lines))
     np.testing.assert_allclose(chain(model, plan, model.damping).stroke_rate_rms, expected, rtol=1e-3)
 

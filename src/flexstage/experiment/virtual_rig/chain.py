@@ -90,7 +90,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     rate = finer * plan.rate
     size = _block(_memory(model, plan, damping), rate)
     lines = np.arange(3 * size // 2 + 1) * (rate / (3 * size))
-    shape = _amplitude_shape(lines, plan.band)
+    shape = amplitude_shape(lines, plan.band)
     used = lines[: int(np.flatnonzero(shape)[-1]) + 1]
     unit = shape[: len(used)] / np.sqrt((2.0 * np.sum(shape**2) - shape[0] ** 2) / (3 * size))
     filtered = butterworth(used, plan.setup.filter.order, plan.corner)
@@ -125,17 +125,14 @@ def butterworth(frequencies: Array, order: int, corner: float) -> Array:
     return result
 
 
-def density_shape(frequencies: Array, band: tuple[float, float]) -> Array:
-    """Shape (f,) of the drive's power density: 1 within the band, falling to nought from `low` to `low`/2 and `high` to 1.25 `high`.
+def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
+    """Shape (f,) of the drive's amplitude: 1 within the band, zero below `low`/2 and above 1.25 `high`.
 
-    >>> density_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)).round(6).tolist()
+    >>> (amplitude_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)) ** 2).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
+
+    Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours.
     """
-    return _amplitude_shape(frequencies, band) ** 2
-
-
-def _amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
-    """Edges by the error function: their impulse response fades as a Gaussian, so that blocks need little of their neighbours."""
     low, high = band
     upper = (frequencies - high) / (TAPER * high)
     shape = np.where(upper <= 0.0, 1.0, np.where(upper >= 1.0, 0.0, 0.5 * scipy.special.erfc(_STEEPNESS * (2.0 * upper - 1.0))))
