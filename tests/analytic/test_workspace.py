@@ -89,6 +89,8 @@ def test_volts_and_currents():
     np.testing.assert_allclose(electric.sine_current(100.0, strokes), 2.0 * np.pi * 100.0 * 2e-6 * 45.0)
     assert electric.within(np.array([150.0]))
     assert not electric.within(np.array([151.0]))
+    unstated = drive(guide(replace(STACK, bias=None)))  # the middle of -30 to 150 V, as its strokes count
+    np.testing.assert_allclose([unstated.bias[0], unstated.volts(np.array([10e-6])).item()], [60.0, 150.0])
 
 
 def test_volts_need_a_range_and_currents_a_capacitance():
