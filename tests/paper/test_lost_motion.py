@@ -116,3 +116,14 @@ def test_budget_adds_up(parameters: DoubleTriangle) -> None:
     result = fs.lost_motion(fs.ideal(stage), fs.lumped(stage))
     total = sum(share.values for share in result.budget.values())
     assert np.max(np.abs(total - result.loss.values)) <= 1e-12 * max(1.0, np.linalg.norm(result.loss.values))
+
+
+def test_energy_is_half_the_force_of_each_stroke_times_the_stroke():
+    """Clapeyron: what a stroke alone strains is half of what its stack is pressed with, times the stroke."""
+    stage = double_triangle()
+    model = fs.lumped(stage)
+    energy = fs.lost_motion(fs.ideal(stage), model).energy
+    for name, link in expand(stage).actuators.items():
+        pressed = -float(static_gain(model, (f"{link}.fx",), (name,)).values[0, 0])
+        total = float(np.sum(energy.values[:, energy.columns.index(name)]))
+        assert total == pytest.approx(0.5 * pressed, rel=1e-9)
