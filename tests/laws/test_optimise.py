@@ -181,6 +181,24 @@ starts = 1
         assert (upper.value(upper.point) - lower.value(lower.point)) / apart == pytest.approx(price, rel=2e-3)
 
 
+def test_the_price_of_a_limit_above_is_what_more_of_it_buys():
+    text = """
+[variables]
+leaf = {{ of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }}
+[responses]
+k = "stiffness.x"
+[limits]
+"frequency.platform.1" = "at most {most} Hz"
+[optimise]
+maximise = "k"
+starts = 1
+"""
+    middle, upper, lower = (optimise(*case_of("parallelogram", text.format(most=most))) for most in (1000.0, 1002.0, 998.0))
+    (limit,) = middle.binding
+    assert limit.price > 0.0
+    assert (upper.value(upper.point) - lower.value(lower.point)) / 4.0 == pytest.approx(limit.price, rel=2e-3)
+
+
 def test_contradicting_limits_are_named_and_nothing_else(tmp_path):
     limits = '[limits]\n"stiffness.z" = "at most 50 N/um"\n"frequency.platform.1" = "at least 40 Hz"\nheight = "at most 200 mm"\n'
     study, wanted = study_of(tmp_path, POST, post_variables() + limits + '[optimise]\nmaximise = "f1"\nstarts = 2')
