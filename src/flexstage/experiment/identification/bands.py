@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.base.number import Array
 
 _RATIO, _SHARED = 3.0, 1.3
-_TOGETHER, _REACH = 12.0, 24.0
+TOGETHER, _REACH = 12.0, 24.0
 _MOST = 12
 
 
@@ -45,8 +45,8 @@ def sweeps(low: float, high: float) -> list[Sweep]:
     return [Sweep(max(low, a / half), min(high, b * half), float(a), float(b)) for a, b in itertools.pairwise(limits)]
 
 
-def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0) -> list[Extent]:
-    """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below 12 times their half-widths are fitted together.
+def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
+    """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below `together` times their half-widths form one.
 
     Half-widths below the lines' `resolution` in Hz count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and
     `high`, and ends between groups in proportion to half-widths.
@@ -59,7 +59,7 @@ def extents(poles: Array, low: float, high: float, *, resolution: Array | float 
     frequencies, widths = np.imag(poles), -np.real(poles)
     groups: list[list[int]] = []
     for index in range(len(poles)):
-        if groups and frequencies[index] - frequencies[index - 1] < _TOGETHER * (widths[index] + widths[index - 1]):
+        if groups and frequencies[index] - frequencies[index - 1] < together * (widths[index] + widths[index - 1]):
             groups[-1].append(index)
         else:
             groups.append([index])

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power
+from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power, scatter
 
 NORMAL_95 = 1.959964
 """Half the width of a 95 % interval, in standard deviations."""
@@ -119,12 +119,15 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
     modal = found.modal
     count, outputs = len(modal.poles), len(modal.shapes)
     first = count + count * modal.participation.shape[1]
-    strength = np.empty(count)
+    strength, correlated = np.empty(count), None
     for mode in range(count):
         places = first + np.arange(outputs) * count + mode
         strength[mode] = _wald(modal.shapes[:, mode], covariance[np.ix_(places, places)])
         if strength[mode] < _DOUBTFUL * limit:
-            strength[mode] = 2.0 * (fit(band, modal.without(mode), found.cost + _DOUBTFUL * limit).cost - found.cost)
+            correlated = _covariance(found, scatter(band, modal)) if correlated is None else correlated
+            share = _wald(modal.shapes[:, mode], correlated[np.ix_(places, places)]) / max(strength[mode], 1e-300)
+            fall = fit(band, modal.without(mode), found.cost + _DOUBTFUL * limit).cost - found.cost
+            strength[mode] = 2.0 * fall * min(1.0, share)
     return strength
 
 

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.experiment.cross_spectra import Segments, Spectra, Tell
 from flexstage.experiment.identification.adequacy import Reach, few_lines
-from flexstage.experiment.identification.bands import extents, sweeps
+from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
 from flexstage.experiment.identification.caution import Modes, warnings
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
 from flexstage.experiment.identification.driven import measure_drives
@@ -32,6 +32,7 @@ _LARGEST = 72
 _LONGEST = 40
 _PASSES = 2
 _FEW = 5.0
+_UNRECORDED = 0.02
 _LEAST_PARTS, _MOST_PARTS = 3, 8
 
 
@@ -112,6 +113,9 @@ def _identify_once(known: Evidence, search: Search) -> Identified:
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []
     found, refused, share = _keep_driven(known, _fit_groups(known, candidates, band, search.highest_damping, lost))
+    if len(found) > 1 and np.any(share > _UNRECORDED):
+        lost.clear()
+        found, refused, share = _keep_driven(known, _fit_groups(known, candidates, band, search.highest_damping, lost, together=np.inf))
     return _result(known, found, share, band=band, reach=reach, diagrams=diagrams, refused=refused, lost=lost)
 
 
@@ -154,12 +158,17 @@ def _candidates(
 
 
 def _fit_groups(
-    known: Evidence, candidates: tuple[Candidate, ...], band: tuple[float, float], highest_damping: float, lost: list[Lost]
+    known: Evidence,
+    candidates: tuple[Candidate, ...],
+    band: tuple[float, float],
+    highest_damping: float,
+    lost: list[Lost],
+    together: float = TOGETHER,
 ) -> list[Found]:
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
-    groups = extents(poles, *band, resolution=known.apart(np.imag(poles)))
+    groups = extents(poles, *band, resolution=known.apart(np.imag(poles)), together=together)
     bounds = [edges(poles, group.low, group.high) for group in groups]
     every = zip(groups, gather_cells(known.lines(), bounds), strict=True)
     found = [fit_group(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
