@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.peaks import Doubt
@@ -115,21 +116,35 @@ def test_an_oscillation_that_fades_stays() -> None:
     np.testing.assert_array_equal(quiet.values, values)
 
 
-@pytest.mark.parametrize("seed", [1, 3, 7, *range(20, 20 + SEEDS)] if FULL else [3])
-def test_a_drive_that_is_not_recorded_gives_no_mode(seed: int) -> None:
-    """Of seeds 1, 3 and 7 resonances of 0.03 to 0.1 % passed for modes once."""
+@pytest.mark.parametrize("seed", [1, 3, 7, *range(20, 20 + SEEDS)] if FULL else [34])
+def test_a_drive_that_is_not_recorded_gives_no_mode_and_hides_none(seed: int) -> None:
+    """All six are found and nothing else is hinted at; of seed 34 one was 0.5 % off, of seed 57 one was missed once."""
     known = truth(seed=1000 + seed)
     found = identify(undriven(known, seed))
-    away = np.min(np.abs(found.frequencies[:, None] / known.frequencies - 1.0), axis=1)
-    assert np.max(away) < 4e-3
     assert len(found.frequencies) == 6
-    for frequency in peaks(found, Doubt.UNDRIVEN):
-        assert np.min(np.abs(found.frequencies - frequency)) > 0.0
+    np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=4e-3)
+    assert np.all(np.abs(found.frequencies - known.frequencies) < 5.0 * found.frequency_deviations)
+    assert not [peak for peak in found.peaks if peak.doubt in (Doubt.UNDRIVEN, Doubt.WEAK)]
+    assert not found.delay
+    assert not [each for each in found.warnings if "looks" in each]
 
 
-def test_resonances_that_inputs_do_not_drive_are_listed() -> None:
-    found = identify(undriven(truth(seed=1007), 7))
-    assert [round(frequency) for frequency in peaks(found, Doubt.UNDRIVEN)] == [117]
+@pytest.mark.full
+def test_intervals_hold_the_truth_where_a_drive_is_not_recorded() -> None:
+    scores: list[np.ndarray] = []
+    for seed in range(300, 330):
+        known = truth(seed=1000 + seed)
+        found = identify(undriven(known, seed))
+        mode = np.argmin(np.abs(found.frequencies[:, None] / known.frequencies - 1.0), axis=1)
+        frequency = (found.frequencies - known.frequencies[mode]) / found.frequency_deviations
+        scores.append(np.stack([frequency, (found.damping - known.damping[mode]) / found.damping_deviations]))
+    assert np.mean(np.abs(np.concatenate(scores, axis=1)) < NORMAL_95) > 0.88
+
+
+def test_a_mode_that_is_hardly_driven_by_inputs_is_listed() -> None:
+    """The actuator that is not recorded drives the mode at 166 Hz four times as strongly as all others together."""
+    found = identify(undriven(truth(seed=1165), 165, 1.5))
+    assert [round(frequency) for frequency in peaks(found, Doubt.UNDRIVEN)] == [166]
 
 
 @pytest.mark.full

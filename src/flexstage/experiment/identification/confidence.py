@@ -56,8 +56,9 @@ def misfits(band: Band, modal: Modal) -> Array:
     [1.0]
     """
     cells = band.cells
-    left = np.real(np.einsum("ooc->oc", residual_power(band, modal))) / band.variance
-    outputs, taken = len(left), 1.0 + (1.0 + cells.width) / len(left)
+    root = np.sqrt(band.variance)
+    left = residual_power(band, modal) / (root[:, None] * root)
+    taken = 1.0 + (1.0 + cells.width) / len(left)
     result = np.ones(len(modal.poles))
     for mode, pole in enumerate(modal.poles):
         away = np.abs(cells.middle - pole.imag)
@@ -69,11 +70,19 @@ def misfits(band: Band, modal: Modal) -> Array:
             wide = int(np.searchsorted(away[order], reach * -pole.real, side="right"))
             number = min(len(order), max(wide, 1 + int(np.searchsorted(lines, _NEAREST * taken))))
             free = max(lines[number - 1] - taken, 1.0)
-            ratio = float(share @ np.sum(left[:, order[:number]], axis=1)) / free
-            freedom = free / float(np.sum(share**2)) if outputs > 1 else free
+            near = np.sum(left[:, :, order[:number]], axis=2)
+            ratio = float(share @ np.real(np.diagonal(near))) / free
+            freedom = free / float(share @ _shared_noise(near, lines[number - 1]) @ share)
             if ratio > float(scipy.special.gammainccinv(freedom, _BY_CHANCE / len(_NEAR))) / freedom:
                 result[mode] = max(result[mode], np.sqrt(ratio))
     return result
+
+
+def _shared_noise(power: Array, lines: float) -> Array:
+    """Squared coherence (p, p) of what is left of the outputs, freed of its bias by the number of lines (Bendat & Piersol, ch. 9)."""
+    own = np.maximum(np.real(np.diagonal(power)), 1e-300)
+    found = (np.abs(power) ** 2 / np.outer(own, own) - 1.0 / lines) / (1.0 - 1.0 / lines) if lines > 1 else np.eye(len(power))
+    return np.where(np.eye(len(power), dtype=bool), 1.0, np.maximum(found, 0.0))
 
 
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:

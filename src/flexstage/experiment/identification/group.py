@@ -45,11 +45,12 @@ class Hunt:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The modes of one band, with their deviations, those of noise alone, and significance.
+    """The modes of one band, that of `group`, with their deviations, those of noise alone, and significance.
 
     `misfit` is by how much what is left near each exceeds the noise, `widening` the factor on its deviations for that.
     """
 
+    group: Extent
     band: Band
     modal: Modal
     deviations: Deviations
@@ -61,6 +62,7 @@ class Found:
         """Some of the modes, by their numbers."""
         modal, spread = self.modal, self.deviations
         return Found(
+            self.group,
             self.band,
             Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
             Deviations(spread.frequencies[chosen], spread.damping[chosen], spread.shapes[:, chosen]),
@@ -99,7 +101,9 @@ def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], 
         return None
     beyond = misfits(band, found.modal)
     spread = deviations(found, known.inflation, scatter(band, found.modal))
-    every = Found(band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden_mode_factor(band, found)))
+    every = Found(
+        group, band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden_mode_factor(band, found))
+    )
     return replace(every, widening=_widening(every, band, found.modal))
 
 
@@ -125,14 +129,14 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
     return np.where(factors > _SLIGHT, factors, 1.0)
 
 
-def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], group: Extent, found: Found) -> Found:
+def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: Found) -> Found:
     """The modes with deviations that hold for the scatter between parts of the record, too, where the fit leaves more than noise.
 
     `cells` are those of the same band, gathered from the parts' transforms. A mode that changes with its amplitude or with time answers
     otherwise in each.
     """
     modal = found.modal
-    band = _band(known, cells, candidates, group)
+    band = _band(known, cells, candidates, found.group)
     free = np.zeros((len(modal.poles), cells.width - found.band.cells.width), dtype=complex)
     start = Modal(modal.poles, np.concatenate([modal.participation, free], axis=1), modal.shapes)
     band = replace(band, variance=noise(band, start))

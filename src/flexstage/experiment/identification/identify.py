@@ -15,7 +15,7 @@ from flexstage.experiment.identification.adequacy import Reach, few_lines
 from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
 from flexstage.experiment.identification.caution import Modes, warnings
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
-from flexstage.experiment.identification.driven import measure_drives
+from flexstage.experiment.identification.driven import Drive, measure_drives
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
@@ -112,10 +112,13 @@ def _identify_once(known: Evidence, search: Search) -> Identified:
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
     lost: list[Lost] = []
-    found, refused, share = _keep_driven(known, _fit_groups(known, candidates, band, search.highest_damping, lost))
-    if len(found) > 1 and np.any(share > _UNRECORDED):
+    fitted = _fit_groups(known, candidates, band, search.highest_damping, lost)
+    drives = _measure_drives(known, fitted)
+    if len(fitted) > 1 and any(np.any(each.elsewhere > _UNRECORDED) for each in drives):
         lost.clear()
-        found, refused, share = _keep_driven(known, _fit_groups(known, candidates, band, search.highest_damping, lost, together=np.inf))
+        fitted = _fit_groups(known, candidates, band, search.highest_damping, lost, together=np.inf)
+        drives = _measure_drives(known, fitted)
+    found, refused, share = _keep_driven(_widen_doubted(known, candidates, fitted), drives)
     return _result(known, found, share, band=band, reach=reach, diagrams=diagrams, refused=refused, lost=lost)
 
 
@@ -163,50 +166,61 @@ def _fit_groups(
     band: tuple[float, float],
     highest_damping: float,
     lost: list[Lost],
+    *,
     together: float = TOGETHER,
 ) -> list[Found]:
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
     groups = extents(poles, *band, resolution=known.apart(np.imag(poles)), together=together)
-    bounds = [edges(poles, group.low, group.high) for group in groups]
-    every = zip(groups, gather_cells(known.lines(), bounds), strict=True)
+    every = zip(groups, gather_cells(known.lines(), [edges(poles, group.low, group.high) for group in groups]), strict=True)
     found = [fit_group(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
-    for parts in sorted({_parts(known, each) for each in found} - {1}):
-        chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
-        for index, cells in zip(chosen, gather_cells(known.lines(1, parts), [bounds[index] for index in chosen]), strict=True):
-            each = found[index]
-            found[index] = None if each is None else widen_by_parts(known, cells, candidates, groups[index], each)
     return [each for each in found if each is not None]
 
 
-def _parts(known: Evidence, found: Found | None) -> int:
+def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: list[Found]) -> list[Found]:
+    """Bands with the scatter between parts of the record in the deviations of the modes near which the fit leaves more than noise."""
+    found = list(fitted)
+    poles = np.array([candidate.pole for candidate in candidates])
+    for parts in sorted({_parts(known, each) for each in found} - {1}):
+        chosen = [index for index, each in enumerate(found) if _parts(known, each) == parts]
+        bounds = [edges(poles, found[index].group.low, found[index].group.high) for index in chosen]
+        for index, cells in zip(chosen, gather_cells(known.lines(1, parts), bounds), strict=True):
+            found[index] = widen_by_parts(known, cells, candidates, found[index])
+    return found
+
+
+def _parts(known: Evidence, found: Found) -> int:
     """Into how many parts a record is cut to see whether its modes hold still: up to eight, none shorter than their slowest decay to 1/e.
 
     1 where there is no doubt, where fewer than three would be, or where there are several records: those are parts.
     """
-    doubted = np.zeros(0) if found is None else -2.0 * np.pi * np.real(found.modal.poles)[found.misfit > 1.0]
-    if known.stored or not len(doubted) or found is None or len(found.band.cells.columns) > 1:
+    doubted = -2.0 * np.pi * np.real(found.modal.poles)[found.misfit > 1.0]
+    if known.stored or not len(doubted) or len(found.band.cells.columns) > 1:
         return 1
     parts = min(_MOST_PARTS, int(np.min(doubted) / known.resolution))
     return parts if parts >= _LEAST_PARTS else 1
 
 
-def _keep_driven(known: Evidence, fitted: list[Found]) -> tuple[list[Found], list[Lost], Array]:
+def _measure_drives(known: Evidence, fitted: list[Found]) -> list[Drive]:
+    """Whether recorded inputs drive the modes, band by band. Responses say nothing of what else shook the stage."""
+    if all(each.band.inputs == each.band.cells.width for each in fitted):
+        return [Drive(np.zeros(len(each.modal.poles)), np.zeros(len(each.modal.poles))) for each in fitted]
+    return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
+
+
+def _keep_driven(fitted: list[Found], drives: list[Drive]) -> tuple[list[Found], list[Lost], Array]:
     """Modes that recorded inputs drive, resonances that they do not, and the share of each mode's motion that is not theirs.
 
-    What is refused stays in the fit: it takes the motion that is not the other modes'. Responses say nothing of what else shook the stage.
+    What is refused stays in the fit: it takes the motion that is not the other modes'.
     """
-    if not fitted or all(each.band.inputs == each.band.cells.width for each in fitted):
-        return fitted, [], np.zeros(sum(len(each.modal.poles) for each in fitted))
-    every = measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
     refused = [
         Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
-        for each, drive in zip(fitted, every, strict=True)
+        for each, drive in zip(fitted, drives, strict=True)
         for mode in np.flatnonzero(drive.chance > ONCE_IN)
     ]
-    kept = [each.select(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, every, strict=True)]
-    return kept, refused, np.concatenate([drive.elsewhere[drive.chance <= ONCE_IN] for drive in every])
+    kept = [each.select(np.flatnonzero(drive.chance <= ONCE_IN)) for each, drive in zip(fitted, drives, strict=True)]
+    return kept, refused, np.concatenate([np.zeros(0), *(drive.elsewhere[drive.chance <= ONCE_IN] for drive in drives)])
 
 
 def _result(

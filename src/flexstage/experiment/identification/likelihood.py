@@ -16,7 +16,7 @@ _FREE, _SMALL = 1e-9, 1e-4
 _MIXING = 0.25
 _STEPS = 60
 _CONVERGED = 1e-3
-_NOISE_LINES = 100
+_NOISE_LINES, _SCATTER_LINES = 100, 25
 _DIGITS = 1e-6
 
 
@@ -224,8 +224,9 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 def scatter(band: Band, modal: Modal) -> Array:
     """Covariance of the gradient, noise of outputs correlated as what is left shows: with it, deviations hold for noise of that kind too.
 
-    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Where less is left
-    than `silence`, that counts. Of the parameters of `Fit.information`.
+    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Noise is taken as
+    even over 25 lines, not over 100: what a force that is not recorded leaves follows the resonances. Where less is left than `silence`,
+    that counts. Of the parameters of `Fit.information`.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -234,7 +235,7 @@ def scatter(band: Band, modal: Modal) -> Array:
     """
     cells, outputs = band.cells, len(modal.shapes)
     left = np.conj(residual_power(band, modal))
-    noise = _pool_cells(left.reshape(-1, left.shape[2]), cells).reshape(left.shape) / _free_share(band, modal)
+    noise = _pool_cells(left.reshape(-1, left.shape[2]), cells, _SCATTER_LINES).reshape(left.shape) / _free_share(band, modal)
     alone = np.arange(outputs)
     noise[alone, alone] = np.maximum(np.real(noise[alone, alone]), silence(cells, band.rounding))
     weights = (noise / band.variance[:, None, :] / band.variance[None, :, :]).reshape(outputs**2, -1)
@@ -304,13 +305,13 @@ def _free_share(band: Band, modal: Modal) -> float:
     return max(0.1, 1.0 - used / float(np.sum(band.cells.count)))
 
 
-def _pool_cells(power: Array, cells: Cells) -> Array:
-    """Means per line of powers (q, c), over neighbouring cells of 100 lines or more together."""
+def _pool_cells(power: Array, cells: Cells, least: int = _NOISE_LINES) -> Array:
+    """Means per line of powers (q, c), over neighbouring cells of `least` lines or more together."""
     found = np.empty_like(power)
     for block in range(len(cells.columns)):
         chosen = np.flatnonzero(cells.block == block)
         lines = np.cumsum(cells.count[chosen])
-        parts = max(1, int(lines[-1]) // _NOISE_LINES)
+        parts = max(1, int(lines[-1]) // least)
         place = np.minimum((lines - 1) * parts // int(lines[-1]), parts - 1)
         for part in np.unique(place):
             members = chosen[place == part]
