@@ -116,9 +116,9 @@ def test_an_oscillation_that_fades_stays() -> None:
     np.testing.assert_array_equal(quiet.values, values)
 
 
-@pytest.mark.parametrize("seed", [1, 3, 7, *range(20, 20 + SEEDS)] if FULL else [34])
+@pytest.mark.parametrize("seed", [1, 3, 7, *range(20, 20 + SEEDS)] if FULL else [34, 111])
 def test_a_drive_that_is_not_recorded_gives_no_mode_and_hides_none(seed: int) -> None:
-    """All six are found and nothing else is hinted at; of seed 34 one was 0.5 % off, of seed 57 one was missed once."""
+    """All six are found and nothing else is hinted at; of seeds 34 and 111 one was 0.5 % off, of seed 57 one was missed once."""
     known = truth(seed=1000 + seed)
     found = identify(undriven(known, seed))
     assert len(found.frequencies) == 6
@@ -141,6 +141,7 @@ def test_intervals_hold_the_truth_where_a_drive_is_not_recorded() -> None:
     assert np.mean(np.abs(np.concatenate(scores, axis=1)) < NORMAL_95) > 0.88
 
 
+@pytest.mark.full
 def test_a_mode_that_is_hardly_driven_by_inputs_is_listed() -> None:
     """The actuator that is not recorded drives the mode at 166 Hz four times as strongly as all others together."""
     found = identify(undriven(truth(seed=1165), 165, 1.5))

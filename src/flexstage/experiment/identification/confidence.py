@@ -43,9 +43,9 @@ class Deviations:
 def misfits(band: Band, modal: Modal) -> Array:
     """How many times larger (k,) than the noise of the band is what the fit leaves near each mode; 1 where chance would leave as much.
 
-    Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take. More than once in 1000 by chance is
-    systematic: a mode that is none of linear, viscous and alone. Looked at is what lies within 1.5 half-widths, where a mode that wanders,
-    or that other forces shake, leaves most, and what lies within 4.
+    Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take; outputs whose noise is coherent count
+    once. More than once in 1000 by chance is systematic: a mode that is none of linear, viscous and alone. Looked at is what lies within
+    1.5 half-widths, where a mode that wanders, or that other forces shake, leaves most, and what lies within 4.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise
@@ -80,8 +80,9 @@ def misfits(band: Band, modal: Modal) -> Array:
 
 def _shared_noise(power: Array, lines: float) -> Array:
     """Squared coherence (p, p) of what is left of the outputs, freed of its bias by the number of lines (Bendat & Piersol, ch. 9)."""
-    own = np.maximum(np.real(np.diagonal(power)), 1e-300)
-    found = (np.abs(power) ** 2 / np.outer(own, own) - 1.0 / lines) / (1.0 - 1.0 / lines) if lines > 1 else np.eye(len(power))
+    size = np.sqrt(np.maximum(np.real(np.diagonal(power)), 1e-300))
+    by_chance = 1.0 / max(lines, 2.0)
+    found = (np.abs(power / np.outer(size, size)) ** 2 - by_chance) / (1.0 - by_chance)
     return np.where(np.eye(len(power), dtype=bool), 1.0, np.maximum(found, 0.0))
 
 
@@ -117,7 +118,8 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
     """How strongly (k,) the data ask for each mode, as chi-square with `freedoms` degrees where that mode is not in the stage.
 
     Wald's statistic, 2 phi^H C^-1 phi of the mode's shape; where it is below fifty times `limit`, twice the fall of the log-likelihood when
-    the mode is left out and the others are fitted anew (Wilks 1938).
+    the mode is left out and the others are fitted anew (Wilks 1938), times the share of Wald's statistic that noise correlated between
+    outputs leaves (White 1982).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

@@ -64,7 +64,8 @@ def identify(
     leaves more near a mode than noise would once in 1000, they are as wide as what is left or the scatter between independent parts of the
     data asks for, sub-bands, inputs, records, stretches of time, whichever is more (`jackknife`); `widening` says by how much. A mode is
     kept if leaving it out costs more likelihood than noise would once in 1e9, thrice that where its damping is not known to a third, and if
-    the recorded inputs drive it, whatever else does (an F-test at 1e-9). Tones that no input holds are taken out of the outputs before.
+    the recorded inputs drive it, whatever else does (an F-test at 1e-9). Where inputs do not explain 2 % of the motion in a mode, a force
+    is not recorded: all modes are fitted together, each the others' tails. Tones that no input holds are taken out of the outputs before.
     What is seen and is none of the modes is listed as `peaks`. A pure delay of all outputs that bends modes is taken out, and told
     (`common_delay`). Lines of responses may lie unevenly, as those of stepped sines do.
     Linear, time-invariant stages. Raises `DesignError` for inputs that are not independent, no outputs, records that do not fit together or
