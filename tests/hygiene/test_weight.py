@@ -18,12 +18,12 @@ CEILINGS = {
     "analysis": 68_600,
     "show": 77_300,
     "solid": 80_600,
-    "experiment": 104_200,
+    "experiment": 104_600,
     "control": 174_300,
     "studies": 55_300,
     "apps": 39_000,
     ".": 400,
-    "all": 889_700,
+    "all": 890_100,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -132,7 +132,9 @@ def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]
 def _twisting_load(link: PlacedLink) -> Number:
     """The load at which its section twists, where its law states one."""
     known = law_of(link.part)
-    return np.inf if known is None or known.twisting_load is None else known.twisting_load(link.part, link.material)
+    if known is None or known.twisting_load is None or link.material is None:
+        return np.inf
+    return known.twisting_load(link.part, link.material)
 
 
 def stack_rigidity(piezo: Piezo) -> Number:

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.parts.section import Section
+from flexstage.parts.profile import single
+from flexstage.parts.section import Rectangle, Section
 from flexstage.solid.fea.piece import Medium
 
 _TERMS = 30
@@ -44,10 +45,12 @@ def beam(section: Section, length: float, medium: Medium) -> Array:
 
 def _free_twist(section: Section, length: float, medium: Medium) -> float:
     """Twist with one end held plane over that of Saint-Venant."""
-    if section.warping is None:
+    warping = section.warping
+    if warping is None:
         return 1.0
-    warping = _warping(*sorted((section.height, section.width)))
-    reach = float(np.sqrt(medium.shear * section.torsion / (medium.young * warping))) * length
+    if isinstance(section, Rectangle):  # that of its section is for thin ones
+        warping = _warping(*sorted((single(section.height), single(section.width))))
+    reach = single(np.sqrt(medium.shear * section.torsion / (medium.young * warping))) * length
     return 1.0 - float(np.tanh(reach)) / reach
 
 
