@@ -24,8 +24,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import PieceMesh
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.mesh import PieceMesh
 from tests.elsewhere.calculix.deck import deck, printed_solution, program
 from tests.elsewhere.calculix.ours import Law, solved
 from tests.elsewhere.calculix.problems import CURVED, Geometry, Problem, Solution, hinge, mesh_of, read_mesh, shape

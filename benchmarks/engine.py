@@ -28,13 +28,13 @@ from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.address import set_value
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.addresses.address import set_value
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism, Unit
 from flexstage.models.batch.blocks import Blocks, blocks, dense, of_kind
 from flexstage.models.batch.engine import PORTION, Method, Plan, iterate, plan, platform_modes, stage_of
 from flexstage.models.batch.kernel import kernel
-from flexstage.models.batch.numbers import numbers_of
+from flexstage.models.batch.parameters.numbers import numbers_of
 from flexstage.models.batch.solution import found_modes
 from flexstage.models.batch.subspace import Start
 from flexstage.models.lumped import lumped

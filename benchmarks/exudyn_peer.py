@@ -28,7 +28,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped

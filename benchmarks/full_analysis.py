@@ -15,10 +15,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.contact import contact_findings
+from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 

@@ -129,7 +129,7 @@ def designs(count: int) -> Iterator[None]:
     import numpy as np
 
     from flexstage.cases.double_triangle import double_triangle
-    from flexstage.mechanism.address import get
+    from flexstage.mechanism.addresses.address import get
     from flexstage.models.batch.engine import plan, platform_modes
 
     stage = double_triangle()
@@ -170,10 +170,10 @@ def samples(count: int) -> Iterator[None]:
 def hinges(count: int) -> Iterator[None]:
     """The 6x6 of notches, each a little thicker than the one before."""
     import flexstage as fs
-    from flexstage.solid.fea.hinge_form import HingeForm
-    from flexstage.solid.fea.parts import Ways
-    from flexstage.solid.fea.roots import Roots
-    from flexstage.solid.hinges import hinges as solid_hinges
+    from flexstage.solid.fea.hinges.hinge_form import HingeForm
+    from flexstage.solid.fea.hinges.roots import Roots
+    from flexstage.solid.fea.jobs.parts import Ways
+    from flexstage.solid.results.hinges import hinges as solid_hinges
 
     steel = fs.Material(young=200e9, poisson=0.3, density=7800.0, expansion=1.1e-5)
     notches = [fs.Notch("steel", 1e-3 * (1.0 + 0.002 * number), 0.01, fs.Circular(0.003)) for number in range(count)]
@@ -187,8 +187,8 @@ def workers(count: int) -> Iterator[None]:
     """A sweep over four numbers by a cluster; its processes are started and ended with it."""
     from distributed import LocalCluster
 
+    from flexstage.studies.sweeps.execution.run import Run, sweep
     from flexstage.studies.sweeps.file import loads_study
-    from flexstage.studies.sweeps.run import Run, sweep
 
     variables = "".join(f'v{place} = {{ of = "{name}", from = "-5 %", to = "+5 %" }}\n' for place, name in enumerate(NUMBERS))
     responses = "".join(f'f{number} = "frequency.platform.{number}"\n' for number in range(1, 7))

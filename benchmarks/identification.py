@@ -23,7 +23,7 @@ from scipy.stats import binomtest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.record import InMemory
+from flexstage.experiment.records.record import InMemory
 from tests.models.identification_study import CASES, Case, Trial, trials, worst_bound
 from tests.models.synthetic_records import record, truth
 from tests.models.wrong_models import KINDS, held

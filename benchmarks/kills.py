@@ -34,7 +34,7 @@ import psutil
 from scipy.io import loadmat
 
 from flexstage.apps.cli import run
-from flexstage.base.scale import X, Z, mm
+from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
 from flexstage.control.hysteresis.example import example_record
 from flexstage.experiment.formats.write import write

@@ -28,14 +28,14 @@ from pathlib import Path
 import numpy as np
 
 import flexstage as fs
-from flexstage.analysis.judge import measure_all
-from flexstage.analysis.requirements import measure
-from flexstage.base.native import SWITCH
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.requirements import measure
+from flexstage.base.processes.native import SWITCH
 from flexstage.beams.flexure.law import leaf_law
 from flexstage.beams.flexure.strip import fields
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.voice_coil_stage import voice_coil_stage
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.design import design
 from flexstage.models.nonlinear.compiled import kernel
 from flexstage.models.nonlinear.stage import Nonlinear

@@ -30,7 +30,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from flexstage.base.native import compiler
+from flexstage.base.processes.native import compiler
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.hardware import FLAGS, hardware_code

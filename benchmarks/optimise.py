@@ -28,8 +28,8 @@ from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from flexstage.studies.optimisation.file import load_wanted
-from flexstage.studies.optimisation.optimum import optimise
-from flexstage.studies.optimisation.problem import SPARE
+from flexstage.studies.optimisation.search.optimum import optimise
+from flexstage.studies.optimisation.search.problem import SPARE
 from flexstage.studies.optimisation.setting import Setting, setting
 from flexstage.studies.optimisation.values import Point
 from flexstage.studies.sweeps.file import loads_study

@@ -16,17 +16,17 @@ import tempfile
 import time
 from pathlib import Path
 
-from flexstage.base.progress import Step
+from flexstage.base.processes.progress import Step
 from flexstage.cases.registry import case
 from flexstage.show.command.progress import ProgressBar
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.fea.remote import Pool
-from flexstage.solid.hinges import hinges
-from flexstage.solid.plan import verification_plan, work_ahead
-from flexstage.solid.read import solids
-from flexstage.solid.resolution import Resolution
-from flexstage.solid.verification import verify
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.jobs.remote import Pool
+from flexstage.solid.results.hinges import hinges
+from flexstage.solid.results.plan import verification_plan, work_ahead
+from flexstage.solid.results.read import solids
+from flexstage.solid.results.resolution import Resolution
+from flexstage.solid.results.verification import verify
 
 FACTOR, FROM = 2.0, 0.25
 INSTANTS = tuple(number / 10.0 for number in range(1, 10))

@@ -30,16 +30,16 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.jobs import cores, environment
 from flexstage.base.number import Table
+from flexstage.base.processes.jobs import cores, environment
 from flexstage.models.batch.engine import platform_modes
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.engine import Engine, engine_of
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.execution.engine import Engine, engine_of
+from flexstage.studies.sweeps.execution.evaluate import piece
+from flexstage.studies.sweeps.execution.gather import gather
+from flexstage.studies.sweeps.execution.run import piece_size
+from flexstage.studies.sweeps.execution.store import done_pieces, folder_of, read_results, write_piece
 from flexstage.studies.sweeps.file import load_study
-from flexstage.studies.sweeps.gather import gather
-from flexstage.studies.sweeps.run import piece_size
-from flexstage.studies.sweeps.store import done_pieces, folder_of, read_results, write_piece
 
 STUDY = """
 format = "flexstage study 1"

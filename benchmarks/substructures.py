@@ -113,12 +113,12 @@ def _memory(process: int) -> float:
 
 def child(how: str, folder: Path) -> None:
     """What the process of one model does."""
-    from flexstage.analysis.modes import modes
-    from flexstage.base.progress import Step
+    from flexstage.analysis.dynamics.modes import modes
+    from flexstage.base.processes.progress import Step
     from flexstage.cases.double_triangle import double_triangle
-    from flexstage.solid.fea.cache import Cache
-    from flexstage.solid.fea.fineness import Fineness, Reduction
-    from flexstage.solid.fea.model import model as solid
+    from flexstage.solid.fea.jobs.cache import Cache
+    from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+    from flexstage.solid.fea.solver.model import model as solid
     from tests.models.monolithic import monolithic
 
     told = [(0.0, "")]

@@ -32,8 +32,8 @@ from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff.read import read_uff
 from flexstage.experiment.formats.uff.scan import scan
 from flexstage.experiment.formats.uff.write import write_uff
-from flexstage.experiment.options import Options
-from flexstage.experiment.record import Channel, Record, in_memory
+from flexstage.experiment.records.options import Options
+from flexstage.experiment.records.record import Channel, Record, in_memory
 from tests.roundtrip.fuzzed import one_input
 from tests.roundtrip.records import awkward, awkward_record, awkward_responses
 

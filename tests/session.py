@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 from threadpoolctl import threadpool_limits
 
-from flexstage.base.native import folder, folder_defect
+from flexstage.base.processes.native import folder, folder_defect
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -8,8 +8,8 @@ import ngsolve
 import numpy as np
 from netgen.meshing import Element2D, Element3D, FaceDescriptor, Mesh, MeshPoint, Pnt
 
-from flexstage.solid.fea.mesh import PieceMesh
-from flexstage.solid.fea.mirror import MIRRORS, Mirrors
+from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors
+from flexstage.solid.fea.meshing.mesh import PieceMesh
 
 
 def unfold(side: PieceMesh) -> PieceMesh:

@@ -13,7 +13,7 @@ from pathlib import Path
 from threadpoolctl import threadpool_limits
 
 import flexstage as fs
-from flexstage.analysis.judge import judge
+from flexstage.analysis.assessment.judge import judge
 from flexstage.cases.case import Case, Shipped
 from flexstage.cases.file_case import file_text
 from flexstage.cases.registry import CASES, case

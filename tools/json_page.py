@@ -1,6 +1,7 @@
 """Lists of fields in docs/json.md: `python -m tools.json_page` writes them anew from the results themselves.
 
-A list stands below the line that names the result, `<!-- fields of flexstage.analysis.modes.Modes -->`, as far as the next empty line.
+A list stands below the line that names the result, `<!-- fields of flexstage.analysis.dynamics.modes.Modes -->`, as far as the next
+empty line.
 """
 
 from __future__ import annotations

@@ -19,24 +19,24 @@ from threadpoolctl import threadpool_limits
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import clusters
+from flexstage.analysis.dynamics.modes import clusters
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.control.figures.diagram import loop_diagram
-from flexstage.control.figures.frequency import Curves, open_loop_figure
-from flexstage.control.figures.noise import noise_share_figure
-from flexstage.control.figures.time import path_figure
 from flexstage.control.hysteresis.example import example_test
-from flexstage.control.hysteresis.figures import stack_figure
-from flexstage.control.sections import diagram_of, noise_shares
+from flexstage.control.hysteresis.show.figures import stack_figure
+from flexstage.control.show.figures.diagram import loop_diagram
+from flexstage.control.show.figures.frequency import Curves, open_loop_figure
+from flexstage.control.show.figures.noise import noise_share_figure
+from flexstage.control.show.figures.time import path_figure
+from flexstage.control.show.sections import diagram_of, noise_shares
 from flexstage.control.study.choices import Compensation, Criterion
 from flexstage.control.study.setup import Floor, GaugeSetup, LoopSetup, RasterMotion, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment import NoiseDrive, RigSetup, Search, Sensing
-from flexstage.experiment.comparison_figures import compare_figure
-from flexstage.experiment.figures import stabilisation_figure
 from flexstage.experiment.identification.identified import Identified
-from flexstage.mechanism.address import get, set_value
+from flexstage.experiment.show.comparison_figures import compare_figure
+from flexstage.experiment.show.figures import stabilisation_figure
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.show.figures.budget import loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_png, to_svg
@@ -46,24 +46,24 @@ from flexstage.show.plan import plan_figure
 from flexstage.show.scene.facet import Facet, Kind
 from flexstage.show.scene.stage import Scene, displace, largest_motion, scene
 from flexstage.show.scene.view import Side, draw, order_facets, outline, triad, view, write
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.read import STANDARD_SOLIDS, read_solid
-from flexstage.solid.skin_figures import skin_figure
-from flexstage.solid.surface import mode_surfaces
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.read import STANDARD_SOLIDS, read_solid
+from flexstage.solid.results.surface import mode_surfaces
+from flexstage.solid.show.skin_figures import skin_figure
 from flexstage.spatial.frame import COMPONENTS, transport
-from flexstage.studies.optimisation.figures import convergence_figure
 from flexstage.studies.optimisation.file import load_wanted
-from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.search.optimum import optimise
+from flexstage.studies.optimisation.show.figures import convergence_figure
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.effects import effects as effects_of
-from flexstage.studies.sweeps.figures import effects_figure
+from flexstage.studies.sweeps.execution.run import Run, sweep
 from flexstage.studies.sweeps.file import loads_study
-from flexstage.studies.sweeps.interaction_figures import pairs_figure, strongest_figure
-from flexstage.studies.sweeps.run import Run, sweep
-from flexstage.studies.tolerances.figures import crosstalk_figure, distributions_figure
+from flexstage.studies.sweeps.show.figures import effects_figure
+from flexstage.studies.sweeps.show.interaction_figures import pairs_figure, strongest_figure
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced, tolerance
+from flexstage.studies.tolerances.show.figures import crosstalk_figure, distributions_figure
 from tests.analytic import test_paros_weisbord, test_smith_toroid
 from tests.analytic.closed_forms import (
     paros_weisbord_rotation_simplified,

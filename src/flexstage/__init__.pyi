@@ -1,54 +1,54 @@
 from flexstage import control as control, experiment as experiment, solid as solid, studies as studies
-from flexstage.analysis.budget import (
+from flexstage.analysis.assessment.budget import (
     budget as budget,
 )
 from flexstage.analysis.complete import (
     Model as Model,
     analyse as analyse,
 )
-from flexstage.analysis.deflection import (
+from flexstage.analysis.linear_statics.deflection import (
     deflection as deflection,
 )
-from flexstage.analysis.drift import (
+from flexstage.analysis.linear_statics.drift import (
     drift as drift,
 )
-from flexstage.analysis.load_cases import (
+from flexstage.analysis.loaded.load_cases import (
     critical_factors as critical_factors,
 )
-from flexstage.analysis.lost_motion import (
+from flexstage.analysis.linear_statics.lost_motion import (
     lost_motion as lost_motion,
 )
-from flexstage.analysis.mass_matrix import (
+from flexstage.analysis.linear_statics.mass_matrix import (
     mass_matrix as mass_matrix,
 )
-from flexstage.analysis.modes import (
+from flexstage.analysis.dynamics.modes import (
     modes as modes,
 )
-from flexstage.analysis.random_response import (
+from flexstage.analysis.dynamics.random_response import (
     Spectrum as Spectrum,
     random_response as random_response,
 )
-from flexstage.analysis.response import (
+from flexstage.analysis.dynamics.response import (
     response as response,
     transmissibility as transmissibility,
 )
-from flexstage.analysis.sensitivities import (
+from flexstage.analysis.assessment.sensitivities import (
     sensitivities as sensitivities,
 )
-from flexstage.analysis.misalign import (
+from flexstage.analysis.loaded.misalign import (
     misalign as misalign,
 )
-from flexstage.analysis.stance import (
+from flexstage.analysis.loaded.stance import (
     stance as stance,
 )
-from flexstage.analysis.stroke import (
+from flexstage.analysis.loaded.stroke import (
     stroke as stroke,
 )
-from flexstage.analysis.statics import (
+from flexstage.analysis.linear_statics.statics import (
     freedom_stiffness as freedom_stiffness,
     statics as statics,
 )
-from flexstage.analysis.inner_stage import (
+from flexstage.analysis.linear_statics.inner_stage import (
     amplified as amplified,
 )
 from flexstage.analysis.workspace.reach import (
@@ -63,7 +63,7 @@ from flexstage.analysis.validity import (
 from flexstage.base.finding import (
     DesignError as DesignError,
 )
-from flexstage.base.scale import (
+from flexstage.base.units.scale import (
     GPa as GPa,
     Hz as Hz,
     K as K,
@@ -115,10 +115,10 @@ from flexstage.mechanism.mechanism import (
     StructuralDamping as StructuralDamping,
     Unit as Unit,
 )
-from flexstage.mechanism.mount import (
+from flexstage.mechanism.assembly.mount import (
     mount as mount,
 )
-from flexstage.mechanism.pattern import (
+from flexstage.mechanism.assembly.pattern import (
     Facing as Facing,
     Normal as Normal,
     Polar as Polar,
@@ -146,7 +146,7 @@ from flexstage.models.lumped import (
 from flexstage.models.mapped import (
     mapped as mapped,
 )
-from flexstage.models.nonlinear.critical import (
+from flexstage.models.nonlinear.paths.critical import (
     critical as critical,
 )
 from flexstage.models.nonlinear.equilibrium import (
@@ -155,7 +155,7 @@ from flexstage.models.nonlinear.equilibrium import (
 from flexstage.models.nonlinear.linearise import (
     linearise as linearise,
 )
-from flexstage.models.nonlinear.path import (
+from flexstage.models.nonlinear.paths.path import (
     branch as branch,
     path as path,
     trace as trace,

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.geometry.outline import Outline, outlines
 from flexstage.mechanism.mechanism import GROUND
-from flexstage.mechanism.outline import Outline, outlines
 from flexstage.parts.body import Block, PlacedSolid
 from flexstage.parts.part import is_actuator
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.judge import judge
+from flexstage.analysis.assessment.judge import judge
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import GPa, X, deg, mm
+from flexstage.base.units.scale import GPa, X, deg, mm
 from flexstage.beams.compliance import compliance
 from flexstage.cases.bridge import Bridge, bridge
 from flexstage.cases.hexapod import Hexapod, hexapod

@@ -9,19 +9,19 @@ import scipy
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.registry import case
-from flexstage.control.creep_plant import add_creep
 from flexstage.control.damping.charge import at_constant_charge, leak_charge
 from flexstage.control.damping.legs import legs, without_stiffness
-from flexstage.control.electronics import Amplifier, AmplifierSettings, ChargeDrive, ChargeHold, hardware
 from flexstage.control.example import integral_loop
-from flexstage.control.hysteresis.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.creep import Creep
-from flexstage.control.plants import plant
+from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
+from flexstage.control.plant_models.creep_plant import add_creep
+from flexstage.control.plant_models.electronics import Amplifier, AmplifierSettings, ChargeDrive, ChargeHold, hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.actuation import Actuation
 from flexstage.control.simulation.machine import Amplifiers, Relief, machine
-from flexstage.control.study.amplifiers import ChargeSetup
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.file import loads_setup
+from flexstage.control.study.hardware.amplifiers import ChargeSetup
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import DampingSetup, HystereticStacks, LoopSetup
 from flexstage.models.ideal import ideal

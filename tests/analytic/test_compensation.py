@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES, case
-from flexstage.control.closed import loop
 from flexstage.control.compensation import finite_error, finite_strokes, ideal_compensation, lost_motion_compensation, static_error
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import plant
-from flexstage.control.system import select
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import plant
+from flexstage.control.systems.closed import loop
+from flexstage.control.systems.system import select
 from flexstage.mechanism.mechanism import Damping, ModalDamping
 from flexstage.models.finite import FinitePose, forward_kinematics, inverse_kinematics
 from flexstage.models.ideal import ideal

@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
-from flexstage.analysis.sensitivities import sensitivities
-from flexstage.analysis.statics import statics
+from flexstage.analysis.assessment.sensitivities import sensitivities
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.statics import statics
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import X, Y, Z, mm
+from flexstage.base.units.scale import X, Y, Z, mm
 from flexstage.beams.compliance import compliance, stiffness
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Facing, Normal, Polar, Pose
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
-from flexstage.mechanism.pattern import Facing, Normal, Polar, Pose
 from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
@@ -31,7 +31,7 @@ from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.part import Restricted
-from flexstage.solid.calibration import calibrate
+from flexstage.solid.results.calibration import calibrate
 from flexstage.spatial.frame import Frame, axes, mirror, spatial_rotation, transport
 from flexstage.studies.tolerances.reach import reach
 

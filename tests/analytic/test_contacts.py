@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.cautions import cautions, defaults
-from flexstage.analysis.seating import seated, seating
+from flexstage.analysis.loaded.seating import seated, seating
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance, stiffness
+from flexstage.mechanism.assembly.expansion import ground_of
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expansion import ground_of
 from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.batch.engine import plan, platform_modes

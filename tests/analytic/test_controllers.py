@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.xy_stage import xy_stage
-from flexstage.control.closed import loop
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import actuator_loops, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
@@ -20,10 +19,11 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.pose_plant import pose_plant
 from flexstage.control.controllers.resonant import IntegralResonant, resonant_damping, resonant_law
-from flexstage.control.coordinates import coordinates
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import plant
-from flexstage.control.system import System, connect, rename, select
+from flexstage.control.plant_models.coordinates import coordinates
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import plant
+from flexstage.control.systems.closed import loop
+from flexstage.control.systems.system import System, connect, rename, select
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.lumped import lumped

@@ -11,14 +11,14 @@ from netgen import occ
 
 import flexstage as fs
 from flexstage.analysis.complete import analyse
-from flexstage.analysis.stability import stability
+from flexstage.analysis.loaded.stability import stability
 from flexstage.beams.compliance import beam_of, compliance
 from flexstage.beams.stress import stress
 from flexstage.parts.cruciform import Cruciform, cross
 from flexstage.parts.section import Rectangle
-from flexstage.solid.fea.draw import draw_form
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
+from flexstage.solid.fea.geometry.draw import draw_form
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.meshing.estimate import Accuracy
 
 STEEL = fs.Material(young=200e9, poisson=0.3, density=7800.0)
 HINGE = Cruciform("steel", length=0.03, thickness=1e-3, width=0.01)

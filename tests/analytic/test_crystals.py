@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base.scale import mm
+from flexstage.base.units.scale import mm
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism

@@ -11,12 +11,12 @@ import scipy
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import Z
+from flexstage.base.units.scale import Z
 from flexstage.beams.flexure.law import Resolution
 from flexstage.mechanism.mechanism import Link
 from flexstage.models.linear.static import static_gain
+from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.stage import nonlinear
-from flexstage.models.nonlinear.strain import strains
 from flexstage.spatial.frame import COMPONENTS, FORCES
 from tests.analytic.test_large_displacements import RIGIDITY, SOFT, THIN, body, cantilever, stage
 

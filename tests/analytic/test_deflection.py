@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.deflection import deflection
+from flexstage.analysis.linear_statics.deflection import deflection
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 
 GRAVITY = 9.80665

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.drift import drift
-from flexstage.analysis.judge import judge
-from flexstage.mechanism.expansion import Ground, expansion, ground_of
+from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.linear_statics.drift import drift
+from flexstage.mechanism.assembly.expansion import Ground, expansion, ground_of
 from flexstage.models.lumped import lumped
 from flexstage.show.tables.errors import drift_table
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexstage.control.study.choices import Criterion
-from flexstage.control.study.floor import criterion_spectrum, floor_spectra
+from flexstage.control.study.hardware.floor import criterion_spectrum, floor_spectra
 from flexstage.control.study.setup import Floor, VibrationSetup
 
 TABLE = {  # Amick et al. 2005, Table 1: um/s

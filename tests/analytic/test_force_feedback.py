@@ -8,21 +8,21 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
-from flexstage.control.closed import loop
 from flexstage.control.damping.damped_plant import as_felt, close_damping, describe_damping
 from flexstage.control.damping.force_feedback import ForceFeedback, best_gain, most_damping
 from flexstage.control.damping.legs import legs, pair_zeros
 from flexstage.control.damping.sampled import sample_legs
-from flexstage.control.electronics import AmplifierSettings, hardware
 from flexstage.control.example import integral
 from flexstage.control.noise import DisturbanceResponse, noise_budget
-from flexstage.control.plants import plant
-from flexstage.control.reduction import reduce_modes, resonances
+from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.plants import plant
+from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import KINDS, AmplifierSetup, ControllerSetup, DampingSetup, LoopSetup, Motion, StepMotion
 from flexstage.control.study.study import loop_study
+from flexstage.control.systems.closed import loop
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.control.hysteresis.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.branches import branches_of
 from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
 from flexstage.control.hysteresis.creep_record import identify_creep
-from flexstage.control.hysteresis.envelope import Envelope, straight
 from flexstage.control.hysteresis.identify import identify_hysteresis
-from flexstage.control.hysteresis.inverse import inverse
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.preisach import preisach
-from flexstage.control.hysteresis.scaled import Stacks, scale_to_stacks
-from flexstage.control.hysteresis.shape import major_loop
-from flexstage.control.system import System
+from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
+from flexstage.control.hysteresis.models.envelope import Envelope, straight
+from flexstage.control.hysteresis.models.inverse import inverse
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.preisach import preisach
+from flexstage.control.hysteresis.models.scaled import Stacks, scale_to_stacks
+from flexstage.control.hysteresis.models.shape import major_loop
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 RANGE = (0.0, 1000.0)
@@ -189,7 +189,7 @@ def test_exponentials_follow_the_logarithm():
 
 def test_creep_is_exact_between_samples():
     """Held inputs: equal to the closed form of the step response, and to the same system sampled by the loop's own means."""
-    from flexstage.control.sampling import discretise
+    from flexstage.control.systems.sampling import discretise
 
     creep = Creep([1.0, 0.9], [[0.1, 0.05], [0.2, 0.0]], [[2.0, 0.3], [5.0, 1.0]])
     times = 0.25 * np.arange(40)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.analysis.workspace.load import applied_forces, dead_loads
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import Force, Link, Mechanism

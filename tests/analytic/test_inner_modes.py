@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.drift import drift
-from flexstage.analysis.modes import modes
-from flexstage.analysis.sensitivities import sensitivities
-from flexstage.analysis.stability import stability
-from flexstage.analysis.statics import statics
+from flexstage.analysis.assessment.sensitivities import sensitivities
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.drift import drift
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded.stability import stability
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import Y, mm
+from flexstage.base.units.scale import Y, mm
 from flexstage.beams.compliance import held_modes, law
 from flexstage.beams.mass import law_and_mass, mass
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.mechanism.store import dumps, loads
@@ -28,8 +28,8 @@ from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.read import read_solid, solids
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.read import read_solid, solids
 
 STEEL = Material(young=200e9, poisson=0.3, density=7800.0, expansion=12e-6, loss_factor=0.01)
 LEAF = Leaf("steel", length=50 * mm, thickness=0.25 * mm, width=10 * mm, inner_modes=3)

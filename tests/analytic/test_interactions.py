@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from flexstage.studies.sweeps.effects import effects
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.sweeps.interactions import paired_shares, second_order, single_effects
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
-from flexstage.studies.sweeps.store import Results
 
 PAIRS = ([0, 0, 1], [1, 2, 2])
 SALTELLI = Plan(Sampling.SALTELLI, 3, 2048, pairs=True)

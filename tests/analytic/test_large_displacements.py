@@ -12,10 +12,10 @@ from numpy.polynomial import Legendre, legendre
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
-from flexstage.analysis.drift import drift
+from flexstage.analysis.linear_statics.drift import drift
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Number
-from flexstage.base.scale import Z
+from flexstage.base.units.scale import Z
 from flexstage.beams.flexure.law import DEFAULT, Resolution
 from flexstage.beams.flexure.strip import stiffness
 from flexstage.cases.double_triangle import double_triangle
@@ -26,13 +26,13 @@ from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear import linearise as linearised
 from flexstage.models.nonlinear import summed
-from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.linearise import linearise
-from flexstage.models.nonlinear.path import branch, path, trace
+from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.paths.path import branch, path, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Effort
-from flexstage.models.nonlinear.strain import strains
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf, LeafEnds, LeafSection
 from flexstage.parts.material import Material

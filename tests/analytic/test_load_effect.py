@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
-from flexstage.analysis.judge import judge
-from flexstage.analysis.load_effect import FELT, LoadEffect, felt_links, load_effect
-from flexstage.analysis.stability import Stability, prestress, stability
-from flexstage.analysis.statics import statics
+from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.drift import _Thermal  # pyright: ignore[reportPrivateUsage]
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded.load_effect import FELT, LoadEffect, felt_links, load_effect
+from flexstage.analysis.loaded.stability import Stability, prestress, stability
 from flexstage.beams.compliance import stiffness
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.rest import rest_errors
 from flexstage.control.study.setup import LoopSetup
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.expansion import expansion
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.expansion import expansion
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.show.report import _turning  # pyright: ignore[reportPrivateUsage]
 from flexstage.show.viewer.data import stage_data

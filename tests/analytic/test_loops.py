@@ -12,17 +12,17 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import CASES
-from flexstage.control.closed import Cut, loop, open_at
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.curves import sensitivity
-from flexstage.control.disk import DiskMargin, disk_margin, disk_margins
-from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
 from flexstage.control.example import integral
-from flexstage.control.plants import Plant, plant, zero_order_hold
-from flexstage.control.sampling import first_order_hold
-from flexstage.control.stability import verdict
-from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.control.system import System, select
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Hardware, hardware
+from flexstage.control.plant_models.plants import Plant, plant, zero_order_hold
+from flexstage.control.robustness.disk import DiskMargin, disk_margin, disk_margins
+from flexstage.control.robustness.stability import verdict
+from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
+from flexstage.control.systems.closed import Cut, loop, open_at
+from flexstage.control.systems.curves import sensitivity
+from flexstage.control.systems.sampling import first_order_hold
+from flexstage.control.systems.system import System, select
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.linear.static import static_gain

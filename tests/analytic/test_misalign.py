@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.misalign import critical_misalignments, misalign, misalignments, seated
+from flexstage.analysis.loaded.misalign import critical_misalignments, misalign, misalignments, seated
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.section import Rectangle

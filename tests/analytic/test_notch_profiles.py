@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 
 from flexstage.beams.stress import stress
-from flexstage.mechanism.pieces import SAGITTA, pieces
+from flexstage.mechanism.geometry.pieces import SAGITTA, pieces
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, FreeForm, Hyperbolic, Parabolic, Power, Straight, Vee
 from tests.analytic import closed_forms

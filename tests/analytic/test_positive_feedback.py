@@ -5,13 +5,13 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.closed import Cut, loop
 from flexstage.control.controllers.positive_feedback import PositiveFeedback, place_poles
-from flexstage.control.stability_margins import bandwidths, peaks
+from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.study.choices import ControllerKind, OfferedKind
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
+from flexstage.control.systems.closed import Cut, loop
 
 
 def poles_around(law, frequency, static):

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.control.closed import loop
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
-from flexstage.control.coordinates import Coordinates
 from flexstage.control.example import integral_loop
-from flexstage.control.system import select, static
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.systems.closed import loop
+from flexstage.control.systems.system import select, static
 from flexstage.models.linear.model import Channel
 
 FREQUENCIES = np.geomspace(0.1, 4000.0, 40)

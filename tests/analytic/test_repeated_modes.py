@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
-from flexstage.analysis.random_response import Spectrum, random_response
-from flexstage.analysis.response import default_frequencies
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.random_response import Spectrum, random_response
+from flexstage.analysis.dynamics.response import default_frequencies
 from flexstage.mechanism.mechanism import ModalDamping
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import Channel, Contribution, LinearModel

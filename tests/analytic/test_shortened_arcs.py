@@ -9,7 +9,7 @@ pytest.importorskip("netgen")
 
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
-from flexstage.solid.fea import draw
+from flexstage.solid.fea.geometry import draw
 
 SHIPPED = {"foot_notch": (5.0, 0.85), "lever_notch": (2.0, 1.0), "B12": (3.0, 1.54)}
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flexstage.studies.sweeps.effects import Effects, effects
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares
-from flexstage.studies.sweeps.store import Results
 
 A, B = 7.0, 0.1
 ALONE = np.array([0.5 * (1.0 + B * np.pi**4 / 5.0) ** 2, A**2 / 8.0, 0.0])

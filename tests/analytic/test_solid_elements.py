@@ -10,12 +10,12 @@ import pytest
 from netgen import occ
 
 from flexstage.parts.body import Block
-from flexstage.solid.fea import skin
-from flexstage.solid.fea.component import Component, Joint
-from flexstage.solid.fea.field import apply_form, factorise, field, stiffness
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import PieceMesh, mesh_component
-from flexstage.solid.fea.piece import Medium, Piece
+from flexstage.solid.fea.geometry.piece import Medium, Piece
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
+from flexstage.solid.fea.solver import skin
+from flexstage.solid.fea.solver.component import Component, Joint
+from flexstage.solid.fea.solver.field import apply_form, factorise, field, stiffness
 from flexstage.spatial.frame import Frame, identity
 
 SOFT, STIFF = Medium(young=100e9, poisson=0.15, density=1.0), Medium(young=200e9, poisson=0.3, density=1.0)

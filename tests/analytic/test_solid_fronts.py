@@ -13,13 +13,13 @@ import pytest
 import scipy
 from scipy.linalg import eigh
 
-from flexstage.solid.fea import frontal
-from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.frontal import Factorised, Fronts, dissect, factorise_fronts
-from flexstage.solid.fea.krylov import Pencil, lowest_modes
-from flexstage.solid.fea.mesh import mesh_component
+from flexstage.solid.fea.meshing.bar import bar
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.mesh import mesh_component
+from flexstage.solid.fea.solver import frontal
+from flexstage.solid.fea.solver.field import Columns, factorise, factorise_kinds, field, grid, inertia, nodes_on, solve_kinds, stiffness
+from flexstage.solid.fea.solver.frontal import Factorised, Fronts, dissect, factorise_fronts
+from flexstage.solid.fea.solver.krylov import Pencil, lowest_modes
 
 ORDER = 3
 SPACE = field(mesh_component(bar(), Fineness(order=ORDER, block=1.0)), ["foot"], ORDER)
@@ -61,7 +61,7 @@ def test_forces_where_a_front_is_not_definite_are_solved_for_by_the_other_solver
         yield from islice(factorise_fronts(order, matrices, held), definite)
         raise np.linalg.LinAlgError
 
-    monkeypatch.setattr("flexstage.solid.fea.field.factorise_fronts", refuse)
+    monkeypatch.setattr("flexstage.solid.fea.solver.field.factorise_fronts", refuse)
     np.testing.assert_allclose(factorise_kinds(space, parts)(forces), expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 

@@ -14,10 +14,10 @@ from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted
-from flexstage.solid.fea.draw import specimen
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
-from flexstage.solid.fea.roots import Roots
+from flexstage.solid.fea.geometry.draw import specimen
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.hinges.roots import Roots
+from flexstage.solid.fea.meshing.estimate import Accuracy
 from flexstage.spatial.frame import transport
 from tests.elsewhere.test_notch_elements import HINGES
 

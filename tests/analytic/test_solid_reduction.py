@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.component import with_yielding_ends
-from flexstage.solid.fea.fineness import WARPS, Fineness, Hold, Reduction
-from flexstage.solid.fea.mesh import mesh_component
-from flexstage.solid.fea.piece import Medium
-from flexstage.solid.fea.reduce import reduce_mesh
-from flexstage.solid.fea.superelement import Superelement, hold_faces
+from flexstage.solid.fea.geometry.piece import Medium
+from flexstage.solid.fea.meshing.bar import bar
+from flexstage.solid.fea.meshing.fineness import WARPS, Fineness, Hold, Reduction
+from flexstage.solid.fea.meshing.mesh import mesh_component
+from flexstage.solid.fea.solver.component import with_yielding_ends
+from flexstage.solid.fea.solver.reduce import reduce_mesh
+from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
 AXIAL = 100e6
 """E A / L of the bar [N/m]."""

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.experiment.cross_spectra import Segments, Window, independent_averages, spectra
 from flexstage.experiment.identification.bands import extents
 from flexstage.experiment.identification.cluster import stabilisation
 from flexstage.experiment.identification.confidence import deviations
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.likelihood import Fit, Modal
-from flexstage.experiment.identification.lines import edges, legendre_coefficients, nodes
 from flexstage.experiment.identification.lscf import lscf
-from flexstage.experiment.identification.smear import Smear
-from flexstage.experiment.record import Channel, Responses, Role, in_memory
+from flexstage.experiment.records.record import Channel, Responses, Role, in_memory
+from flexstage.experiment.spectral.cross_spectra import Segments, Window, independent_averages, spectra
+from flexstage.experiment.spectral.lines import edges, legendre_coefficients, nodes
+from flexstage.experiment.spectral.smear import Smear
 from tests.models.identification_study import assurance, bound
 from tests.models.synthetic_records import WIDE, Truth, record, truth
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.stability import Stability, prestress, stability
+from flexstage.analysis.loaded.stability import Stability, prestress, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle

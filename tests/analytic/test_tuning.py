@@ -8,20 +8,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.control.closed import Cut, loop, open_at
 from flexstage.control.controllers.family import Place
 from flexstage.control.controllers.loops import actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import plant
-from flexstage.control.stability import verdict
-from flexstage.control.stability_margins import peaks
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import plant
+from flexstage.control.robustness.stability import verdict
+from flexstage.control.robustness.stability_margins import peaks
+from flexstage.control.systems.closed import Cut, loop, open_at
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind
 from flexstage.control.tuning.laws import laws

@@ -12,15 +12,15 @@ from netgen import occ
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Normal, Pose
 from flexstage.mechanism.mechanism import Placement, Unit
-from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Inertia, Solid, Sphere
 from flexstage.parts.mass import MassProperties, drawn_solids, mass_properties
 from flexstage.parts.material import Material
 from flexstage.parts.union import Moments, common_moments
-from flexstage.solid.fea.draw import draw_form, move_solid
-from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
 from flexstage.spatial.frame import Frame, cross_matrix
 
 DENSITY = 1000.0

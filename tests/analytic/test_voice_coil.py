@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import analyse
-from flexstage.analysis.judge import judge
-from flexstage.analysis.response import response
+from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.workspace.reach import reach
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import X, Z, mm
+from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, StructuralDamping
 from flexstage.mechanism.restrict import restrict

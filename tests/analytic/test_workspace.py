@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.cautions import caveats
-from flexstage.analysis.judge import judge
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
 from flexstage.analysis.workspace.clearance import clearance
@@ -22,7 +22,7 @@ from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.parts.neck import Neck

@@ -12,7 +12,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.cautions import caveats, defaults
-from flexstage.analysis.standing import standing
+from flexstage.analysis.loaded.standing import standing
 from flexstage.apps.cli.commands import COMMANDS
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.control.hysteresis.example import example_record

@@ -13,7 +13,7 @@ from packaging.requirements import Requirement
 import flexstage
 from flexstage.apps import doctor
 from flexstage.apps.doctor import Row, Verdict, examine, examine_folder, examine_package
-from flexstage.base.native import compiler
+from flexstage.base.processes.native import compiler
 from tests.conftest import FULL
 
 

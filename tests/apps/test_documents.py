@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.modes import modes
-from flexstage.analysis.random_response import Rate, Spectrum, random_response
-from flexstage.base.digest import digest
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum, random_response
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.base.storage.digest import digest
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.store import load

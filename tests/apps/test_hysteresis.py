@@ -10,10 +10,10 @@ import pytest
 from scipy.io import savemat
 
 from flexstage.control.hysteresis.example import example_record, example_step, example_test
-from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.models.inverse import inverse
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.record import Channel, in_memory
+from flexstage.experiment.records.record import Channel, in_memory
 from tests.apps.command import Command
 
 RECORD = example_record()

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.base.digest import digest
+from flexstage.base.storage.digest import digest
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
+from flexstage.experiment.records.record import Channel, InMemory, Record, Role, in_memory
 from flexstage.mechanism.store import load
 from flexstage.models.lumped import lumped
 from tests.apps.command import Command, Ended

@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from flexstage.base.jobs import CallError, Word, Worker, results
+from flexstage.base.processes.jobs import CallError, Word, Worker, results
 
 DIES_ONCE = """
 import os, pathlib
@@ -23,7 +23,7 @@ else:
 """
 KEPT_BUSY = """
 import time
-from flexstage.base.jobs import Worker
+from flexstage.base.processes.jobs import Worker
 class Busy:
     def __reduce__(self):
         return time.sleep, (1000.0,)

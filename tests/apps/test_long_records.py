@@ -16,15 +16,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexstage.experiment import cross_spectra as spectra_module
-from flexstage.experiment import numbers
-from flexstage.experiment.cross_spectra import Segments, spectra
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.health import examine
-from flexstage.experiment.identification import lines
-from flexstage.experiment.identification.lines import record_lines
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.record import Record, Samples
+from flexstage.experiment.records import numbers
+from flexstage.experiment.records.health import examine
+from flexstage.experiment.records.record import Record, Samples
+from flexstage.experiment.spectral import cross_spectra as spectra_module
+from flexstage.experiment.spectral import lines
+from flexstage.experiment.spectral.cross_spectra import Segments, spectra
+from flexstage.experiment.spectral.lines import record_lines
 from tests.models.long_records import written
 from tests.models.synthetic_records import Truth
 

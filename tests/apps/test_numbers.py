@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import set_text
+from flexstage.mechanism.addresses.address import set_text
 from flexstage.mechanism.mechanism import NamedNumber
 from flexstage.mechanism.store import dump, loads
 from flexstage.studies.optimisation.file import load_wanted
-from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.stage_text import design_text, write_optimum
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.execution.evaluate import piece
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.file import load_study
-from flexstage.studies.sweeps.run import Run
 from flexstage.studies.tolerances.file import load_tolerance
 from flexstage.studies.tolerances.run import tolerance
 from tests.apps.command import Command, command_in

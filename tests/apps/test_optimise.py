@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from flexstage import Inertia, Payload
-from flexstage.analysis.judge import judge
+from flexstage.analysis.assessment.judge import judge
 from flexstage.cases.registry import case
 from flexstage.mechanism.store import dump, load
 

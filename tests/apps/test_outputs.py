@@ -16,10 +16,10 @@ import tomlkit
 from scipy.io import loadmat
 
 from flexstage.analysis import complete
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.apps.cli.commands import COMMANDS
-from flexstage.base import store
 from flexstage.base.finding import refuse
+from flexstage.base.storage import store
 from flexstage.mechanism.store import load
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped

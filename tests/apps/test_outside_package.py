@@ -193,7 +193,10 @@ def test_the_page_shows_what_the_package_offers():
 
 def test_another_version_has_other_digests(work, package, tmp_path):
     newer = installed(tmp_path / "site", version="2.0")
-    ask = "from flexstage import load; from flexstage.base.digest import digest; print(digest(load('s.toml').parts['leaf'], physics=True))"
+    ask = (
+        "from flexstage import load; from flexstage.base.storage.digest import digest; "
+        "print(digest(load('s.toml').parts['leaf'], physics=True))"
+    )
     told = [
         subprocess.run([sys.executable, "-c", ask], cwd=work, env={**os.environ, "PYTHONPATH": str(path)}, capture_output=True, check=True)
         for path in (package, newer)
@@ -232,7 +235,7 @@ def crossed(tmp_path_factory):
         text = (ours / floor / "cruciform.py").read_text()
         text = text.replace("flexstage.parts.cruciform", "plus_hinge.part").replace('"cruciform"', '"plus"').replace("Cruciform", "Plus")
         (package / f"{module}.py").write_text(text)
-    (package / "shape.py").write_text("from flexstage.solid.fea.draw import Shape, prism\n\nPLUS = Shape(prism)\n")
+    (package / "shape.py").write_text("from flexstage.solid.fea.geometry.draw import Shape, prism\n\nPLUS = Shape(prism)\n")
     told = folder / "site" / "plus_hinge-1.0.dist-info"
     told.mkdir()
     (told / "METADATA").write_text("Metadata-Version: 2.1\nName: plus-hinge\nVersion: 1.0\n")
@@ -291,4 +294,4 @@ def test_finite_elements_verify_and_calibrate_a_hinge_of_any_section(crossed, na
 def test_nothing_but_its_files_and_registers_names_the_cruciform_hinge():
     sources = PACKAGE.parents[1] / "src" / "flexstage"
     naming = {path.relative_to(sources).as_posix() for path in sources.rglob("*.py") if "cruciform" in path.read_text().lower()}
-    assert naming == {"parts/cruciform.py", "beams/cruciform.py", "parts/__init__.py", "beams/__init__.py", "solid/fea/draw.py"}
+    assert naming == {"parts/cruciform.py", "beams/cruciform.py", "parts/__init__.py", "beams/__init__.py", "solid/fea/geometry/draw.py"}

@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.record import Record
+from flexstage.experiment.records.record import Record
 from flexstage.experiment.virtual_rig.samples import Simulated
 from tests.apps.command import Command
 

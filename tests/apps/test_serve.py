@@ -31,7 +31,7 @@ from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.experiment.formats.gcs import read_gcs
-from flexstage.experiment.options import Options
+from flexstage.experiment.records.options import Options
 from flexstage.mechanism.store import dump
 from tests.elsewhere.loops import PLATFORM, full_loop, way
 

@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.progress import Step
+from flexstage.base.processes.progress import Step
 from flexstage.cases.bridge import bridge
 from flexstage.mechanism.restrict import restrict
 from flexstage.parts.freedom import Freedom
 from flexstage.show.command.progress import progress_bar
-from flexstage.solid import resolution
-from flexstage.solid.fea import install
+from flexstage.solid.fea.jobs import install
+from flexstage.solid.results import resolution
 from tests.apps.command import Command, command_in, told_everywhere
 from tests.apps.test_documents import ENVELOPE, page_section
 from tests.models.small_solids import propped
@@ -102,7 +102,7 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_verification_that_is_known_is_told_again(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     first = command("verify", "stage.toml", *ROUGH, "--json", "first.json")
-    monkeypatch.setattr("flexstage.solid.verification.verify", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("flexstage.solid.results.verification.verify", lambda *_: pytest.fail("computed"))
     again = command("verify", "stage.toml", *ROUGH, "--json", "again.json")
     assert (again.code, again.out) == (0, first.out), again.err
     assert again.err.startswith("to do: nothing, the verification is in the cache.\n")
@@ -189,7 +189,7 @@ def test_interruption_writes_nothing(command: Command, tmp_path: Path, monkeypat
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("flexstage.solid.verification.solid_stage", interrupted)
+    monkeypatch.setattr("flexstage.solid.results.verification.solid_stage", interrupted)
     ended = command("solid", "stage.toml", "--json", "out.json", "--report", "out.html")
     assert ended.code == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["stage.toml"]
@@ -258,7 +258,7 @@ def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, 
 
 def test_memory_is_the_limit_of_all_that_is_computed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float | None] = []
-    monkeypatch.setattr("flexstage.solid.verification.verify", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("flexstage.solid.results.verification.verify", lambda *_: pytest.fail("computed"))
     monkeypatch.setattr("flexstage.solid.commands.solid.work_ahead", lambda _todo, ways, _notice: asked.append(ways.limits.memory))
     monkeypatch.setattr("flexstage.solid.commands.solid.solids", lambda ways, *_: asked.append(ways.limits.memory))
     monkeypatch.setattr("flexstage.solid.commands.solid.hinges", lambda _accuracy, _order, ways, _notice: asked.append(ways.limits.memory))

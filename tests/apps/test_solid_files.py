@@ -19,7 +19,7 @@ from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.superelement import Superelement
-from flexstage.solid.fea.imported import import_findings
+from flexstage.solid.fea.geometry.imported import import_findings
 from tests.apps.command import Command
 from tests.roundtrip.test_gltf import leaf_stage
 

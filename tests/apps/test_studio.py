@@ -15,37 +15,37 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import felt
-from flexstage.analysis.course import Course
-from flexstage.analysis.judge import judge
-from flexstage.analysis.load_effect import load_effect
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.modes import modes
-from flexstage.analysis.response import response
-from flexstage.analysis.solid_modes import FeaModes
-from flexstage.analysis.statics import statics
-from flexstage.analysis.stroke import stroke
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.response import response
+from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded.course import Course
+from flexstage.analysis.loaded.load_effect import load_effect
+from flexstage.analysis.loaded.stroke import stroke
 from flexstage.analysis.workspace.workspace import workspace
 from flexstage.apps.cli import run
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio import solids
+from flexstage.apps.studio.design.palette import insert, snippets
+from flexstage.apps.studio.design.reading import _made, design, follow, read
+from flexstage.apps.studio.design.writing import _differ_alone, _in_its_line, _is_another, write, written
 from flexstage.apps.studio.helper import Urgency
-from flexstage.apps.studio.palette import insert, snippets
 from flexstage.apps.studio.questions import slopes
-from flexstage.apps.studio.reading import _made, design, follow, read
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.travel import travelled
 from flexstage.apps.studio.wire import array, encode
-from flexstage.apps.studio.writing import _differ_alone, _in_its_line, _is_another, write, written
 from flexstage.base.finding import DesignError
-from flexstage.base.quantity import LENGTH
-from flexstage.base.unit import show
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.unit import show
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import quantity_of, set_value
+from flexstage.mechanism.addresses.address import quantity_of, set_value
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.contact import gaps
+from flexstage.mechanism.geometry.contact import gaps
 from flexstage.mechanism.mechanism import StrokePath
 from flexstage.mechanism.store import dumps, loads, patch
 from flexstage.models.ideal import ideal

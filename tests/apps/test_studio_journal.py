@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.journal import Journal, drafts
+from flexstage.apps.studio.design.journal import Journal, drafts
 from flexstage.apps.studio.server import Studio
 from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram

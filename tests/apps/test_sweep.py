@@ -13,9 +13,9 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.sweeps.execution.run import PIECE, Run, require_memory, sweep
+from flexstage.studies.sweeps.execution.store import folder_of, read_results
 from flexstage.studies.sweeps.file import load_study, loads_study
-from flexstage.studies.sweeps.run import PIECE, Run, require_memory, sweep
-from flexstage.studies.sweeps.store import folder_of, read_results
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import FULL
 
@@ -33,7 +33,7 @@ young = {{ of = "materials.aluminium.young", from = "-10 %", to = "10 %" }}
 RUN = """
 import sys
 from flexstage.studies.sweeps.file import load_study
-from flexstage.studies.sweeps.run import Run, sweep
+from flexstage.studies.sweeps.execution.run import Run, sweep
 sweep(load_study(sys.argv[1]), sys.argv[2], Run(workers=2, resume=True), lambda done, of: print(done, flush=True))
 """
 
@@ -172,7 +172,7 @@ def test_memory_is_asked_for_before_anything_is_computed(monkeypatch, tmp_path):
     """What is advised to fit does."""
     study = loads_study(STUDY)
     many = replace(study, plan=replace(study.plan, count=10**6), responses={f"f{number}": study.responses["f"] for number in range(999)})
-    monkeypatch.setattr("flexstage.base.memory.available", lambda: 1e9)
+    monkeypatch.setattr("flexstage.base.processes.memory.available", lambda: 1e9)
     with pytest.raises(DesignError, match="1,000,000 designs in 1000 columns need about 32 GB of memory") as refused:
         sweep(many, tmp_path / "r.h5")
     fits = int(refused.value.findings[0].advice.split()[4].replace(",", ""))

@@ -10,10 +10,10 @@ import psutil
 import pytest
 
 from flexstage.base.finding import DesignError
+from flexstage.studies.sweeps.execution.gather import file_size
+from flexstage.studies.sweeps.execution.run import Run, sweep
+from flexstage.studies.sweeps.execution.store import folder_of, read_results
 from flexstage.studies.sweeps.file import loads_study
-from flexstage.studies.sweeps.gather import file_size
-from flexstage.studies.sweeps.run import Run, sweep
-from flexstage.studies.sweeps.store import folder_of, read_results
 from tests.conftest import FULL
 
 STUDY = """

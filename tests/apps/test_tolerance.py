@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from flexstage.studies.sweeps.evaluate import piece
-from flexstage.studies.sweeps.store import read_results
+from flexstage.studies.sweeps.execution.evaluate import piece
+from flexstage.studies.sweeps.execution.store import read_results
 from flexstage.studies.tolerances.file import load_tolerance
 
 STUDY = """

@@ -10,7 +10,7 @@ import pytest
 
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.formats.write import write
-from flexstage.mechanism.address import get, set_value, tag_of
+from flexstage.mechanism.addresses.address import get, set_value, tag_of
 from flexstage.mechanism.store import load
 from tests.apps.command import Command
 from tests.apps.test_documents import matrices

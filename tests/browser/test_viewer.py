@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page
 
 import flexstage as fs
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.show.viewer.data import StageData, stage_data, still_data
 from flexstage.show.viewer.fragment import element, fragment
 from flexstage.show.viewer.view import View

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 
-from flexstage.analysis.measures import MEASURES
-from flexstage.mechanism.grammar import TAGS, ListNode, RecordNode, TableNode, UnionNode, node_of
+from flexstage.analysis.assessment.measures import MEASURES
+from flexstage.mechanism.grammar.grammar import TAGS, ListNode, RecordNode, TableNode, UnionNode, node_of
+from flexstage.mechanism.grammar.node import ChoiceNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import ChoiceNode
 from tests.hygiene.source import ROOT, expect_none
 
 PAGE = (ROOT / "docs" / "design-file.md").read_text(encoding="utf-8")

@@ -10,15 +10,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.base.native import Recipe, load_library
 from flexstage.base.number import Array
+from flexstage.base.processes.native import Recipe, load_library
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.simulation.disturbances import inflow
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Series, Simulated, simulation_result
 from flexstage.control.simulation.run import require_finite
-from flexstage.control.system import select
+from flexstage.control.systems.system import select
 
 _NONE: Mapping[str, Array] = {}
 _RUN = """
@@ -43,7 +43,7 @@ def simulate_compiled(given: Machine, reference: Array, disturbances: Mapping[st
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> from flexstage.control.simulation.run import simulate
-    >>> from flexstage.base.native import compiler
+    >>> from flexstage.base.processes.native import compiler
     >>> example = integral_loop()
     >>> known, asked = machine(example.plant, example.controller), np.full((500, 1), 1e-6)
     >>> found = simulate_compiled(known, asked) if compiler() else simulate(known, asked)

@@ -15,8 +15,8 @@ import numpy as np
 
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import Link, Mechanism
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Body
 from flexstage.parts.gauge import Positive
 from flexstage.parts.piezo import Piezo

@@ -32,9 +32,9 @@ from exudyn.itemInterface import (
 from flexstage.base.number import Array
 from flexstage.beams.compliance import Law, law
 from flexstage.beams.mass import mass
-from flexstage.mechanism.expand import Assembly, PlacedLink
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink
+from flexstage.mechanism.assembly.moving_mass import carried_masses
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.moving_mass import carried_masses
 from flexstage.parts.freedom import ALL
 
 Value = TypeVar("Value")

@@ -25,10 +25,10 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from flexstage.experiment.cross_spectra import spectra
 from flexstage.experiment.identification.evidence import choose_segments
-from flexstage.experiment.record import Record
-from flexstage.experiment.transfer import h1
+from flexstage.experiment.records.record import Record
+from flexstage.experiment.spectral.cross_spectra import spectra
+from flexstage.experiment.spectral.transfer import h1
 
 os.environ["TQDM_DISABLE"] = "1"  # their progress bars
 os.environ.setdefault("MPLBACKEND", "Agg")

@@ -8,8 +8,8 @@ import numpy as np
 import scipy
 from scipy.optimize import brentq
 
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.plants import Plant
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.plant_models.plants import Plant
 from flexstage.control.simulation.machine import Machine
 
 

@@ -9,15 +9,15 @@ import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.control.closed import Loop, loop
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
-from flexstage.control.electronics import AmplifierSettings, hardware
 from flexstage.control.example import integral
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.plants import plant
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.machine import Machine, machine
+from flexstage.control.systems.closed import Loop, loop
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped

@@ -15,7 +15,7 @@ import pytest
 
 pytest.importorskip("ngsolve", reason="the solid model needs flexstage[solid]")
 
-from flexstage.solid.fea.mesh import PieceMesh
+from flexstage.solid.fea.meshing.mesh import PieceMesh
 from tests.elsewhere.calculix.deck import deck, printed_solution, program, run
 from tests.elsewhere.calculix.ours import Law, solved
 from tests.elsewhere.calculix.problems import GEOMETRIES, PROBLEMS, Geometry, Problem, Solution, mesh_of, read_mesh, shape

@@ -15,7 +15,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.number import Array
-from flexstage.base.scale import Z, mm
+from flexstage.base.units.scale import Z, mm
 from flexstage.parts.leaf import LeafSection
 from flexstage.spatial.rotation import exponential_rate
 from tests.elsewhere.calculix.bent_leaves import COMPONENTS, SOLIDS, Solid, run, stored

@@ -16,9 +16,9 @@ from flexstage.control.controllers.lqg import Disturbances, Weights, lqg
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.pose_plant import pose_plant
-from flexstage.control.coordinates import coordinates
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import plant
+from flexstage.control.plant_models.coordinates import coordinates
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 

@@ -16,7 +16,7 @@ pytest.importorskip("exudyn", reason="Exudyn has no wheels for this interpreter"
 import flexstage as fs
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Inertia, Payload
 from flexstage.parts.freedom import Freedom

@@ -29,7 +29,7 @@ from exudyn.itemInterface import (
 
 import flexstage as fs
 from flexstage.base.number import Array
-from flexstage.base.scale import Z
+from flexstage.base.units.scale import Z
 from flexstage.parts.leaf import LeafSection
 from flexstage.parts.section import Rectangle, cowper_rectangle
 from flexstage.spatial.rotation import exponential, logarithm

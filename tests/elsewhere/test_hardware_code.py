@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.native import compiler
+from flexstage.base.processes.native import compiler
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops

@@ -9,8 +9,8 @@ import pytest
 import scipy
 from scipy.optimize import brentq
 
-from flexstage.control.hysteresis.bouc_wen import BoucWen
-from flexstage.control.hysteresis.preisach import preisach
+from flexstage.control.hysteresis.models.bouc_wen import BoucWen
+from flexstage.control.hysteresis.models.preisach import preisach
 
 
 def swept(time):

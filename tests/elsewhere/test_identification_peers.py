@@ -13,7 +13,7 @@ import pytest
 
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.record import Responses
+from flexstage.experiment.records.record import Responses
 from tests.elsewhere.identification_peers import EXTRA, PEERS, Modes, Peer, handed_over, sdypy_lscf, strid_lscf, strid_subspace
 from tests.elsewhere.identification_peers import pyoma_with_inputs as pyoma
 from tests.elsewhere.identification_scores import ERRORS, OURS, medians, one_record

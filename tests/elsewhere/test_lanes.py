@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexstage.base.native import Lanes, compile_source, kernel_recipe, processor_lanes
+from flexstage.base.processes.native import Lanes, compile_source, kernel_recipe, processor_lanes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.batch import compiled
 from flexstage.models.batch.compiled import kernel_job
 from flexstage.models.batch.engine import iterate, plan
-from flexstage.models.batch.numbers import numbers_of, slopes_of
+from flexstage.models.batch.parameters.numbers import numbers_of, slopes_of
 from flexstage.models.batch.solution import Solution, Stage
 
 HERE = Path(__file__).parent

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.native import compiler
 from flexstage.base.number import Table
+from flexstage.base.processes.native import compiler
 from flexstage.control.damping.sampled import SampledLegs
 from flexstage.control.example import integral_loop
 from flexstage.control.export.code.controller import controller_code
@@ -22,14 +22,14 @@ from flexstage.control.export.code.program import FLAGS, WARNINGS, Program
 from flexstage.control.export.code.whole import loop_code
 from flexstage.control.export.files import write_controller, write_fmu, write_plant
 from flexstage.control.export.fmu.unit import fmu, fmu_sources
-from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
-from flexstage.control.hysteresis.envelope import Envelope
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.preisach import Preisach
+from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.models.envelope import Envelope
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.preisach import Preisach
 from flexstage.control.simulation.machine import Machine, Relief, machine
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
-from flexstage.control.system import static
+from flexstage.control.systems.system import static
 from flexstage.models.linear.model import Channel
 from tests.elsewhere.compiled_loop import run_program, simulate_compiled
 from tests.elsewhere.independent_loop import Computer

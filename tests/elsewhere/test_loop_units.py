@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from flexstage.base.native import compiler
+from flexstage.base.processes.native import compiler
 from flexstage.control.example import integral_loop
 from flexstage.control.export.code.controller import controller_code
 from flexstage.control.export.code.whole import loop_code

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
-from flexstage.base.scale import deg, mm
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.base.units.scale import deg, mm
 from flexstage.cases.mirror_mount import MirrorMount, mirror_mount
 from flexstage.cases.registry import case
 from flexstage.cases.telescope_mount import TelescopeMount, telescope_mount
-from flexstage.mechanism.address import set_text
+from flexstage.mechanism.addresses.address import set_text
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped
 

@@ -13,21 +13,21 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
 from flexstage.cases.tip_tilt import tip_tilt
-from flexstage.control.closed import Cut, Loop, loop, open_at
 from flexstage.control.controllers.loops import platform_loops
-from flexstage.control.curves import sensitivity
-from flexstage.control.disk import disk_margin
-from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
 from flexstage.control.example import integral, integral_loop
-from flexstage.control.exchange import from_control, to_control
-from flexstage.control.norm import peak
-from flexstage.control.plants import plant, zero_order_hold
-from flexstage.control.stability_margins import margins, peaks
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.plant_models.plants import plant, zero_order_hold
+from flexstage.control.robustness.disk import disk_margin
+from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.choices import SEARCHED, ControllerKind, Criterion
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, VibrationSetup
-from flexstage.control.system import System, select
+from flexstage.control.systems.closed import Cut, Loop, loop, open_at
+from flexstage.control.systems.curves import sensitivity
+from flexstage.control.systems.exchange import from_control, to_control
+from flexstage.control.systems.norm import peak
+from flexstage.control.systems.system import System, select
 from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.goal import Kind

@@ -22,9 +22,9 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.arguments import GAPS, CheckedFields, convert_arguments
-from flexstage.base.quantity import COMPLIANCE_MATRIX, STIFFNESS_MATRIX, Bound, Quantity
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import Plant
+from flexstage.base.units.quantity import COMPLIANCE_MATRIX, STIFFNESS_MATRIX, Bound, Quantity
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import Plant
 from flexstage.control.trajectory.path import Trajectory
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import Channel

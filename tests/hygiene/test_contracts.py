@@ -44,39 +44,39 @@ def planted(folder: Path, imports: list[tuple[str, str]]) -> Path:
 FORBIDDEN = [
     ("parts/material.py", "flexstage.mechanism.mechanism"),
     ("mechanism/mechanism.py", "flexstage.beams"),
-    ("beams/__init__.py", "flexstage.mechanism.pattern"),
-    ("beams/leaf.py", "flexstage.solid.fea.install"),
+    ("beams/__init__.py", "flexstage.mechanism.assembly.pattern"),
+    ("beams/leaf.py", "flexstage.solid.fea.jobs.install"),
     ("beams/leaf.py", "flexstage.models.linear"),
     ("models/ideal.py", "flexstage.models.lumped"),
     ("models/lumped.py", "flexstage.models.ideal"),
     ("models/lumped.py", "flexstage.models.mapped"),
     ("models/mapped.py", "flexstage.models.lumped"),
     ("models/finite.py", "flexstage.models.lumped"),
-    ("models/lumped.py", "flexstage.solid.fea.install"),
-    ("models/mapped.py", "flexstage.solid.fea.install"),
+    ("models/lumped.py", "flexstage.solid.fea.jobs.install"),
+    ("models/mapped.py", "flexstage.solid.fea.jobs.install"),
     ("models/linear/__init__.py", "flexstage.models.lumped"),
-    ("analysis/statics.py", "flexstage.show.table"),
-    ("show/table.py", "flexstage.solid.verification"),
-    ("solid/fea/install.py", "flexstage.models.lumped"),
-    ("solid/fea/install.py", "flexstage.models.finite"),
-    ("solid/fea/install.py", "flexstage.beams"),
-    ("solid/verification.py", "flexstage.experiment.comparison"),
-    ("experiment/record.py", "flexstage.models.ideal"),
+    ("analysis/linear_statics/statics.py", "flexstage.show.table"),
+    ("show/table.py", "flexstage.solid.results.verification"),
+    ("solid/fea/jobs/install.py", "flexstage.models.lumped"),
+    ("solid/fea/jobs/install.py", "flexstage.models.finite"),
+    ("solid/fea/jobs/install.py", "flexstage.beams"),
+    ("solid/results/verification.py", "flexstage.experiment.comparison"),
+    ("experiment/records/record.py", "flexstage.models.ideal"),
     ("experiment/identification/lscf.py", "flexstage.models.lumped"),
-    ("experiment/comparison.py", "flexstage.solid.modes"),
-    ("experiment/comparison.py", "flexstage.control.plants"),
-    ("control/plants.py", "flexstage.solid.fea.install"),
-    ("control/plants.py", "flexstage.experiment.comparison"),
-    ("studies/sweeps/run.py", "flexstage.solid.fea.install"),
-    ("studies/sweeps/run.py", "flexstage.control.plants"),
+    ("experiment/comparison.py", "flexstage.solid.results.modes"),
+    ("experiment/comparison.py", "flexstage.control.plant_models.plants"),
+    ("control/plant_models/plants.py", "flexstage.solid.fea.jobs.install"),
+    ("control/plant_models/plants.py", "flexstage.experiment.comparison"),
+    ("studies/sweeps/execution/run.py", "flexstage.solid.fea.jobs.install"),
+    ("studies/sweeps/execution/run.py", "flexstage.control.plant_models.plants"),
     ("apps/commands/analyse.py", "flexstage.apps.commands.describe"),
     ("apps/commands/analyse.py", "flexstage.apps.cli.commands"),
     ("studies/commands/sweep.py", "flexstage.studies.commands.tolerance"),
-    ("studies/sweeps/run.py", "flexstage.studies.commands.sweep"),
+    ("studies/sweeps/execution/run.py", "flexstage.studies.commands.sweep"),
     ("control/commands/loop.py", "flexstage.apps.cli.commands"),
     ("experiment/commands/compare.py", "flexstage.solid.commands.modes"),
     ("show/command/answer.py", "flexstage.apps.commands.about"),
-    ("show/command/progress.py", "flexstage.solid.modes"),
+    ("show/command/progress.py", "flexstage.solid.results.modes"),
 ]
 
 
@@ -91,7 +91,7 @@ def test_contracts_bite(tmp_path: Path) -> None:
 
 
 def test_contracts_bite_through_others(tmp_path: Path) -> None:
-    chain = [("solid/fea/install.py", "flexstage.cases.stock"), ("cases/stock.py", "flexstage.beams.leaf")]
+    chain = [("solid/fea/jobs/install.py", "flexstage.cases.stock"), ("cases/stock.py", "flexstage.beams.leaf")]
     done = lint(planted(tmp_path, chain))
     assert "Finite elements reach neither beam theory nor its models BROKEN" in done.stdout
     assert "Imports go down the floors only KEPT" in done.stdout

@@ -115,7 +115,7 @@ def test_help_loads_nothing_heavy() -> None:
 def test_commands_load_what_only_some_calls_need_when_they_need_it() -> None:
     """Templates for reports, the editor of design files, pictures, and all of scipy's packages: the help of a command waits for none."""
     modules = "import flexstage.apps.commands.analyse, flexstage.apps.commands.describe, flexstage.control.commands.loop, sys"
-    names = "flexstage.control.report jinja2 tomlkit PIL scipy.special scipy.linalg scipy.optimize matplotlib pydantic"
+    names = "flexstage.control.show.report jinja2 tomlkit PIL scipy.special scipy.linalg scipy.optimize matplotlib pydantic"
     assert not set(names.split()) & loaded_by(modules, whole=True)
 
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 from hypothesis import strategies as st
 
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 
 VOLTS = 1000.0
 GRID = 51

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.base.number import Table
-from flexstage.control.closed import Loop, loop
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.electronics import Amplifier, Hardware, Sensor
-from flexstage.control.plants import Plant
-from flexstage.control.system import System
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.electronics import Amplifier, Hardware, Sensor
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.closed import Loop, loop
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 RATE = 1000.0

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.hysteresis.envelope import Envelope
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.envelope import Envelope
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 
 
 def stack_models(models: Sequence[PrandtlIshlinskii]) -> PrandtlIshlinskii:

@@ -14,9 +14,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 from flexstage.base.number import stack
-from flexstage.base.scale import X, Y, Z, mm
+from flexstage.base.units.scale import X, Y, Z, mm
+from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar, Pose
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.given import Given

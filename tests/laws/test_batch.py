@@ -15,22 +15,22 @@ from hypothesis import strategies as st
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import X, Y, Z
+from flexstage.base.units.scale import X, Y, Z
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import addresses, get, set_value
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.addresses.address import addresses, get, set_value
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.models.batch.blocks import blocks, dense
 from flexstage.models.batch.choice import Choice
 from flexstage.models.batch.compiled import Tables, by_kernel
 from flexstage.models.batch.engine import Method, Plan, Status, iterate, plan, plan_family, platform_modes
-from flexstage.models.batch.features import PORTION, Feature, Rows
 from flexstage.models.batch.kernel import kernel
-from flexstage.models.batch.numbers import Family, Slopes, drawn_family, numbers_and_slopes, numbers_of, slopes_of
 from flexstage.models.batch.order import elimination
+from flexstage.models.batch.parameters.features import PORTION, Feature, Rows
+from flexstage.models.batch.parameters.numbers import Family, Slopes, drawn_family, numbers_and_slopes, numbers_of, slopes_of
+from flexstage.models.batch.parameters.units import _told
 from flexstage.models.batch.solution import Stage, by_iteration, wholly
-from flexstage.models.batch.units import _told
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.given import Given
 from tests.conftest import examples
@@ -657,7 +657,7 @@ def test_a_mass_that_is_not_mirrored_in_a_design_is_missed_there(monkeypatch: py
     family_plan = plan(double_triangle(), ("parts.neck.thickness",))
     values = designs(family_plan, 4, 0.05)
     whole = platform_modes(family_plan, values, slopes=True)
-    monkeypatch.setattr("flexstage.models.batch.numbers.is_mirrored", lambda numbers, _: np.arange(numbers.shape[1]) % 2 == 0)
+    monkeypatch.setattr("flexstage.models.batch.parameters.numbers.is_mirrored", lambda numbers, _: np.arange(numbers.shape[1]) % 2 == 0)
     assert slopes_of(family_plan.family, values).missed.tolist() == [False, True, False, True]
     np.testing.assert_allclose(platform_modes(family_plan, values, slopes=True).gradient, whole.gradient, rtol=1e-9)
 

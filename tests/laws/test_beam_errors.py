@@ -10,8 +10,8 @@ from flexstage.beams.validity import slot_of, validity
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Profile, Straight
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.meshing.estimate import Accuracy
 from tools.validation.beam_errors import COUNTS, sampled
 
 SEED = 2026

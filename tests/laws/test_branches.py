@@ -9,9 +9,9 @@ import pytest
 
 from flexstage.base.finding import LowerBoundError
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.path import beyond, trace
+from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.paths.path import beyond, trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from tests.laws.test_nonlinear import LEAF, UNIT, guide
 

@@ -13,12 +13,12 @@ import pytest
 import flexstage as fs
 from flexstage.base.finding import LowerBoundError
 from flexstage.mechanism.mechanism import Link, Mechanism
-from flexstage.models.nonlinear.condense import system
-from flexstage.models.nonlinear.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.elements.condense import system
+from flexstage.models.nonlinear.elements.hold import nothing
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.graph import System, advance, assemble
-from flexstage.models.nonlinear.hold import nothing
-from flexstage.models.nonlinear.path import trace
+from flexstage.models.nonlinear.paths.critical import Kind, critical, unstable_motions
+from flexstage.models.nonlinear.paths.path import trace
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads
 from flexstage.parts.body import Body, Inertia

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.statics import directional
+from flexstage.analysis.linear_statics.statics import directional
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
-from flexstage.mechanism.address import get
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.addresses.address import get
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Polar
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
-from flexstage.mechanism.pattern import Polar
 from flexstage.models.linear.eigen import sign_weights, solve
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, transport

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.load_cases import REST, LoadCase, critical_factors
+from flexstage.analysis.loaded.load_cases import REST, LoadCase, critical_factors
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.lines import centre_lines, critical_motion, mode_motions
-from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.paths.path import Path
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.displaced import along_table, buckling_report, stroke_report
 from flexstage.show.table import matrix_table

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flexstage as fs
-from flexstage.analysis.drift import FIELDS, Drift, drift
+from flexstage.analysis.linear_statics.drift import FIELDS, Drift, drift
 from flexstage.analysis.workspace.gauging import gauge_inverse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Table
 from flexstage.cases.registry import CASES, case
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.given import Given, Joint
 from flexstage.spatial.frame import COMPONENTS

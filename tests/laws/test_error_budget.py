@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.budget import budget
-from flexstage.analysis.drift import drift
-from flexstage.analysis.error_budget import SOURCES, command_strokes, error_budget
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.assessment.budget import budget
+from flexstage.analysis.assessment.error_budget import SOURCES, command_strokes, error_budget
+from flexstage.analysis.linear_statics.drift import drift
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.gauging import pose_resolution
 from flexstage.cases.hexapod import hexapod
 from flexstage.cases.registry import case
@@ -146,7 +146,7 @@ def test_a_batch_is_the_loop():
 
 def test_evidence_may_be_given_piece_by_piece():
     """The analysis itself takes results only: the same numbers as the study's."""
-    from flexstage.analysis.error_budget import Evidence
+    from flexstage.analysis.assessment.error_budget import Evidence
     from flexstage.analysis.workspace.map_error import map_error_at
 
     stage, command = case("hexapod"), {"z": 5e-6}

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flexstage.analysis.sensitivities import sensitivities
-from flexstage.base.dimension import dimension_of
-from flexstage.base.expression import Amount, ExpressionError, evaluate, parse_expression
+from flexstage.analysis.assessment.sensitivities import sensitivities
 from flexstage.base.finding import DesignError
+from flexstage.base.units.dimension import dimension_of
+from flexstage.base.units.expression import Amount, ExpressionError, evaluate, parse_expression
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import get, set_text, set_value
+from flexstage.mechanism.addresses.address import get, set_text, set_value
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Mechanism, NamedNumber
 from flexstage.models.linear.eigen import eigen

@@ -8,11 +8,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexstage.base.scale import X, Y, Z
+from flexstage.base.units.scale import X, Y, Z
 from flexstage.cases.registry import case
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.incidence import deformation, layout
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.ideal import ideal

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.scale import X, Z, mm
-from flexstage.control.coordinates import coordinates
-from flexstage.control.electronics import AmplifierSettings, hardware
+from flexstage.base.units.scale import X, Z, mm
 from flexstage.control.export.code.controller import controller_code
-from flexstage.control.plants import plant
+from flexstage.control.plant_models.coordinates import coordinates
+from flexstage.control.plant_models.electronics import AmplifierSettings, hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.runs import driven_machine
 from flexstage.control.study.setup import AmplifierSetup, ControllerSetup, HystereticStacks, LoopSetup
 from flexstage.control.study.study import loop_study
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped

@@ -12,9 +12,9 @@ import pytest
 import flexstage as fs
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
+from flexstage.mechanism.assembly.mount import mount
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.mount import mount
-from flexstage.mechanism.pattern import Pose
 from flexstage.spatial.frame import axes, spatial_rotation
 
 TURN = axes((2.0, -1.0, 2.0), (1.0, 2.0, 0.0))

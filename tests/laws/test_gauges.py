@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 import flexstage as fs
 from flexstage.analysis.workspace.gauging import gauge_inverse, pose_resolution
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.control.coordinates import coordinates
-from flexstage.control.electronics import hardware
-from flexstage.control.plants import plant
+from flexstage.control.plant_models.coordinates import coordinates
+from flexstage.control.plant_models.electronics import hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugeSum, LinkProbe, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped

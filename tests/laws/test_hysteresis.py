@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
-from flexstage.control.hysteresis.envelope import Envelope
-from flexstage.control.hysteresis.inverse import inverse, inverse_state
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.envelope import Envelope
+from flexstage.control.hysteresis.models.inverse import inverse, inverse_state
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, models, on_grid, turns, walked
 from tests.laws.stacked_models import stack_models

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
-from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
-from flexstage.control.hysteresis.preisach import Preisach, preisach
-from flexstage.control.hysteresis.shape import major_loop
+from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.models.preisach import Preisach, preisach
+from flexstage.control.hysteresis.models.shape import major_loop
 from tests.conftest import examples
 from tests.laws.hystereses import VOLTS, fractions, levels, on_grid, turns, walked
 

@@ -10,15 +10,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from flexstage.analysis.modes import modes
-from flexstage.analysis.response import response
-from flexstage.analysis.sensitivities import sensitivities
+from flexstage.analysis.assessment.sensitivities import sensitivities
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.response import response
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import EQUATION_18, double_triangle
-from flexstage.mechanism.address import addresses, get, set_value
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.addresses.address import addresses, get, set_value
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import PLATFORM, ModalDamping, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.restrict import restrict
 from flexstage.models import lumped as models
 from flexstage.models.linear.eigen import eigen

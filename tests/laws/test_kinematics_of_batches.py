@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.requirements import measure
+from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
-from flexstage.base.quantity import LENGTH
-from flexstage.base.scale import X, Y, Z
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.scale import X, Y, Z
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import get, set_value
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.models.finite import forward_kinematics
 from flexstage.models.linear.eigen import eigenvalues
 from flexstage.models.linear.elimination import eliminate, eliminate_each
@@ -29,7 +29,7 @@ from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted
 from flexstage.parts.piezo import Piezo
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.execution.evaluate import piece
 from flexstage.studies.sweeps.plan import Plan, Sampling
 from flexstage.studies.sweeps.variable import Variable
 

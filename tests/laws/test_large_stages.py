@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from flexstage.analysis import stability as stabilities
-from flexstage.analysis.drift import drift
-from flexstage.analysis.modes import modes
-from flexstage.analysis.statics import statics
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.drift import drift
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded import stability as stabilities
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.finding import DesignError

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.complete import analyse
-from flexstage.analysis.judge import judge
-from flexstage.analysis.load_cases import REST, LoadCase, case_critical, critical_factors, load_cases
+from flexstage.analysis.loaded.load_cases import REST, LoadCase, case_critical, critical_factors, load_cases
 from flexstage.base.finding import LowerBoundError
-from flexstage.models.nonlinear.critical import STATED, WEIGHT
+from flexstage.models.nonlinear.paths.critical import STATED, WEIGHT
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.show.tables.overview import closing_text
 

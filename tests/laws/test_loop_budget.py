@@ -9,17 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.random_response import Rate, Spectrum, quadrature
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum, quadrature
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.xy_stage import xy_stage
-from flexstage.control.closed import loop
-from flexstage.control.electronics import AmplifierSettings, GaugeSettings, Sensor, hardware
 from flexstage.control.example import integral, integral_loop
 from flexstage.control.noise import DisturbanceResponse, noise_budget
-from flexstage.control.plants import plant, sensor_filter
-from flexstage.control.system import select
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, Sensor, hardware
+from flexstage.control.plant_models.plants import plant, sensor_filter
+from flexstage.control.systems.closed import loop
+from flexstage.control.systems.system import select
 from flexstage.control.white_noise import Kind, held_noise, mean_squares, white_system
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 import scipy
 
-from flexstage.analysis.random_response import Rate, Spectrum
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.closed import loop
-from flexstage.control.electronics import AmplifierSettings, GaugeSettings, hardware
 from flexstage.control.example import integral
 from flexstage.control.noise import noise_budget
-from flexstage.control.plants import plant
+from flexstage.control.plant_models.electronics import AmplifierSettings, GaugeSettings, hardware
+from flexstage.control.plant_models.plants import plant
 from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.noise import noise_series, series
 from flexstage.control.simulation.run import simulate
+from flexstage.control.systems.closed import loop
 from tests.laws.shared import ideal, lumped
 
 STEP = 1e-4

@@ -15,14 +15,14 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.pi import PI
-from flexstage.control.creep_plant import add_creep
 from flexstage.control.example import integral_loop
 from flexstage.control.hysteresis.creep import Creep
+from flexstage.control.plant_models.creep_plant import add_creep
 from flexstage.control.simulation.kernel import Compensator
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.result import step_figures, tracking
 from flexstage.control.simulation.run import simulate
-from flexstage.control.system import System, static
+from flexstage.control.systems.system import System, static
 from flexstage.control.trajectory.profile import Limits
 from flexstage.control.trajectory.step import Step
 from flexstage.models.linear.model import Channel

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from flexstage.base.finding import DesignError
-from flexstage.control.closed import Cut, loop, open_at, open_everywhere
-from flexstage.control.curves import sensitivity
-from flexstage.control.disk import disk_margins
-from flexstage.control.stability import require_stable, verdict
-from flexstage.control.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
-from flexstage.control.system import select
+from flexstage.control.robustness.disk import disk_margins
+from flexstage.control.robustness.stability import require_stable, verdict
+from flexstage.control.robustness.stability_margins import bandwidths, crosstalk, delay_margin, margins, peaks
+from flexstage.control.systems.closed import Cut, loop, open_at, open_everywhere
+from flexstage.control.systems.curves import sensitivity
+from flexstage.control.systems.system import select
 from tests.conftest import examples
 from tests.laws.loops import random_loop, stable_loop
 

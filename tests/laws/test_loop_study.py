@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.workspace.drive import drive
 from flexstage.analysis.workspace.small import second_order
-from flexstage.base.document import plain
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
+from flexstage.base.storage.document import plain
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.registry import case
-from flexstage.control.closed import loop
-from flexstage.control.coordinates import coordinates
-from flexstage.control.error_tables import _error_and_crosstalk, noise_table
-from flexstage.control.playing import response_motions
-from flexstage.control.reduction import reduce_modes, resonances
-from flexstage.control.sections import margin_spots, time_section
+from flexstage.control.plant_models.coordinates import coordinates
+from flexstage.control.plant_models.reduction import reduce_modes, resonances
+from flexstage.control.show.error_tables import _error_and_crosstalk, noise_table
+from flexstage.control.show.playing import response_motions
+from flexstage.control.show.sections import margin_spots, time_section
+from flexstage.control.show.tables import margin_table, step_table
 from flexstage.control.simulation.result import other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
 from flexstage.control.study.course import courses, sampled_course
@@ -47,7 +47,7 @@ from flexstage.control.study.setup import (
 )
 from flexstage.control.study.stacks import stacks_of, sweep_stacks
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.tables import margin_table, step_table
+from flexstage.control.systems.closed import loop
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.mapped import mapped
@@ -55,7 +55,7 @@ from flexstage.parts.gauge import Gauge
 from flexstage.show.display import NO_VALUE, format_value
 from flexstage.show.page import Prose
 from flexstage.show.viewer.data import stage_data
-from flexstage.solid.modes import fea_modes
+from flexstage.solid.results.modes import fea_modes
 
 CALM = ControllerSetup(integral=300.0)
 

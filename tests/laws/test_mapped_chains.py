@@ -9,9 +9,9 @@ from hypothesis import given
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Unit
-from flexstage.mechanism.pattern import Pose
 from flexstage.models.linear.static import static_gain
 from flexstage.models.mapped import borne_compliance, computed_stiffness, mapped
 from flexstage.parts.body import Body, Inertia

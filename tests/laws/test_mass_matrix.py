@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from flexstage.analysis.mass_matrix import mass_matrix
-from flexstage.analysis.statics import freedom_stiffness, statics
+from flexstage.analysis.linear_statics.mass_matrix import mass_matrix
+from flexstage.analysis.linear_statics.statics import freedom_stiffness, statics
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.moving_mass import carried_masses, moving_inertia
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.static import static_gain

@@ -8,16 +8,16 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.response import transmissibility
-from flexstage.analysis.stability import stability
-from flexstage.analysis.statics import centre_of_stiffness
+from flexstage.analysis.dynamics.response import transmissibility
+from flexstage.analysis.linear_statics.statics import centre_of_stiffness
+from flexstage.analysis.loaded.stability import stability
 from flexstage.base.number import stack
 from flexstage.beams.compliance import law
 from flexstage.beams.mass import mass
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import deformation, layout, twist_at
+from flexstage.mechanism.addresses.path import replace_member
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.incidence import deformation, layout, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism, ModalDamping
-from flexstage.mechanism.path import replace_member
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import Contribution, assemble
 from flexstage.models.linear.port import ports

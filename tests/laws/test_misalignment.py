@@ -9,11 +9,11 @@ from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Placement
-from flexstage.mechanism.pattern import Pose
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal

@@ -7,18 +7,18 @@ import pytest
 from hypothesis import given
 
 import flexstage as fs
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.drift import drift
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.drift import drift
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import addresses, assign, get, tag_of
+from flexstage.mechanism.addresses.address import addresses, assign, get, tag_of
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.mount import mount
+from flexstage.mechanism.assembly.moving_mass import moving_inertia
+from flexstage.mechanism.assembly.pattern import Normal, Pose
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.mount import mount
-from flexstage.mechanism.moving_mass import moving_inertia
-from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.mechanism.store.patch import patch
 from flexstage.models.ideal import ideal

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.base.native import SWITCH
 from flexstage.base.number import Number
-from flexstage.base.scale import Z
+from flexstage.base.processes.native import SWITCH
+from flexstage.base.units.scale import Z
 from flexstage.beams.flexure.law import Resolution, leaf_law
 from flexstage.beams.leaf import leaf_diagonal, torsional_compliance
 from flexstage.cases.double_triangle import double_triangle
@@ -20,8 +20,8 @@ from flexstage.cases.tilt_stage import tilt_stage
 from flexstage.mechanism.mechanism import Force, Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.compiled import kernel, tables
-from flexstage.models.nonlinear.condense import condense, settle
-from flexstage.models.nonlinear.element import energy, shape, tangent
+from flexstage.models.nonlinear.elements.condense import condense, settle
+from flexstage.models.nonlinear.elements.element import energy, shape, tangent
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from flexstage.mechanism.mechanism import Link, Mechanism
-from flexstage.models.nonlinear.critical import unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
 from flexstage.models.nonlinear.graph import assemble
+from flexstage.models.nonlinear.paths.critical import unstable_motions
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Effort
 from flexstage.parts.body import Body, Inertia

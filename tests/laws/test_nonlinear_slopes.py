@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.native import SWITCH
+from flexstage.base.processes.native import SWITCH
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.models.nonlinear.compiled import kernel
-from flexstage.models.nonlinear.critical import critical
+from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium
 from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.paths.critical import critical
 from flexstage.models.nonlinear.slopes import over_designs, slopes
 from flexstage.models.nonlinear.stage import nonlinear
-from flexstage.models.nonlinear.strain import strains
 from tests.laws.test_nonlinear import LEAF, NONE, SPACE, UNIT, guide, loads
 from tests.laws.test_nonlinear_extremes import stage, wrenches
 

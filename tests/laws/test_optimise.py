@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.judge import measure_all
-from flexstage.analysis.measures import Extreme
-from flexstage.analysis.requirements import Sense, measure
-from flexstage.base.document import plain
-from flexstage.studies.optimisation.front import pareto_front
-from flexstage.studies.optimisation.optimum import optimise
-from flexstage.studies.optimisation.problem import Problem, Side
-from flexstage.studies.optimisation.quadratic import quadratic
-from flexstage.studies.optimisation.search import Trace, run_searches, search
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.measures import Extreme
+from flexstage.analysis.assessment.requirements import Sense, measure
+from flexstage.base.storage.document import plain
+from flexstage.studies.optimisation.search.front import pareto_front
+from flexstage.studies.optimisation.search.optimum import optimise
+from flexstage.studies.optimisation.search.problem import Problem, Side
+from flexstage.studies.optimisation.search.quadratic import quadratic
+from flexstage.studies.optimisation.search.search import Trace, run_searches, search
 from flexstage.studies.optimisation.setting import setting
 from flexstage.studies.optimisation.values import Point, Scalars, Values
 from tests.conftest import FULL

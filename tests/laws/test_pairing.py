@@ -9,8 +9,8 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import modal_assurance
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, pair_modes
+from flexstage.analysis.dynamics.modes import modal_assurance
+from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.base.number import Array
 from flexstage.cases.bridge import bridge
 from flexstage.cases.double_triangle import double_triangle

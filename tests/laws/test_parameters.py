@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.judge import measure_all
+from flexstage.analysis.assessment.judge import measure_all
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, Variant
-from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.engine import plan_family, platform_modes
-from flexstage.models.batch.numbers import drawn_family
-from flexstage.studies.sweeps.engine import engine_of
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.models.batch.parameters.numbers import drawn_family
+from flexstage.studies.sweeps.execution.engine import engine_of
+from flexstage.studies.sweeps.execution.evaluate import piece
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.sweeps.variable import apply_columns
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.stability import prestress
-from flexstage.analysis.strained import left_out
+from flexstage.analysis.loaded.stability import prestress
+from flexstage.analysis.loaded.strained import left_out
 from flexstage.analysis.workspace.load import dead_loads
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Force, Link, Mechanism, Stop
-from flexstage.mechanism.pattern import Pose
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.parts.part import Part
 from flexstage.spatial.frame import COMPONENTS, FORCES

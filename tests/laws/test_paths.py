@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.analysis.assessment.judge import judge, measure_all
+from flexstage.analysis.assessment.measures import measure_kind
+from flexstage.analysis.assessment.requirements import measure, requirements
 from flexstage.analysis.cautions import model_findings
-from flexstage.analysis.course import course
-from flexstage.analysis.judge import judge, measure_all
-from flexstage.analysis.measures import measure_kind
-from flexstage.analysis.requirements import measure, requirements
+from flexstage.analysis.loaded.course import course
 from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.store import dumps, loads
 from flexstage.studies.optimisation.file import load_wanted
-from flexstage.studies.optimisation.optimum import optimise
+from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.values import values_of
+from flexstage.studies.sweeps.execution.run import sweep
 from flexstage.studies.sweeps.file import load_study
-from flexstage.studies.sweeps.run import sweep
 from flexstage.studies.tolerances.file import load_tolerance
 from flexstage.studies.tolerances.slopes import slopes
 from tests.laws.test_nonlinear import LEAF, UNIT, guide

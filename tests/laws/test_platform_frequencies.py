@@ -10,8 +10,8 @@ import scipy
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.judge import judge
-from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.dynamics.modes import Modes, modes
 from flexstage.base.number import Array
 from flexstage.cases.registry import CASES
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -21,8 +21,8 @@ from flexstage.models.lumped import Masses
 from flexstage.models.lumped import lumped as fresh_lumped
 from flexstage.show.tables.modes import listed_modes
 from flexstage.spatial.frame import cross_matrix
-from flexstage.studies.optimisation.spectrum import Modes as Wanted
-from flexstage.studies.optimisation.spectrum import spectra
+from flexstage.studies.optimisation.search.spectrum import Modes as Wanted
+from flexstage.studies.optimisation.search.spectrum import spectra
 from tests.conftest import examples
 from tests.laws.shared import lumped
 from tests.laws.strategies import actuated_platforms, rosettes

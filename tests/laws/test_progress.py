@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base.progress import Step, pace, time_left
+from flexstage.base.processes.progress import Step, pace, time_left
 from flexstage.show.command.progress import ProgressBar
 from tests.conftest import examples
 

@@ -9,12 +9,12 @@ from typing import Annotated
 import numpy as np
 import pytest
 
-from flexstage.base.document import plain
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, RATIO
 from flexstage.base.record import INNER, VIEW, Along, UnitOf, paths, walk
+from flexstage.base.storage.document import plain
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, RATIO
 from flexstage.mechanism.mechanism import Mechanism
 
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_lyapunov
 
-from flexstage.analysis.random_response import Rate, Spectrum, random_response
-from flexstage.analysis.response import default_frequencies, response, transmissibility
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum, random_response
+from flexstage.analysis.dynamics.response import default_frequencies, response, transmissibility
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.mechanism import ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.eigen import eigen

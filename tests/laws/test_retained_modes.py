@@ -8,24 +8,24 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import X, Y, Z, mm
+from flexstage.base.units.scale import X, Y, Z, mm
 from flexstage.cases.registry import CASES, case
-from flexstage.control.closed import Cut, loop
-from flexstage.control.curves import curves
-from flexstage.control.plants import zero_order_hold
-from flexstage.control.reduction import mode_names, reduce_modes
-from flexstage.control.response_margins import feedback_response
-from flexstage.control.retention import retention
-from flexstage.control.stability_margins import margins, peaks
+from flexstage.control.plant_models.plants import zero_order_hold
+from flexstage.control.plant_models.reduction import mode_names, reduce_modes
+from flexstage.control.plant_models.retention import retention
+from flexstage.control.robustness.response_margins import feedback_response
+from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve, retain_modes
 from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.setup import AmplifierSetup, ControllerSetup, GaugeSetup, LoopSetup
 from flexstage.control.study.study import loop_study
-from flexstage.control.system import select
+from flexstage.control.systems.closed import Cut, loop
+from flexstage.control.systems.curves import curves
+from flexstage.control.systems.system import select
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.encoder import Encoder
 from flexstage.parts.freedom import Freedom
@@ -129,8 +129,9 @@ def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the
     given = resolve(random_stage(3), setup)
     names = mode_names(given.whole)
     control = make_controller(given, given.plant.coordinates.strokes)
-    monkeypatch.setattr("flexstage.control.retention.LOOP_GAINS", (np.inf,))  # none is retained for its gain, nor for its ringing
-    monkeypatch.setattr("flexstage.control.retention.RINGING", np.inf)
+    # none is retained for its gain, nor for its ringing
+    monkeypatch.setattr("flexstage.control.plant_models.retention.LOOP_GAINS", (np.inf,))
+    monkeypatch.setattr("flexstage.control.plant_models.retention.RINGING", np.inf)
     compared = 0
     for left_out in np.argsort(-given.whole.frequencies)[::2]:
         wanted = np.ones(len(names), dtype=bool)

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 import scipy
 
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import first_design
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.cases.tip_tilt import tip_tilt
-from flexstage.control.closed import Cut, Loop, loop
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.notch import Notch
@@ -23,11 +22,11 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.example import integral_loop
 from flexstage.control.noise import noise_budget
-from flexstage.control.plants import Plant
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.robustness.stability import verdict
+from flexstage.control.robustness.stability_margins import bandwidths, margins, peaks
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.run import simulate
-from flexstage.control.stability import verdict
-from flexstage.control.stability_margins import bandwidths, margins, peaks
 from flexstage.control.study.choices import ControllerKind, Criterion
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, resolve
@@ -45,6 +44,7 @@ from flexstage.control.study.setup import (
     VibrationSetup,
 )
 from flexstage.control.study.study import loop_study
+from flexstage.control.systems.closed import Cut, Loop, loop
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.goal import Kind, Tuning

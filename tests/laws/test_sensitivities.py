@@ -10,7 +10,7 @@ import pytest
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, double_triangle
 from flexstage.cases.tip_tilt import tip_tilt
-from flexstage.mechanism.address import addresses, get, set_value
+from flexstage.mechanism.addresses.address import addresses, get, set_value
 from flexstage.models.linear.static import static_gain
 from flexstage.show.tables.sensitivities import loss_sensitivity_table
 

@@ -10,17 +10,17 @@ import pytest
 from flexstage.apps.cli import run
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.closed import Cut, loop
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import noise_budget
-from flexstage.control.report import comparison_report
-from flexstage.control.stability_margins import bandwidths, peaks
+from flexstage.control.robustness.stability_margins import bandwidths, peaks
+from flexstage.control.show.report import comparison_report
+from flexstage.control.show.tables import comparison_table
 from flexstage.control.study.choices import ControllerKind, Criterion
 from flexstage.control.study.compare import Comparison, Rival, Turned, compare_controllers
 from flexstage.control.study.compare import rival as rival_of
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchAt, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
-from flexstage.control.tables import comparison_table
+from flexstage.control.systems.closed import Cut, loop
 from flexstage.control.tuning.outcome import Outcome, bench, outcome
 from flexstage.control.tuning.search import field
 from flexstage.control.tuning.view import view

@@ -13,15 +13,15 @@ import flexstage as fs
 from flexstage.base.number import Table
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.controllers.lqg import Disturbances
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.electronics import Hardware, Sensor
-from flexstage.control.plants import Plant
-from flexstage.control.sampling import discretise
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.electronics import Hardware, Sensor
+from flexstage.control.plant_models.plants import Plant
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.setup import ControllerSetup, GoalSetup, LoopSetup
-from flexstage.control.system import System
+from flexstage.control.systems.sampling import discretise
+from flexstage.control.systems.system import System
 from flexstage.control.tuning import search
 from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.attempt import Task

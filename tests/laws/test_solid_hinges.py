@@ -14,12 +14,12 @@ from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.estimate import Accuracy, change
-from flexstage.solid.fea.field import apply_form, factorise, field, rigid, stiffness
-from flexstage.solid.fea.hinge import hinge_compliance, hinge_mesh
-from flexstage.solid.fea.mesh import PieceMesh
-from flexstage.solid.fea.piece import medium
-from flexstage.solid.fea.specimen import END, START
+from flexstage.solid.fea.geometry.piece import medium
+from flexstage.solid.fea.hinges.hinge import hinge_compliance, hinge_mesh
+from flexstage.solid.fea.hinges.specimen import END, START
+from flexstage.solid.fea.meshing.estimate import Accuracy, change
+from flexstage.solid.fea.meshing.mesh import PieceMesh
+from flexstage.solid.fea.solver.field import apply_form, factorise, field, rigid, stiffness
 from flexstage.spatial.frame import axes, identity
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
-from flexstage.experiment import cross_spectra as module
-from flexstage.experiment.cross_spectra import Segments, Window, pool, spectra
-from flexstage.experiment.record import Channel, InMemory, Record, Role, in_memory
-from flexstage.experiment.transfer import (
+from flexstage.experiment.records.record import Channel, InMemory, Record, Role, in_memory
+from flexstage.experiment.spectral import cross_spectra as module
+from flexstage.experiment.spectral.cross_spectra import Segments, Window, pool, spectra
+from flexstage.experiment.spectral.transfer import (
     h1,
     h2,
     multiple_coherence,

@@ -10,23 +10,23 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import flexstage as fs
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.load_effect import load_effect
-from flexstage.analysis.stability import prestress, stability
-from flexstage.analysis.statics import statics
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded.load_effect import load_effect
+from flexstage.analysis.loaded.stability import prestress, stability
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import stiffness
 from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.batch.engine import Status, plan, platform_modes
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.lumped import lumped
+from flexstage.models.nonlinear.elements.hinge import Ends, _nudge, deform  # pyright: ignore[reportPrivateUsage]
 from flexstage.models.nonlinear.equilibrium import equilibrium
-from flexstage.models.nonlinear.hinge import Ends, _nudge, deform  # pyright: ignore[reportPrivateUsage]
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.body import Body, Inertia

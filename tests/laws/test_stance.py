@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.stance import coordinate, stance
+from flexstage.analysis.loaded.stance import coordinate, stance
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain

@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.judge import judge
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.workspace.reach import reach
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import all_strokes, workspace
-from flexstage.base.digest import digest
-from flexstage.base.scale import X, mm, um
+from flexstage.base.storage.digest import digest
+from flexstage.base.units.scale import X, mm, um
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.mount import mount
+from flexstage.mechanism.assembly.pattern import Facing, Normal, Polar, Pose
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Probe, Stop
-from flexstage.mechanism.mount import mount
-from flexstage.mechanism.pattern import Facing, Normal, Polar, Pose
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.static import static_gain

@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexstage.analysis.inner_stage import amplified
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.inner_stage import amplified
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace.blocking import stack_lines
 from flexstage.analysis.workspace.stroke import stroke_limits
-from flexstage.base.scale import X, Z, mm
+from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.bridge import bridge
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.incidence import deformation, layout
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import deformation, layout
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism
 from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.base.number import stack
-from flexstage.mechanism.address import addresses, assign, get
+from flexstage.mechanism.addresses.address import addresses, assign, get
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Normal, Pose
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.restrict import restrict
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.patch import patch

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.judge import measure_all
-from flexstage.analysis.requirements import measure
-from flexstage.analysis.sensitivities import step_parameters
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.requirements import measure
+from flexstage.analysis.assessment.sensitivities import step_parameters
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.evaluate import _bisect, piece
+from flexstage.studies.sweeps.execution.evaluate import _bisect, piece
 from flexstage.studies.sweeps.file import load_study, loads_study
 from flexstage.studies.sweeps.loaded import loaded_findings
 from flexstage.studies.sweeps.plan import Plan, Sampling, shares

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flexstage.analysis.judge import measure_all
-from flexstage.analysis.requirements import measure
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.number import Table
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.address import get, quantity_of
+from flexstage.mechanism.addresses.address import get, quantity_of
 from flexstage.models.batch.engine import Status, platform_modes
 from flexstage.studies.sweeps.definition import Study
-from flexstage.studies.sweeps.engine import Engine, engine_of
-from flexstage.studies.sweeps.evaluate import piece
+from flexstage.studies.sweeps.execution.engine import Engine, engine_of
+from flexstage.studies.sweeps.execution.evaluate import piece
 from flexstage.studies.sweeps.plan import Plan, Sampling
 from flexstage.studies.sweeps.variable import Variable, apply
 from tests.conftest import FULL

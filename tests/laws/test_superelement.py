@@ -10,13 +10,13 @@ import scipy
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import law
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.assembly.pattern import Normal, Pose
 from flexstage.mechanism.checks import check
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Unit
-from flexstage.mechanism.pattern import Normal, Pose
 from flexstage.mechanism.store import dump, load
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.eigen import eigen

@@ -9,10 +9,10 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.workspace.load import dead_loads
-from flexstage.base.native import SWITCH
+from flexstage.base.processes.native import SWITCH
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.nonlinear.compiled import kernel
-from flexstage.models.nonlinear.corotated import moved, resist, stiffen_ports
+from flexstage.models.nonlinear.elements.corotated import moved, resist, stiffen_ports
 from flexstage.models.nonlinear.graph import assemble
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.spatial.frame import COMPONENTS, FORCES

@@ -7,14 +7,14 @@ import pytest
 import scipy
 from scipy.special import ndtr, ndtri
 
-from flexstage.analysis.judge import bench_of
+from flexstage.analysis.assessment.judge import bench_of
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.address import get, set_value
-from flexstage.mechanism.expand import copies
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.assembly.expand import copies
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.sweeps.evaluate import piece
-from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.execution.evaluate import piece
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.tolerances.allowance import allowance
 from flexstage.studies.tolerances.crosstalk import command, pose_measures, poses
 from flexstage.studies.tolerances.distribution import Distribution, Shape

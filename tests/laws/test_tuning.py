@@ -8,20 +8,20 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.analysis.modes import modes
-from flexstage.control.closed import Cut, loop, open_at
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.control.controllers.loops import Loops, actuator_loops, loop_modes, modal_loops, platform_loops
 from flexstage.control.controllers.lqg import Disturbances
-from flexstage.control.electronics import Hardware
-from flexstage.control.plants import Plant, plant
-from flexstage.control.stability import verdict
-from flexstage.control.stability_margins import peaks
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import Plant, plant
+from flexstage.control.robustness.stability import verdict
+from flexstage.control.robustness.stability_margins import peaks
+from flexstage.control.systems.closed import Cut, loop, open_at
 from flexstage.control.tuning.attempt import Task, attempt
 from flexstage.control.tuning.goal import Goal, Kind
 from flexstage.control.tuning.judge import judge_loop
 from flexstage.control.tuning.view import view
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import PLATFORM, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.gauge import Positive
 from flexstage.spatial.frame import axes
 from tests.conftest import examples

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.dimension import dimension_of
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import Quantity
+from flexstage.base.units.dimension import dimension_of
+from flexstage.base.units.quantity import Quantity
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import addresses, get, quantity_of, set_value
+from flexstage.mechanism.addresses.address import addresses, get, quantity_of, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.nonlinear.equilibrium import State

@@ -20,7 +20,7 @@ from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.beams.stress import stress
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Force
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.body import Payload

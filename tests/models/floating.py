@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from functools import cache
 
-from flexstage.base.scale import X, Y, Z, deg, mm, um
+from flexstage.base.units.scale import X, Y, Z, deg, mm, um
 from flexstage.cases.stock import ALUMINIUM, GAUGE, STEEL
+from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar, Pose
 from flexstage.parts.body import Block, Body, Inertia, Payload
 from flexstage.parts.gauge import Positive
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Straight
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import SolidModel, model_with_parts
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.model import SolidModel, model_with_parts
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=4)
 MOUNT = "mount"

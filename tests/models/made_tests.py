@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.response import response
+from flexstage.analysis.dynamics.response import response
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.record import Channel, Responses, Role
+from flexstage.experiment.records.record import Channel, Responses, Role
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 

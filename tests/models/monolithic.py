@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.base.digest import digest
 from flexstage.base.number import Array
-from flexstage.base.progress import Progress
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.base.processes.progress import Progress
+from flexstage.base.storage.digest import digest
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
-from flexstage.solid.fea.assemble import linear_model
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.casing import casing, end_face_twist
-from flexstage.solid.fea.component import Component, Cut
-from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.parts import Ways, reduce_parts
-from flexstage.solid.fea.remote import Limits, Pool
-from flexstage.solid.fea.sound import sound_components
+from flexstage.solid.fea.geometry.sound import sound_components
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
+from flexstage.solid.fea.jobs.remote import Limits, Pool
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.assemble import linear_model
+from flexstage.solid.fea.solver.casing import casing, end_face_twist
+from flexstage.solid.fea.solver.component import Component, Cut
 
 _CACHE, _STANDARD = Cache(), Reduction(modes=18)
 

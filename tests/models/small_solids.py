@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from flexstage.base.scale import X, mm
+from flexstage.base.units.scale import X, mm
 from flexstage.cases.stock import STEEL
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.cache import key_of
-from flexstage.solid.fea.component import Component, components
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.reducing import Reduce
+from flexstage.solid.fea.jobs.cache import key_of
+from flexstage.solid.fea.jobs.reducing import Reduce
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.component import Component, components
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, grading=0.6, order=2), modes=2)
 

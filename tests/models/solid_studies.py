@@ -13,12 +13,12 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.material import Material
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.hinge_form import HingeSolid
-from flexstage.solid.fea.roots import Roots
-from flexstage.solid.hinges import Hinges
-from flexstage.solid.stage import SolidStage, solid_stage
-from flexstage.solid.units import SolidUnit, solid_units
+from flexstage.solid.fea.hinges.hinge_form import HingeSolid
+from flexstage.solid.fea.hinges.roots import Roots
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.hinges import Hinges
+from flexstage.solid.results.stage import SolidStage, solid_stage
+from flexstage.solid.results.units import SolidUnit, solid_units
 
 COARSE = Reduction(Fineness(neck=2.5, block=2.5, order=2), modes=4)
 

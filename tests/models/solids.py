@@ -6,8 +6,8 @@ from functools import cache
 
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import SolidModel, model_with_parts
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.model import SolidModel, model_with_parts
 
 COARSE = Reduction(Fineness(grading=0.6, order=2))  # at 0.8 elements of order two leave the first mode 1.4e-3 from that of another mesh
 

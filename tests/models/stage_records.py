@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.experiment.record import Channel, Record, Role
+from flexstage.experiment.records.record import Channel, Record, Role
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from tests.models.synthetic_records import Truth, record

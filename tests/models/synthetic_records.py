@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from flexstage.experiment.record import Channel, InMemory, Record, Role
+from flexstage.experiment.records.record import Channel, InMemory, Record, Role
 
 
 @dataclass(frozen=True)

@@ -11,25 +11,25 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.cautions import defaults
+from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.trust import Trust
-from flexstage.analysis.units import units
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.record import walk
+from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.calibration import stand_ins, substitute_parts
-from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
-from flexstage.solid.fea.piece import span
-from flexstage.solid.fea.roots import Roots
-from flexstage.solid.hinges import distinct_hinges, solid_hinges
-from flexstage.solid.resolution import Converged
-from flexstage.solid.tables import verification_table
-from flexstage.solid.verification import Row, Verification, departures, hinge_rows, unit_rows, verdict
+from flexstage.solid.fea.geometry.piece import span
+from flexstage.solid.fea.hinges.hinge_form import HingeForm, HingeSolid
+from flexstage.solid.fea.hinges.roots import Roots
+from flexstage.solid.results.calibration import stand_ins, substitute_parts
+from flexstage.solid.results.hinges import distinct_hinges, solid_hinges
+from flexstage.solid.results.resolution import Converged
+from flexstage.solid.results.verification import Row, Verification, departures, hinge_rows, unit_rows, verdict
+from flexstage.solid.show.tables import verification_table
 from flexstage.spatial.frame import transport
 from tests.models.solid_studies import softened
 

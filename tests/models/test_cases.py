@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.modes import modes
-from flexstage.analysis.response import transmissibility
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.response import transmissibility
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.cases.bridge import Bridge, bridge
 from flexstage.cases.hexapod import Hexapod, hexapod

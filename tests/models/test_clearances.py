@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import pytest
 
 from flexstage.cases.double_triangle import SM_REF_B, double_triangle
-from flexstage.mechanism.near import near_pairs
-from flexstage.solid.fea.draw import draw_form, move_solid
-from flexstage.solid.fea.piece import Piece
-from flexstage.solid.fea.stage_pieces import Stage, stage_pieces
+from flexstage.mechanism.geometry.near import near_pairs
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.piece import Piece
+from flexstage.solid.fea.geometry.stage_pieces import Stage, stage_pieces
 from tests.hygiene.source import ROOT
 
 RECORD = ROOT / "docs" / "decisions" / "0008-buildable-solid.md"

@@ -6,7 +6,7 @@ import pytest
 from flexstage.cases.registry import case
 from flexstage.control.study.setup import ControllerSetup, LoopSetup, Motion, SineMotion
 from flexstage.control.study.study import loop_study
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 
 
 def test_heat_is_that_of_the_simulated_current():

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import modal_assurance
-from flexstage.analysis.pairing import gyration
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.modes import modal_assurance
+from flexstage.analysis.dynamics.pairing import gyration
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
@@ -18,12 +18,12 @@ from flexstage.experiment.channels import Residues, gain_doubts
 from flexstage.experiment.comparison import Compared, ComparedMode, Measured, compare
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.record import Channel, InMemory, Record, in_memory
+from flexstage.experiment.records.record import Channel, InMemory, Record, in_memory
 from flexstage.experiment.shapes_on_stage import stage_shapes
 from flexstage.experiment.virtual_rig.plan import volts_per_metre
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import NoiseDrive, RigSetup
-from flexstage.mechanism.address import assign, set_value
+from flexstage.mechanism.addresses.address import assign, set_value
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Body, Inertia

@@ -17,8 +17,8 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Circular
-from flexstage.solid.fea.apart import contacts_apart
-from flexstage.solid.fea.contact import contact_findings
+from flexstage.solid.fea.geometry.contact import contact_findings
+from flexstage.solid.fea.jobs.apart import contacts_apart
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 BLOCK = Block("steel", (0.02, 0.02, 0.02), at=(0.02, 0.0, 0.0))

@@ -11,23 +11,23 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.progress import Step
-from flexstage.base.scale import mm
+from flexstage.base.processes.progress import Step
+from flexstage.base.units.scale import mm
 from flexstage.cases.stock import STEEL
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Filleted
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea import piece
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
-from flexstage.solid.fea.hinge_cache import hinges_from_cache
-from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.fea.piece import form_digest
-from flexstage.solid.fea.remote import Limits
-from flexstage.solid.fea.roots import Roots, own_roots
+from flexstage.solid.fea.geometry import piece
+from flexstage.solid.fea.geometry.piece import form_digest
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.hinges.hinge_form import HingeForm, HingeSolid
+from flexstage.solid.fea.hinges.roots import Roots, own_roots
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.jobs.remote import Limits
+from flexstage.solid.fea.meshing.estimate import Accuracy
 
 ROD = Rod("steel", 8 * mm, 3 * mm)
 ROUGH = Accuracy(error=0.5, orders=(2, 2), meshes=1)

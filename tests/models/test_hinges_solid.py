@@ -19,12 +19,12 @@ from flexstage.parts.profile import Circular, Filleted, FreeForm, Straight
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
 from flexstage.parts.section import Rectangle, circle
-from flexstage.solid.fea.draw import SHAPES, Shape, draw_form
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
-from flexstage.solid.fea.piece import medium
-from flexstage.solid.fea.roots import Roots
-from flexstage.solid.fea.stub import beam
+from flexstage.solid.fea.geometry.draw import SHAPES, Shape, draw_form
+from flexstage.solid.fea.geometry.piece import medium
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.hinges.roots import Roots
+from flexstage.solid.fea.hinges.stub import beam
+from flexstage.solid.fea.meshing.estimate import Accuracy
 from flexstage.spatial.frame import transport
 from tests.analytic.hinges import STEEL as IN_MILLIMETRES
 from tests.analytic.test_leaf_plate import REINFORCED, reinforced_in_mm

@@ -16,7 +16,7 @@ from flexstage.experiment.identification.confidence import deviations
 from flexstage.experiment.identification.identify import Search, identify
 from flexstage.experiment.identification.jackknife import jackknife
 from flexstage.experiment.identification.likelihood import fit, noise
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, in_memory
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, in_memory
 from tests.conftest import FULL
 from tests.models.identification_study import CASES, Trial, compared, trials
 from tests.models.synthetic_records import WIDE, binomial_limits, record, truth

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flexstage.experiment.identification.diagnosis.lateness import common_delay
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.identification.lateness import common_delay
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role
-from flexstage.experiment.tables import identified_table
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role
+from flexstage.experiment.show.tables import identified_table
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 

@@ -14,7 +14,7 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
-from flexstage.experiment.record import Channel, InMemory, Record, Responses
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 

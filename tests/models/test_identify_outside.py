@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from flexstage.experiment.identification.confidence import NORMAL_95
+from flexstage.experiment.identification.diagnosis.peaks import Doubt
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.identification.peaks import Doubt
-from flexstage.experiment.identification.tones import remove_tones
-from flexstage.experiment.record import InMemory, Record
+from flexstage.experiment.identification.outputs.tones import remove_tones
+from flexstage.experiment.records.record import InMemory, Record
 from tests.conftest import FULL
 from tests.models.synthetic_records import Truth, record, truth
 

@@ -10,14 +10,14 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.experiment.health import Needs
 from flexstage.experiment.identification.confidence import NORMAL_95
+from flexstage.experiment.identification.diagnosis.peaks import Doubt
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search
-from flexstage.experiment.identification.peaks import Doubt
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.record import Channel, InMemory, Record, Role
+from flexstage.experiment.records.health import Needs
+from flexstage.experiment.records.record import Channel, InMemory, Record, Role
 from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
 from flexstage.models.lumped import lumped

@@ -8,12 +8,11 @@ import scipy
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
-from flexstage.control.closed import loop
 from flexstage.control.export.files import path_file
-from flexstage.control.figures.time import lesson_figure
 from flexstage.control.learning.learn import fade_ends, filter_path, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, readings, through
 from flexstage.control.learning.shaper import zv, zvd
+from flexstage.control.show.figures.time import lesson_figure
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axis, Following
 from flexstage.control.study.control import make_controller
@@ -31,7 +30,8 @@ from flexstage.control.study.setup import (
     SineMotion,
     StepMotion,
 )
-from flexstage.control.system import select
+from flexstage.control.systems.closed import loop
+from flexstage.control.systems.system import select
 from flexstage.show.figures.export import to_svg
 
 

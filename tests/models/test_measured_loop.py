@@ -11,14 +11,13 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.closed import Cut, loop
-from flexstage.control.electronics import hardware
-from flexstage.control.measured_margins import MeasuredMargins, measured_margins
 from flexstage.control.noise import noise_budget
-from flexstage.control.plants import Plant
+from flexstage.control.plant_models.electronics import hardware
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.robustness.measured_margins import MeasuredMargins, measured_margins
+from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.simulation.machine import machine
 from flexstage.control.simulation.run import simulate
-from flexstage.control.stability_margins import bandwidths, peaks
 from flexstage.control.study.choices import Criterion, Following
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import on_test, resolve
@@ -34,10 +33,11 @@ from flexstage.control.study.setup import (
     VibrationSetup,
 )
 from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.control.systems.closed import Cut, loop
 from flexstage.experiment.identification.identify import Search, identify
-from flexstage.experiment.identification.local_responses import local_responses
 from flexstage.experiment.pipeline import Identification, identification
-from flexstage.experiment.record import Channel, Responses, Role
+from flexstage.experiment.records.record import Channel, Responses, Role
+from flexstage.experiment.spectral.local_responses import local_responses
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import NoiseDrive, RigSetup, Sensing
 from flexstage.mechanism.mechanism import Mechanism

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from flexstage.cases.registry import CASES, case
-from flexstage.mechanism.contact import contact_findings
+from flexstage.mechanism.assembly.pattern import Pose
+from flexstage.mechanism.geometry.contact import contact_findings
+from flexstage.mechanism.geometry.pieces import SAGITTA, pieces
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
-from flexstage.mechanism.pattern import Pose
-from flexstage.mechanism.pieces import SAGITTA, pieces
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Solid, Sphere
 from flexstage.parts.gauge import Gauge, Positive
 from flexstage.parts.given import Joint
@@ -23,9 +23,9 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.part import Part
 from flexstage.parts.profile import Circular, Elliptic, Filleted, length, rise
 from flexstage.parts.rod import Rod
-from flexstage.solid.fea.contact import contact_findings as cad_findings
-from flexstage.solid.fea.draw import draw_form, move_solid
-from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.solid.fea.geometry.contact import contact_findings as cad_findings
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 DEEP = 0.1

@@ -16,9 +16,9 @@ import scipy.io
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.health import examine
-from flexstage.experiment.options import Allow, Arrays, Kind, Options
-from flexstage.experiment.record import Channel, Record, Responses, in_memory
+from flexstage.experiment.records.health import examine
+from flexstage.experiment.records.options import Allow, Arrays, Kind, Options
+from flexstage.experiment.records.record import Channel, Record, Responses, in_memory
 from tests.conftest import FULL
 from tests.roundtrip.records import awkward_responses, write_version_73
 

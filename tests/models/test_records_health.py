@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.experiment.health import Needs, examine, responses_findings, usable_record
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.options import Allow
 from flexstage.experiment.pipeline import usable_measurement as sound_records
-from flexstage.experiment.record import Channel, Record, Responses, Role, in_memory
+from flexstage.experiment.records.health import Needs, examine, responses_findings, usable_record
+from flexstage.experiment.records.options import Allow
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, in_memory
 from tests.conftest import FULL
 
 RATE, LENGTH = 2048.0, 8192

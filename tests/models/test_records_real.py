@@ -14,10 +14,10 @@ from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.arrays import SideBySide
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
+from flexstage.experiment.identification.diagnosis.peaks import Doubt
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.identification.peaks import Doubt
-from flexstage.experiment.options import Arrays, Options
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.options import Arrays, Options
+from flexstage.experiment.records.record import Record, Responses
 
 FOLDER = Path(os.environ.get("FLEXSTAGE_RECORDS", "no folder of records"))
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="FLEXSTAGE_RECORDS names no folder of real records")

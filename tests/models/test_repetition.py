@@ -5,7 +5,6 @@ import pytest
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import case
-from flexstage.control.closed import loop
 from flexstage.control.learning.learn import wanted_readings
 from flexstage.control.learning.repeat import Repetition, repeat, repeater
 from flexstage.control.learning.responses import readings
@@ -17,6 +16,7 @@ from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.runs import runs
 from flexstage.control.study.setup import ControllerSetup, FollowSetup, GaugeSetup, LoopSetup, RasterMotion, StepMotion
+from flexstage.control.systems.closed import loop
 from tests.elsewhere.loops import without_limits
 
 FOLLOW = FollowSetup(Following.REPETITIVE)

@@ -12,15 +12,15 @@ import scipy
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import subspace_angle
+from flexstage.analysis.dynamics.modes import subspace_angle
 from flexstage.base.number import Array
 from flexstage.experiment import Amplifier, AntiAlias, NoiseDrive, Recorded, RigSetup, Sensing, Tap
-from flexstage.experiment.cross_spectra import Segments, Window, spectra
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.identification.identify import Search, identify
-from flexstage.experiment.record import Record
-from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
+from flexstage.experiment.records.record import Record
+from flexstage.experiment.spectral.cross_spectra import Segments, Window, spectra
+from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 from flexstage.experiment.virtual_rig.chain import amplitude_shape, butterworth, chain
 from flexstage.experiment.virtual_rig.plan import plan_test
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test

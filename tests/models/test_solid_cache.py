@@ -15,18 +15,18 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError
-from flexstage.base.progress import Step
-from flexstage.base.scale import mm
+from flexstage.base.processes.progress import Step
+from flexstage.base.units.scale import mm
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
-from flexstage.solid.fea import parts as parts_module
-from flexstage.solid.fea.cache import Cache, find, folder_of, keep, key_of
-from flexstage.solid.fea.component import components
-from flexstage.solid.fea.model import model as solid
-from flexstage.solid.fea.model import model_with_parts
-from flexstage.solid.fea.parts import Ways, reduce_parts
-from flexstage.solid.fea.remote import Limits
-from flexstage.solid.fea.store import to_bytes, versions
+from flexstage.solid.fea.jobs import parts as parts_module
+from flexstage.solid.fea.jobs.cache import Cache, find, folder_of, keep, key_of
+from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
+from flexstage.solid.fea.jobs.remote import Limits
+from flexstage.solid.fea.jobs.store import to_bytes, versions
+from flexstage.solid.fea.solver.component import components
+from flexstage.solid.fea.solver.model import model as solid
+from flexstage.solid.fea.solver.model import model_with_parts
 from tests.models.small_solids import COARSE, Bomb, propped
 from tests.roundtrip.test_superelements import superelement
 
@@ -99,7 +99,7 @@ def test_other_versions_are_told_and_stay(tmp_path: Path, monkeypatch: pytest.Mo
     cache = Cache(tmp_path)
     keep(cache, "key", "lever", data("key"))
     newer = replace(versions(), flexstage="99.0")
-    monkeypatch.setattr("flexstage.solid.fea.cache.versions", lambda _: newer)
+    monkeypatch.setattr("flexstage.solid.fea.jobs.cache.versions", lambda _: newer)
     found = find(cache, "key", "lever")
     assert found.element is None
     assert "of other versions only (1), here is flexstage 99.0" in found.notices[0].what

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
-from flexstage.analysis.statics import statics
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.statics import statics
 from flexstage.models.lumped import lumped
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.read import read_solid, solids
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.read import read_solid, solids
 from tests.analytic.test_compound_hinges import CROSS, FOLDED, WHEEL, stage, thicken
 
 FULL = pytest.mark.full

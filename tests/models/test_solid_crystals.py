@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.base.scale import mm
+from flexstage.base.units.scale import mm
 from flexstage.beams.compliance import compliance
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body, Inertia
@@ -16,11 +16,11 @@ from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Straight
-from flexstage.solid.fea.component import components
-from flexstage.solid.fea.content import content
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge import hinge_compliance
-from flexstage.solid.fea.piece import is_mirrored, medium
+from flexstage.solid.fea.geometry.piece import is_mirrored, medium
+from flexstage.solid.fea.hinges.hinge import hinge_compliance
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.solid.fea.solver.component import components
 from flexstage.spatial.frame import axes
 
 SILICON = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)

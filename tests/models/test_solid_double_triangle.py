@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modal_assurance, modes
+from flexstage.analysis.dynamics.modes import modal_assurance, modes
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import lumped

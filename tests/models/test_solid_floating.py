@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.base.scale import X, mm
-from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.base.units.scale import X, mm
+from flexstage.mechanism.assembly.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism
 from flexstage.models.linear.model import Contributions, LinearModel, assemble
 from flexstage.models.linear.static import static_gain
@@ -17,7 +17,7 @@ from flexstage.parts.mass import MassProperties
 from flexstage.parts.neck import Neck
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import length
-from flexstage.solid.fea.model import model_with_parts
+from flexstage.solid.fea.solver.model import model_with_parts
 from flexstage.spatial.frame import COMPONENTS, FORCES, rigid_inertia, transport
 from tests.models.floating import COARSE, MOUNT, STACK, floating, read_floating
 

@@ -15,12 +15,12 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.parts.body import Body
-from flexstage.solid.fea.cad import cad
-from flexstage.solid.fea.component import Component, components
-from flexstage.solid.fea.field import factorise, field, rigid, stiffness
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.mesh import PieceMesh, mesh_component
-from flexstage.solid.fea.straighten import jacobians, straighten
+from flexstage.solid.fea.geometry.cad import cad
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
+from flexstage.solid.fea.meshing.straighten import jacobians, straighten
+from flexstage.solid.fea.solver.component import Component, components
+from flexstage.solid.fea.solver.field import factorise, field, rigid, stiffness
 from flexstage.spatial.frame import identity
 
 STAGE = double_triangle()

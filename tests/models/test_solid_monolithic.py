@@ -7,17 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.piezo import Piezo
-from flexstage.solid.fea.assemble import linear_model
-from flexstage.solid.fea.component import Component, Cut, components, groups
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import model as solid
-from flexstage.solid.fea.superelement import Skin, Superelement
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.assemble import linear_model
+from flexstage.solid.fea.solver.component import Component, Cut, components, groups
+from flexstage.solid.fea.solver.model import model as solid
+from flexstage.solid.fea.solver.superelement import Skin, Superelement
 from flexstage.spatial.frame import COMPONENTS
 from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE as SMALL

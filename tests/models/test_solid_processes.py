@@ -19,17 +19,17 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.jobs import Worker
-from flexstage.base.progress import Step
-from flexstage.base.scale import mm
-from flexstage.solid.fea import remote
-from flexstage.solid.fea.cad import cad
-from flexstage.solid.fea.memory import Counts, entries, freedoms, needed
-from flexstage.solid.fea.progress import Stage
-from flexstage.solid.fea.reducing import Reduce, fewest_elements
-from flexstage.solid.fea.remote import Limits, Pool, work_all
-from flexstage.solid.fea.store import from_bytes
-from flexstage.solid.fea.superelement import Superelement
+from flexstage.base.processes.jobs import Worker
+from flexstage.base.processes.progress import Step
+from flexstage.base.units.scale import mm
+from flexstage.solid.fea.geometry.cad import cad
+from flexstage.solid.fea.jobs import remote
+from flexstage.solid.fea.jobs.memory import Counts, entries, freedoms, needed
+from flexstage.solid.fea.jobs.progress import Stage
+from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
+from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
+from flexstage.solid.fea.jobs.store import from_bytes
+from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.spatial.frame import Frame
 from tests.models.small_solids import COARSE, Bomb, job, mined, rod
 
@@ -53,7 +53,7 @@ def working_in(folder: Path) -> list[int]:
             words, environment = ((process / name).read_bytes() for name in ("cmdline", "environ"))
         except OSError:
             continue
-        if b"flexstage.base.jobs" in words and os.fsencode(f"TMPDIR={folder}\0") in environment + b"\0":
+        if b"flexstage.base.processes.jobs" in words and os.fsencode(f"TMPDIR={folder}\0") in environment + b"\0":
             found.append(int(process.name))
     return found
 
@@ -90,7 +90,7 @@ def code(text: str) -> Bomb:
 
 
 FIRST_TIME = """
-import time, os, flexstage.solid.fea.mesh as mesh
+import time, os, flexstage.solid.fea.meshing.mesh as mesh
 plain = mesh.generate_mesh
 def attempted(shape, sizes):
     if sizes["grading"] == 0.6:  # the first attempt: the second grades more slowly
@@ -132,7 +132,7 @@ def test_a_mesher_that_crashes_or_hangs_is_asked_again_otherwise(folder: Path, w
 
 def test_a_mesher_that_always_crashes_is_given_up(folder: Path) -> None:
     text = """
-import os, flexstage.solid.fea.mesh as mesh
+import os, flexstage.solid.fea.meshing.mesh as mesh
 tries = []
 def attempted(*_):
     tries.append(1)
@@ -197,9 +197,9 @@ def test_a_process_that_has_ended_is_not_asked_again(monkeypatch: pytest.MonkeyP
 
 
 def test_orders_that_share_a_mesh_repeat_bit_by_bit() -> None:
-    from flexstage.solid.fea import mesh
-    from flexstage.solid.fea.reduce import reduce_mesh
-    from flexstage.solid.fea.store import to_bytes, versions
+    from flexstage.solid.fea.jobs.store import to_bytes, versions
+    from flexstage.solid.fea.meshing import mesh
+    from flexstage.solid.fea.solver.reduce import reduce_mesh
 
     def reduced(order: int) -> bytes:
         way = replace(COARSE, fineness=replace(COARSE.fineness, order=order))
@@ -243,7 +243,7 @@ def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
 
 @pytest.mark.parametrize("neck", [pytest.param(0.5, marks=pytest.mark.full), 1.0, 2.5])
 def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
-    from flexstage.solid.fea.mesh import mesh_component
+    from flexstage.solid.fea.meshing.mesh import mesh_component
 
     fineness = replace(COARSE.fineness, neck=neck)
     assert fewest_elements(rod(), fineness) <= mesh_component(rod(), fineness).mesh.ne
@@ -252,7 +252,7 @@ def test_no_mesh_has_fewer_elements_than_expected(neck: float) -> None:
 @linux
 def test_more_memory_than_allowed_is_not_given(folder: Path) -> None:
     text = """
-import flexstage.solid.fea.mesh as mesh
+import flexstage.solid.fea.meshing.mesh as mesh
 mesh.generate_mesh = lambda *_: bytearray(int(4e9))
 """
     (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
@@ -299,8 +299,8 @@ def test_memory_that_processes_have_is_not_counted_twice(monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
 def test_freedoms_and_entries_are_those_of_the_solver(order: int) -> None:
-    from flexstage.solid.fea.field import field, stiffness
-    from flexstage.solid.fea.mesh import mesh_component
+    from flexstage.solid.fea.meshing.mesh import mesh_component
+    from flexstage.solid.fea.solver.field import field, stiffness
 
     mesh = mesh_component(rod(), COARSE.fineness)
     space = field(mesh, (), order)
@@ -338,8 +338,8 @@ import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs in the background ignores it, children too
 import sys
 sys.path.insert(0, {root!r})
-from flexstage.solid.fea.reducing import Reduce, fewest_elements
-from flexstage.solid.fea.remote import Limits, work_all
+from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
+from flexstage.solid.fea.jobs.remote import Limits, work_all
 from tests.models.small_solids import Bomb, job, mined, rod
 work_all([{job}], lambda each, data: print(each.name, len(data) > 1000), Limits())
 """

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.analysis.modes import modes
+from flexstage.analysis.dynamics.modes import modes
 from flexstage.base.finding import DesignError
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.static import displacement, static_gain
 from flexstage.models.lumped import lumped
-from flexstage.solid.fea.assemble import linear_model
-from flexstage.solid.fea.cad import cad
-from flexstage.solid.fea.component import components
+from flexstage.solid.fea.geometry.cad import cad
+from flexstage.solid.fea.solver.assemble import linear_model
+from flexstage.solid.fea.solver.component import components
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, spatial_rotation, turn_z, twist_transform
 from tests.laws.strategies import moved
 from tests.models.solids import read

@@ -11,30 +11,30 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.pairing import RELIABLE, Moving, pair_modes
-from flexstage.analysis.units import units
+from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, pair_modes
+from flexstage.analysis.linear_statics.units import units
 from flexstage.base.finding import DesignError, Finding
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.static import displacement
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.component import components
-from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hinge_cache import HingeJob
-from flexstage.solid.fea.parts import Parts, Ways, content_in_stage, reduce_jobs
-from flexstage.solid.fea.reducing import Reduce
-from flexstage.solid.fea.remote import Pool
-from flexstage.solid.fea.store import to_bytes, versions
-from flexstage.solid.fea.superelement import Skin, Superelement
-from flexstage.solid.fea.worker import Job
-from flexstage.solid.plan import Phase, Plan, reduction_plan, verification_plan, work_ahead
-from flexstage.solid.read import read_solid, remember, solids
-from flexstage.solid.resolution import Converged, Resolution, converge
-from flexstage.solid.stage import solid_stage
-from flexstage.solid.stress import link_stress
-from flexstage.solid.surface import magnification, mode_surfaces, stress_surfaces
-from flexstage.solid.units import solid_units
-from flexstage.solid.verification import stage_rows, verdict
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.hinge_cache import HingeJob
+from flexstage.solid.fea.jobs.parts import Parts, Ways, content_in_stage, reduce_jobs
+from flexstage.solid.fea.jobs.reducing import Reduce
+from flexstage.solid.fea.jobs.remote import Pool
+from flexstage.solid.fea.jobs.store import to_bytes, versions
+from flexstage.solid.fea.jobs.worker import Job
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.component import components
+from flexstage.solid.fea.solver.superelement import Skin, Superelement
+from flexstage.solid.results.plan import Phase, Plan, reduction_plan, verification_plan, work_ahead
+from flexstage.solid.results.read import read_solid, remember, solids
+from flexstage.solid.results.resolution import Converged, Resolution, converge
+from flexstage.solid.results.stage import solid_stage
+from flexstage.solid.results.stress import link_stress
+from flexstage.solid.results.surface import magnification, mode_surfaces, stress_surfaces
+from flexstage.solid.results.units import solid_units
+from flexstage.solid.results.verification import stage_rows, verdict
 from tests.models.small_solids import COARSE, propped
 from tests.models.solid_studies import COARSE as OF_SMALL
 from tests.models.solid_studies import small, small_stage, small_unit
@@ -229,8 +229,8 @@ def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pyte
         worked.append(jobs)
         raise DesignError((Finding("left", "was not worked", "Work it"),))
 
-    monkeypatch.setattr("flexstage.solid.fea.sound.contacts_apart", sound)
-    monkeypatch.setattr("flexstage.solid.fea.parts.work_all", work_all)
+    monkeypatch.setattr("flexstage.solid.fea.geometry.sound.contacts_apart", sound)
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
     ways = Ways(Cache(tmp_path))
     plan = verification_plan(small(), Resolution(), ways)
     with pytest.raises(DesignError, match="was not worked"):
@@ -260,8 +260,8 @@ def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) ->
         pools.append(ways.pool)
         raise DesignError((Finding("left", "was not worked", "Work it"),))
 
-    monkeypatch.setattr("flexstage.solid.verification.verification_plan", lambda *_: Plan((), lanes=1))
-    monkeypatch.setattr("flexstage.solid.verification.work_ahead", work_ahead)
+    monkeypatch.setattr("flexstage.solid.results.verification.verification_plan", lambda *_: Plan((), lanes=1))
+    monkeypatch.setattr("flexstage.solid.results.verification.work_ahead", work_ahead)
     with pytest.raises(DesignError, match="was not worked"):
         fs.solid.verify(small())
     assert pools[0] is not None
@@ -280,7 +280,7 @@ def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path
                 done(job, to_bytes(EMPTY, job.key, versions()))
         raise DesignError((Finding("one", "failed", "Mend it"),))
 
-    monkeypatch.setattr("flexstage.solid.fea.parts.work_all", work_all)
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
     able = {"unit"}
     with pytest.raises(DesignError, match="failed"), Pool() as pool:
         work_ahead(plan, Ways(Cache(tmp_path), pool=pool))

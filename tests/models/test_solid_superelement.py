@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.scale import X, Y, Z, mm
+from flexstage.base.units.scale import X, Y, Z, mm
 from flexstage.cases.stock import STEEL
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.linear.eigen import eigen
@@ -16,8 +16,8 @@ from flexstage.parts.body import Block, Body, Inertia
 from flexstage.parts.condensation import condense
 from flexstage.parts.leaf import Leaf
 from flexstage.solid.exchange.matrices import export_superelement
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import model
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.model import model
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 MESH = Fineness(neck=3.0, block=3.0, grading=0.8, order=2)

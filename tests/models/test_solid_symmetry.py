@@ -17,18 +17,18 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.neck import Neck
 from flexstage.parts.profile import Straight
-from flexstage.solid.fea.cad import cad
-from flexstage.solid.fea.component import Component, Interface, Joint, components, groups
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.field import apply_form, factorise, field, rigid, stiffness
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.hinge import hinge_compliance, hinge_mesh
-from flexstage.solid.fea.mesh import PieceMesh, mesh_component
-from flexstage.solid.fea.mirror import Mirrors
-from flexstage.solid.fea.piece import Medium, Piece
-from flexstage.solid.fea.reduce import reduce_mesh
-from flexstage.solid.fea.specimen import END, START
-from flexstage.solid.fea.superelement import Superelement
+from flexstage.solid.fea.geometry.cad import cad
+from flexstage.solid.fea.geometry.mirror import Mirrors
+from flexstage.solid.fea.geometry.piece import Medium, Piece
+from flexstage.solid.fea.hinges.hinge import hinge_compliance, hinge_mesh
+from flexstage.solid.fea.hinges.specimen import END, START
+from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.meshing.mesh import PieceMesh, mesh_component
+from flexstage.solid.fea.solver.component import Component, Interface, Joint, components, groups
+from flexstage.solid.fea.solver.field import apply_form, factorise, field, rigid, stiffness
+from flexstage.solid.fea.solver.reduce import reduce_mesh
+from flexstage.solid.fea.solver.superelement import Superelement
 from flexstage.spatial.frame import Frame, identity
 from tests.unfolded import unfold
 

@@ -14,16 +14,16 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
-from flexstage.solid.fea.component import components
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.memory import Counts, freedoms
-from flexstage.solid.fea.mesh import mesh_component
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.fea.reducing import Reduce, fewest_elements
-from flexstage.solid.fea.remote import Limits
-from flexstage.solid.plan import reduction_plan
-from flexstage.solid.resolution import NOT_ESTIMATED, Resolution
-from flexstage.solid.verification import stage_rows, stage_solid, verdict
+from flexstage.solid.fea.jobs.memory import Counts, freedoms
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.jobs.reducing import Reduce, fewest_elements
+from flexstage.solid.fea.jobs.remote import Limits
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.meshing.mesh import mesh_component
+from flexstage.solid.fea.solver.component import components
+from flexstage.solid.results.plan import reduction_plan
+from flexstage.solid.results.resolution import NOT_ESTIMATED, Resolution
+from flexstage.solid.results.verification import stage_rows, stage_solid, verdict
 
 MM = 1e-3
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexstage.base.scale import X, Z, mm
+from flexstage.base.units.scale import X, Z, mm
 from flexstage.cases.registry import case
 from flexstage.cases.stock import STEEL
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.static import static_gain
@@ -23,14 +23,14 @@ from flexstage.parts.given import Given
 from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import Supply, VoiceCoil
-from flexstage.solid.fea.component import components
-from flexstage.solid.fea.content import content
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import model
-from flexstage.solid.fea.ties import in_words, stated_links
-from flexstage.solid.resolution import Resolution
-from flexstage.solid.tables import verdict_table_of
-from flexstage.solid.verification import verify
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.component import components
+from flexstage.solid.fea.solver.model import model
+from flexstage.solid.fea.solver.ties import in_words, stated_links
+from flexstage.solid.results.resolution import Resolution
+from flexstage.solid.results.verification import verify
+from flexstage.solid.show.tables import verdict_table_of
 from tests.laws.test_superelement import elastic, part_of
 from tests.roundtrip.test_gltf import leaf_stage
 

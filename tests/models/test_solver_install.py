@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.solid.fea import install
-from flexstage.solid.fea.bar import bar
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.install import SOLVER_VERSION, require_solver, solver_findings
-from flexstage.solid.fea.parts import Ways, reduce_parts
+from flexstage.solid.fea.jobs import install
+from flexstage.solid.fea.jobs.install import SOLVER_VERSION, require_solver, solver_findings
+from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
+from flexstage.solid.fea.meshing.bar import bar
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
 from tests.hygiene.source import ROOT
 
 

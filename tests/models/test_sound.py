@@ -11,15 +11,15 @@ import pytest
 
 import flexstage as fs
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.scale import mm
+from flexstage.base.units.scale import mm
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.fea import sound
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.model import model_with_parts
-from flexstage.solid.fea.sound import stage_findings
-from flexstage.solid.read import read_solid, solids
+from flexstage.solid.fea.geometry import sound
+from flexstage.solid.fea.geometry.sound import stage_findings
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.solver.model import model_with_parts
+from flexstage.solid.results.read import read_solid, solids
 from tests.models.monolithic import monolithic
 from tests.models.small_solids import COARSE, propped
 
@@ -47,7 +47,7 @@ def gaping() -> Mechanism:
     ids=["solid", "model_with_parts", "monolithic", "read_solid"],
 )
 def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("flexstage.solid.fea.model", "tests.models.monolithic", "flexstage.solid.read"):
+    for module in ("flexstage.solid.fea.solver.model", "tests.models.monolithic", "flexstage.solid.results.read"):
         monkeypatch.setattr(f"{module}.reduce_parts", lambda *_: pytest.fail("meshed all the same"))
     with pytest.raises(DesignError) as caught:
         reads(gaping())

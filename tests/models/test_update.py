@@ -13,7 +13,7 @@ from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.record import Channel
+from flexstage.experiment.records.record import Channel
 from flexstage.experiment.updating.fit import Problem, gauss_newton
 from flexstage.experiment.updating.free import Known, free
 from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
@@ -24,7 +24,7 @@ from flexstage.experiment.updating.update import Told, Updated, update
 from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
-from flexstage.mechanism.address import get, set_value, tag_of
+from flexstage.mechanism.addresses.address import get, set_value, tag_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, loads
 from flexstage.models.lumped import lumped

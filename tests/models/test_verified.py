@@ -7,11 +7,11 @@ import pytest
 
 from flexstage.base.finding import Finding
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.solid import verified
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.resolution import Resolution
-from flexstage.solid.verification import Row
-from flexstage.solid.verified import Known, recall, retain
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.results import verified
+from flexstage.solid.results.resolution import Resolution
+from flexstage.solid.results.verification import Row
+from flexstage.solid.results.verified import Known, recall, retain
 
 ROWS = (
     Row("stage", "stiffness z", "N/m", 1.0 / 3.0, 0.1 + 0.2, 1e-17, calibration=("neck", "leaf"), reason="so"),

@@ -15,7 +15,7 @@ from scipy.linalg import expm
 
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identify import identify
-from flexstage.experiment.record import Channel, Record, Responses, Role, in_memory
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, in_memory
 
 NATURAL, RATIO = 60.0, 0.01
 RATE, SECONDS = 512.0, 40.0

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.omitted import Restrictions, omitted
+from flexstage.analysis.linear_statics.omitted import Restrictions, omitted
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import EQUATION_3, SM_REF_A, SM_REF_B, TABLE_2_FEA, DoubleTriangle, double_triangle
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.restrict import isolate, restrict
 from flexstage.models.linear.static import static_gain
 from flexstage.models.lumped import variants

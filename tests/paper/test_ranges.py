@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flexstage.analysis.judge import judge
+from flexstage.analysis.assessment.judge import judge
 from flexstage.analysis.workspace.blocking import stack_lines
 from flexstage.analysis.workspace.clearance import clearance
 from flexstage.analysis.workspace.drive import drive

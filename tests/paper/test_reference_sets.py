@@ -7,7 +7,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.restrict import isolate
 from flexstage.models.mapped import lever_stiffness, unit_stiffness
 

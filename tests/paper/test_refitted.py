@@ -9,8 +9,8 @@ from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.restrict import isolate
 from flexstage.models.linear.static import static_gain
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.model import model as solid
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.model import model as solid
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 TWIST = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)

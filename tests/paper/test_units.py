@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flexstage.analysis.units import units
+from flexstage.analysis.linear_statics.units import units
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
 
 BOTH = pytest.mark.parametrize("parameters", [SM_REF_A, SM_REF_B])

@@ -10,13 +10,12 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Table
-from flexstage.base.unit import quantity_of_unit, show
-from flexstage.mechanism.address import addresses, quantity_of, set_text
-from flexstage.mechanism.formulas import spelling_findings
-from flexstage.mechanism.grammar import RESERVED, ListNode, RecordNode, TableNode, UnionNode
-from flexstage.mechanism.locate import locate
-from flexstage.mechanism.mechanism import GaugeSum, Link, Mechanism, NamedNumber, Placement, Unit
-from flexstage.mechanism.node import (
+from flexstage.base.units.unit import quantity_of_unit, show
+from flexstage.mechanism.addresses.address import addresses, quantity_of, set_text
+from flexstage.mechanism.addresses.locate import locate
+from flexstage.mechanism.grammar.formulas import spelling_findings
+from flexstage.mechanism.grammar.grammar import RESERVED, ListNode, RecordNode, TableNode, UnionNode
+from flexstage.mechanism.grammar.node import (
     ChoiceNode,
     DirectionNode,
     FlagNode,
@@ -29,6 +28,7 @@ from flexstage.mechanism.node import (
     VectorNode,
     WholeNode,
 )
+from flexstage.mechanism.mechanism import GaugeSum, Link, Mechanism, NamedNumber, Placement, Unit
 from flexstage.spatial.frame import COMPONENTS
 
 TEXT = """# A stage of one wire.

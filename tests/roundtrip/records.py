@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role
 
 NAMES = ("u1", "B4/pivot.mz", "S1", "förder weg", 'gauge "a", left', "x [mm]")
 UNITS = ("V", "N m", "um", "nm", "", "m/s^2")

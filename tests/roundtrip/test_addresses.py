@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.quantity import DIRECTION, LENGTH
-from flexstage.mechanism.address import addresses, assign, get, provenance, quantity_of, set_value, tag_of
-from flexstage.mechanism.expand import expand
+from flexstage.base.units.quantity import DIRECTION, LENGTH
+from flexstage.mechanism.addresses.address import addresses, assign, get, provenance, quantity_of, set_value, tag_of
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar, Pose
 from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Gauge, Positive

@@ -7,7 +7,15 @@ import sys
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.base.store import PendingFile, atomic_write, make_temporary_folder, move_all, remove_leftovers, write, write_temporary
+from flexstage.base.storage.store import (
+    PendingFile,
+    atomic_write,
+    make_temporary_folder,
+    move_all,
+    remove_leftovers,
+    write,
+    write_temporary,
+)
 
 
 def test_a_file_keeps_its_mode(tmp_path):
@@ -90,7 +98,7 @@ def test_only_renames_lie_between_the_first_file_and_the_last(tmp_path, monkeypa
 LEAVER = """
 import os, signal, sys
 from pathlib import Path
-from flexstage.base.store import atomic_write, make_temporary_folder
+from flexstage.base.storage.store import atomic_write, make_temporary_folder
 make_temporary_folder()
 with atomic_write("results.h5") as place:
     place.write_text("half")

@@ -15,9 +15,9 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.control.study.file import load_setup
+from flexstage.mechanism.assembly.pattern import Facing, Polar, Pose
 from flexstage.mechanism.checks import check, require_valid
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement
-from flexstage.mechanism.pattern import Facing, Polar, Pose
 from flexstage.mechanism.store import load, loads
 from flexstage.mechanism.store.file import LARGEST, read_text
 from flexstage.parts.body import Block, Body, Cylinder, Inertia, Payload

@@ -15,10 +15,10 @@ import psutil
 import pytest
 import scipy.io
 
-from flexstage.base import files
-from flexstage.base.files import hdf, mat, new_hdf, require_regular
 from flexstage.base.finding import DesignError
-from flexstage.base.jobs import environment
+from flexstage.base.processes.jobs import environment
+from flexstage.base.storage import files
+from flexstage.base.storage.files import hdf, mat, new_hdf, require_regular
 from flexstage.experiment.formats.read import read
 
 
@@ -62,7 +62,7 @@ def test_an_interrupt_ends_the_reading_of_a_file_that_runs_in_circles(tmp_path: 
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         hdf(path)
-    assert not [each for each in psutil.Process().children() if any("flexstage.base.jobs" in word for word in each.cmdline())]
+    assert not [each for each in psutil.Process().children() if any("flexstage.base.processes.jobs" in word for word in each.cmdline())]
 
 
 def test_a_crash_of_the_library_is_told_by_its_signal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,7 +75,7 @@ def test_a_crash_of_the_library_is_told_by_its_signal(tmp_path: Path, monkeypatc
 
 def test_the_child_ends_with_its_caller(tmp_path: Path) -> None:
     path = without_checksums(tmp_path / "a.h5")
-    text = f"import psutil\nfrom pathlib import Path\nfrom flexstage.base.files import hdf\nhdf(Path({str(path)!r}))\n"
+    text = f"import psutil\nfrom pathlib import Path\nfrom flexstage.base.storage.files import hdf\nhdf(Path({str(path)!r}))\n"
     text += "print(psutil.Process().children()[0].pid)"
     done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True, env=environment())
     psutil.wait_procs([psutil.Process(int(done.stdout))] if psutil.pid_exists(int(done.stdout)) else [], timeout=5.0)

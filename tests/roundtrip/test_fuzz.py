@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base import files
 from flexstage.base.finding import DesignError
+from flexstage.base.storage import files
 from flexstage.mechanism.store import load
 from tests.conftest import FULL
 from tests.roundtrip.fuzzed import KINDS, one_input, sound, tried

@@ -8,19 +8,19 @@ import numpy as np
 import pygltflib as gl
 import pytest
 
-from flexstage.analysis.modes import Modes, modes
+from flexstage.analysis.dynamics.modes import Modes, modes
 from flexstage.cases.registry import case
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.parts.body import Block, Body
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
 from flexstage.solid.exchange.gltf import Motion, Surface, gltf, surfaces
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.moving import to_glb
-from flexstage.solid.read import SolidRead, read_solid, solids
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.read import SolidRead, read_solid, solids
+from flexstage.solid.show.moving import to_glb
 
 KINDS = {"SCALAR": 1, "VEC3": 3}
 TYPES = {gl.FLOAT: np.float32, gl.UNSIGNED_INT: np.uint32}

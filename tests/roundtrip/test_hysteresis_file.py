@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.control.hysteresis.creep import LogCreep
-from flexstage.control.hysteresis.envelope import Envelope, straight
-from flexstage.control.hysteresis.inverse import inverse
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii, proportional
+from flexstage.control.hysteresis.models.envelope import Envelope, straight
+from flexstage.control.hysteresis.models.inverse import inverse
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii, proportional
 from flexstage.control.hysteresis.stack import dump_hysteresis, dumps_hysteresis, load_hysteresis, loads_hysteresis, stack_hysteresis
 from tests.conftest import examples
 from tests.laws.hystereses import models

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from netgen import occ
 
-from flexstage.analysis.statics import statics
-from flexstage.base.digest import digest
+from flexstage.analysis.linear_statics.statics import statics
 from flexstage.base.finding import DesignError
+from flexstage.base.storage.digest import digest
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import dump, dumps, load, loads
 from flexstage.models.linear.eigen import eigen
@@ -21,11 +21,11 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
 from flexstage.solid.exchange.step import stage_parts, step
-from flexstage.solid.fea.contact import contact_findings
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.imported import import_findings, imported_shape, measure, with_properties
-from flexstage.solid.fea.model import model as solid
-from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.solid.fea.geometry.contact import contact_findings
+from flexstage.solid.fea.geometry.imported import import_findings, imported_shape, measure, with_properties
+from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.fea.solver.model import model as solid
 
 STEEL = Material(young=200e9, poisson=0.3, density=7750.0)
 BLOCK = Block("steel", (0.02, 0.03, 0.01), at=(0.02, 0.0, 0.0))

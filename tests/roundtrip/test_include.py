@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flexstage.base.finding import DesignError
-from flexstage.mechanism.address import assign, tag_of
+from flexstage.mechanism.addresses.address import assign, tag_of
 from flexstage.mechanism.store import dump, load, loads, patch
 from flexstage.mechanism.store.retag import set_tags
 

@@ -4,7 +4,7 @@ import pytest
 
 from flexstage.base.finding import DesignError, Finding
 from flexstage.cases.double_triangle import double_triangle
-from flexstage.mechanism.address import addresses
+from flexstage.mechanism.addresses.address import addresses
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.lines import Spot, line_numbers, line_of, spot_of, with_lines
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from flexstage.base import native
 from flexstage.base.finding import DesignError
-from flexstage.base.jobs import environment
-from flexstage.base.native import Recipe, compile_source, compiler, folder_defect, kernel_lanes, kernel_recipe, key, load_library
+from flexstage.base.processes import native
+from flexstage.base.processes.jobs import environment
+from flexstage.base.processes.native import Recipe, compile_source, compiler, folder_defect, kernel_lanes, kernel_recipe, key, load_library
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no compiler of C")
 owners = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owners here")
@@ -52,7 +52,7 @@ class Count:
             self.built += "-o" in command
             return run(command, *rest, **named)
 
-        monkeypatch.setattr("flexstage.base.native.subprocess.run", counted)
+        monkeypatch.setattr("flexstage.base.processes.native.subprocess.run", counted)
 
 
 def test_it_is_built_once_and_kept_for_its_user_alone(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.base.scale import deg, mm
+from flexstage.base.units.scale import deg, mm
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.mechanism import Link, Mechanism, Placement, Unit
-from flexstage.mechanism.outline import outlines
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.mechanism.store import dumps, loads, schema
 from flexstage.parts.body import Block, Body, Cylinder
 from flexstage.parts.material import Material

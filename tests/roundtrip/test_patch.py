@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import addresses, assign, get, set_value, tag_of
+from flexstage.mechanism.addresses.address import addresses, assign, get, set_value, tag_of
 from flexstage.mechanism.store import dumps, loads, patch, round_to_digits, write
 from tests.conftest import examples
 from tests.roundtrip.designs import TEXT

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.mechanism.address import set_value
+from flexstage.mechanism.addresses.address import set_value
 from flexstage.parts.part import Restricted
 
 STAGE = fs.case("parallelogram")
@@ -112,8 +112,8 @@ def test_a_stage_without_sections_or_freedoms_is_told():
 
 
 def test_what_does_not_fit_into_memory_is_refused_with_what_would(monkeypatch):
-    monkeypatch.setattr("flexstage.base.memory.available", lambda: 1e3)
-    monkeypatch.setattr("flexstage.base.memory.ALWAYS", 0.0)
+    monkeypatch.setattr("flexstage.base.processes.memory.available", lambda: 1e3)
+    monkeypatch.setattr("flexstage.base.processes.memory.ALWAYS", 0.0)
     for read in (fs.ideal, fs.lumped):
         with pytest.raises(
             fs.DesignError, match=r"3 bodies and .* links need about .* GB of memory, and 1e-06 GB are there\. About \d+ bodies"

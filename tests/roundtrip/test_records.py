@@ -14,7 +14,7 @@ from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff import write as uff_write
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, in_memory
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, in_memory
 from tests.conftest import examples
 from tests.roundtrip.records import awkward_record, awkward_responses, bits
 

@@ -16,8 +16,8 @@ from flexstage.experiment.formats.arrays import SideBySide
 from flexstage.experiment.formats.read import read
 from flexstage.experiment.formats.uff.values import BinaryValues, PrintedValues
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.options import Arrays, Kind, Options
-from flexstage.experiment.record import Record, Responses, in_memory
+from flexstage.experiment.records.options import Arrays, Kind, Options
+from flexstage.experiment.records.record import Record, Responses, in_memory
 from tests.roundtrip.records import awkward_record, awkward_responses, write_version_73
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # pyuff does not close what it writes in binary

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.drift import drift
-from flexstage.analysis.judge import bench_of, judge
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.measures import MEASURES, Measure, loss, stroke
-from flexstage.analysis.modes import modes
-from flexstage.analysis.requirements import Sense, asked_factor, known_keys, requirements
-from flexstage.analysis.statics import statics
+from flexstage.analysis.assessment.judge import bench_of, judge
+from flexstage.analysis.assessment.measures import MEASURES, Measure, loss, stroke
+from flexstage.analysis.assessment.requirements import Sense, asked_factor, known_keys, requirements
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.drift import drift
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import single_axis, stroke_limits

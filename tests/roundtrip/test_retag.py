@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import addresses, set_value, tag_of
+from flexstage.mechanism.addresses.address import addresses, set_value, tag_of
 from flexstage.mechanism.store import dumps, loads
 from flexstage.mechanism.store.retag import set_tags
 from tests.conftest import FULL

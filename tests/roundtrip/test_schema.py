@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from flexstage.base import quantity
 from flexstage.base.finding import DesignError
-from flexstage.base.quantity import Quantity
-from flexstage.base.unit import parse
+from flexstage.base.units import quantity
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import parse
 from flexstage.cases.registry import CASES
 from flexstage.control.hysteresis.creep import LogCreep
-from flexstage.control.hysteresis.envelope import Envelope
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.envelope import Envelope
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.stack import dumps_hysteresis, hysteresis_schema, stack_hysteresis
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, schema

@@ -16,12 +16,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flexstage
-from flexstage.analysis.lost_motion import LostMotion, lost_motion
-from flexstage.analysis.random_response import Spectrum, random_response
-from flexstage.base.document import plain
+from flexstage.analysis.dynamics.random_response import Spectrum, random_response
+from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.base.labelled import Matrix
 from flexstage.base.record import SideBySide
-from flexstage.base.sheet import Sheet, parts
+from flexstage.base.storage.document import plain
+from flexstage.base.storage.sheet import Sheet, parts
 from flexstage.cases.registry import case
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped

@@ -18,8 +18,8 @@ from flexstage.parts.body import Block, Body
 from flexstage.parts.mass import mass_properties
 from flexstage.parts.material import Material
 from flexstage.solid.exchange.step import stage_parts, step
-from flexstage.solid.fea.apart import step_apart
-from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
+from flexstage.solid.fea.jobs.apart import step_apart
 
 
 @pytest.fixture(scope="module")

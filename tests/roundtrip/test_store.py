@@ -14,9 +14,9 @@ from hypothesis import given
 
 from flexstage.base.finding import DesignError
 from flexstage.cases.registry import CASES
-from flexstage.mechanism.address import assign, get, provenance, set_text, tag_of
+from flexstage.mechanism.addresses.address import assign, get, provenance, set_text, tag_of
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.checks import check
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dump, dumps, load, loads, round_to_digits, shipped_catalogue
 from flexstage.parts.rod import Rod

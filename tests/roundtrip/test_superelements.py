@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.store import from_bytes, to_bytes, versions
-from flexstage.solid.fea.superelement import Skin, Superelement
+from flexstage.solid.fea.jobs.store import from_bytes, to_bytes, versions
+from flexstage.solid.fea.solver.superelement import Skin, Superelement
 
 KEY = "0123456789abcdef"
 

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexstage.base import dimension, quantity
 from flexstage.base.finding import DesignError
-from flexstage.base.quantity import (
+from flexstage.base.units import dimension, quantity
+from flexstage.base.units.quantity import (
     ANGLE,
     COUPLING,
     EXPANSION,
@@ -27,7 +27,7 @@ from flexstage.base.quantity import (
     TEMPERATURE,
     Quantity,
 )
-from flexstage.base.unit import convert, parse, show
+from flexstage.base.units.unit import convert, parse, show
 
 MEASURABLE = [
     value for value in vars(quantity).values() if isinstance(value, Quantity) and value is not quantity.DIRECTION and value.si != "mixed"
@@ -129,5 +129,8 @@ def test_common_units_are_those_of_pint() -> None:
 
 
 def test_importing_the_package_and_reading_common_units_leaves_pint_alone() -> None:
-    code = "import sys, flexstage; from flexstage.base.dimension import dimension_of; dimension_of('N/um'); sys.exit('pint' in sys.modules)"
+    code = (
+        "import sys, flexstage; from flexstage.base.units.dimension import dimension_of; "
+        "dimension_of('N/um'); sys.exit('pint' in sys.modules)"
+    )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -18,8 +18,8 @@ from flexstage.parts.piezo import Piezo
 from flexstage.parts.profile import Circular
 from flexstage.solid.exchange.step import stage_parts
 from flexstage.solid.exchange.vtu import StageMesh, stage_mesh, vtu
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.stage_pieces import stage_pieces
+from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
+from flexstage.solid.fea.meshing.fineness import Fineness
 
 # Points and weights of the rule of order three on the unit tetrahedron's barycentric coordinates (Zienkiewicz & Taylor).
 RULE = [((0.25,) * 4, -0.8), *((tuple(0.5 if i == j else 1.0 / 6.0 for i in range(4)), 0.45) for j in range(4))]

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.base.labelled import NOISE, quiet
-from flexstage.base.quantity import Quantity
+from flexstage.base.units.quantity import Quantity
 from flexstage.show.display import _LADDERS, align_numbers, display_unit_of, field_unit, format_value, number, to_typography
 
 FINITE = st.floats(min_value=-1e12, max_value=1e12, allow_nan=False).filter(lambda value: value == 0.0 or abs(value) > 1e-12)

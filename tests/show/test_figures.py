@@ -14,7 +14,7 @@ import pytest
 from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
 
-from flexstage.analysis.statics import directional
+from flexstage.analysis.linear_statics.statics import directional
 from flexstage.show.figures.budget import energy_figure, error_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import share_styles, to_png, to_svg

@@ -10,24 +10,24 @@ import numpy as np
 import pytest
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.comparison import FurtherMode, compare
-from flexstage.experiment.comparison_figures import compare_figure
-from flexstage.experiment.comparison_tables import compare_table, further_table, off_cell, repeated_table
-from flexstage.experiment.cross_spectra import example_spectra
-from flexstage.experiment.figures import (
+from flexstage.experiment.pipeline import Identification, identification
+from flexstage.experiment.records.record import Channel, Responses, Role, in_memory
+from flexstage.experiment.show.comparison_figures import compare_figure
+from flexstage.experiment.show.comparison_tables import compare_table, further_table, off_cell, repeated_table
+from flexstage.experiment.show.figures import (
     coherence_figure,
     estimator_figure,
     focus,
     response_matrix_figure,
     stabilisation_figure,
 )
-from flexstage.experiment.pipeline import Identification, identification
-from flexstage.experiment.record import Channel, Responses, Role, in_memory
-from flexstage.experiment.report import identify_report
-from flexstage.experiment.tables import identified_table, interval_texts, measured_shape_table
-from flexstage.experiment.transfer import h1
+from flexstage.experiment.show.report import identify_report
+from flexstage.experiment.show.tables import identified_table, interval_texts, measured_shape_table
+from flexstage.experiment.spectral.cross_spectra import example_spectra
+from flexstage.experiment.spectral.transfer import h1
 from flexstage.models.lumped import lumped
 from flexstage.show.figures.export import to_svg
 from tests.models.stage_records import stage_record

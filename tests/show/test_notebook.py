@@ -11,7 +11,7 @@ import pytest
 import flexstage as fs
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
-from flexstage.base.sheet import parts
+from flexstage.base.storage.sheet import parts
 from flexstage.experiment.example import one_mode_record
 
 STAGE = fs.case("parallelogram")

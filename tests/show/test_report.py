@@ -16,7 +16,7 @@ from importlib import resources
 import pytest
 
 from flexstage.analysis.complete import Model, analyse
-from flexstage.base.digest import digest
+from flexstage.base.storage.digest import digest
 from flexstage.cases.registry import case
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.style import THEME

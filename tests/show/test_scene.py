@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from flexstage.base.number import Array
 from flexstage.cases.double_triangle import SM_REF_A, double_triangle
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.show.figures.style import canvas
 from flexstage.show.plan import plan_figure, plan_picture
@@ -158,7 +158,7 @@ def test_a_stage_moved_as_one_keeps_its_shape(name: str) -> None:
 
 @pytest.mark.parametrize("name", [seldom(name) for name in NAMES])
 def test_every_link_body_and_gauge_is_seen(name: str) -> None:
-    from flexstage.mechanism.expand import expand
+    from flexstage.mechanism.assembly.expand import expand
 
     mechanism = analysed(name).mechanism
     assembly = expand(mechanism)
@@ -171,7 +171,7 @@ def test_every_link_body_and_gauge_is_seen(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["voice-coil-xy", "tip-tilt", "steering-mirror"])
 def test_links_stand_on_the_ground_where_they_begin(name: str) -> None:
-    from flexstage.mechanism.expand import expand
+    from flexstage.mechanism.assembly.expand import expand
 
     mechanism = case(name)
     feet = {facet.paint.name: facet.points for facet in scene(mechanism).facets if facet.paint.name.endswith(" foot")}

@@ -10,11 +10,11 @@ import pytest
 from matplotlib.collections import PolyCollection
 
 from flexstage.show.scene.view import Side
-from flexstage.solid.skin_figures import png_picture, skin_figure
-from flexstage.solid.stress import LinkStress
-from flexstage.solid.surface import Surface
-from flexstage.solid.tables import stress_table, verification_table
-from flexstage.solid.verification import Row
+from flexstage.solid.results.stress import LinkStress
+from flexstage.solid.results.surface import Surface
+from flexstage.solid.results.verification import Row
+from flexstage.solid.show.skin_figures import png_picture, skin_figure
+from flexstage.solid.show.tables import stress_table, verification_table
 
 
 def triangle(height: float, value: float) -> Surface:

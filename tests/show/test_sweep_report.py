@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from flexstage.base.document import plain
+from flexstage.base.storage.document import plain
 from flexstage.studies.sweeps.effects import effects
+from flexstage.studies.sweeps.execution.store import Results, columns_of
 from flexstage.studies.sweeps.file import loads_study
-from flexstage.studies.sweeps.report import sweep_report
 from flexstage.studies.sweeps.result import Sweep
-from flexstage.studies.sweeps.store import Results, columns_of
-from flexstage.studies.sweeps.tables import study_tables
+from flexstage.studies.sweeps.show.report import sweep_report
+from flexstage.studies.sweeps.show.tables import study_tables
 
 STUDY = """
 format = "flexstage study 1"

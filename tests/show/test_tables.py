@@ -12,19 +12,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flexstage.analysis.complete import Analysis, Model
-from flexstage.analysis.lost_motion import lost_motion
-from flexstage.analysis.modes import modes
-from flexstage.analysis.response import response
-from flexstage.analysis.stability import Stability
-from flexstage.analysis.statics import statics
-from flexstage.analysis.units import units
+from flexstage.analysis.dynamics.modes import modes
+from flexstage.analysis.dynamics.response import response
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.linear_statics.units import units
+from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.buckling import Buckling, Ends
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.quantity import FORCE, SHARE, Bound
 from flexstage.base.record import Along, Heading
+from flexstage.base.units.quantity import FORCE, SHARE, Bound
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.cases.registry import case
-from flexstage.mechanism.address import set_value
+from flexstage.mechanism.addresses.address import set_value
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.display import to_typography

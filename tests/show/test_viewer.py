@@ -15,7 +15,7 @@ import flexstage as fs
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.shape import Shaped

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.base.scale import mm
+from flexstage.base.units.scale import mm
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.amplified import Amplified, SteppingDrive
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Sphere
 from flexstage.parts.cartwheel import Cartwheel

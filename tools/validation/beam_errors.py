@@ -25,11 +25,11 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
 from flexstage.parts.rod import Rod
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.estimate import Accuracy
-from flexstage.solid.fea.hinge_cache import hinges_from_cache
-from flexstage.solid.fea.hinge_form import HingeForm
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.fea.roots import own_roots
+from flexstage.solid.fea.hinges.hinge_form import HingeForm
+from flexstage.solid.fea.hinges.roots import own_roots
+from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.meshing.estimate import Accuracy
 
 COUNTS = {
     "notch circular": 48,

@@ -8,7 +8,7 @@ from importlib.metadata import version
 import numpy as np
 
 import flexstage as fs
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS
 from tools.validation import displaced

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import flexstage as fs
-from flexstage.analysis.omitted import Omitted, omitted
+from flexstage.analysis.linear_statics.omitted import Omitted, omitted
 from flexstage.cases.double_triangle import EQUATION_3, EQUATION_18
 from flexstage.mechanism.restrict import restrict
 from flexstage.models.lumped import Masses

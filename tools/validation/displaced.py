@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.critical import critical, unstable_motions
 from flexstage.models.nonlinear.equilibrium import State, equilibrium
+from flexstage.models.nonlinear.paths.critical import critical, unstable_motions
 from flexstage.parts.section import Rectangle
 from tests.analytic.strips import secant
 from tests.analytic.test_large_displacements import (

@@ -9,14 +9,14 @@ import numpy as np
 
 import flexstage as fs
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.pairing import Moving, Pair, pair_modes
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
 from flexstage.cases.registry import case
 from flexstage.mechanism.restrict import isolate
-from flexstage.solid.calibration import substitute_parts
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.units import SolidUnit
-from flexstage.solid.verification import units_with_calibrated_hinges
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.calibration import substitute_parts
+from flexstage.solid.results.units import SolidUnit
+from flexstage.solid.results.verification import units_with_calibrated_hinges
 from tests.paper.test_lost_motion import COMMANDS, FEA, THEORY
 from tools.validation.row import Row, Scale, Section, Tolerance, relative, table
 

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import flexstage as fs
-from flexstage.analysis.omitted import Restrictions
-from flexstage.analysis.units import UnitResult
-from flexstage.analysis.units import units as units_of
+from flexstage.analysis.linear_statics.omitted import Restrictions
+from flexstage.analysis.linear_statics.units import UnitResult
+from flexstage.analysis.linear_statics.units import units as units_of
 from flexstage.base.number import Array
 from flexstage.beams.compliance import compliance
 from flexstage.cases.double_triangle import SM_REF_A, SM_REF_B, DoubleTriangle, double_triangle
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.restrict import isolate, restrict
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.static import static_gain

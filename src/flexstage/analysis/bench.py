@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexstage.analysis.course import course
-from flexstage.analysis.deflection import Deflection, deflection
-from flexstage.analysis.drift import Drift, drift
-from flexstage.analysis.load_effect import LoadEffect, load_effect
-from flexstage.analysis.lost_motion import LostMotion, lost_motion
-from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.stability import Stability, stability
-from flexstage.analysis.standing import drawn, kinematics, standing, under_load
+from flexstage.analysis.dynamics.modes import Modes, modes
+from flexstage.analysis.linear_statics.deflection import Deflection, deflection
+from flexstage.analysis.linear_statics.drift import Drift, drift
+from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.loaded.course import course
+from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
+from flexstage.analysis.loaded.stability import Stability, stability
+from flexstage.analysis.loaded.standing import drawn, kinematics, standing, under_load
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, bounds, clearance
 from flexstage.analysis.workspace.load import LoadShare, load_share
@@ -29,19 +29,19 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.design import design
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
-from flexstage.mechanism.outline import outlines
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 
 if TYPE_CHECKING:
-    from flexstage.analysis import stroke as strokes
+    from flexstage.analysis.loaded import stroke as strokes
     from flexstage.models.nonlinear import linearise
     from flexstage.models.nonlinear import stage as displaced
 else:
-    strokes = Late("flexstage.analysis.stroke")
+    strokes = Late("flexstage.analysis.loaded.stroke")
     linearise = Late("flexstage.models.nonlinear.linearise")
     displaced = Late("flexstage.models.nonlinear.stage")
 

@@ -10,11 +10,11 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from flexstage.analysis.course import path_findings
-from flexstage.analysis.measures import drift
-from flexstage.analysis.requirements import requirements
-from flexstage.analysis.seating import seating, seating_findings
-from flexstage.analysis.standing import drawn, kinematics, load_factors, standing
+from flexstage.analysis.assessment.measures import drift
+from flexstage.analysis.assessment.requirements import requirements
+from flexstage.analysis.loaded.course import path_findings
+from flexstage.analysis.loaded.seating import seating, seating_findings
+from flexstage.analysis.loaded.standing import drawn, kinematics, load_factors, standing
 from flexstage.analysis.validity import validity
 from flexstage.analysis.workspace.clearance import bounds, clearance
 from flexstage.analysis.workspace.load import load_share
@@ -24,18 +24,18 @@ from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import stack
-from flexstage.base.quantity import LENGTH
+from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
-from flexstage.base.threads import one_thread
-from flexstage.base.unit import show
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.unit import show
 from flexstage.beams.mass import mass
-from flexstage.mechanism.contact import contact_findings
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.assembly.expansion import ground_of
 from flexstage.mechanism.drawn import as_drawn
-from flexstage.mechanism.expand import Assembly, expand
-from flexstage.mechanism.expansion import ground_of
-from flexstage.mechanism.formulas import unused_findings
+from flexstage.mechanism.geometry.contact import contact_findings
+from flexstage.mechanism.geometry.outline import outlines
+from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
-from flexstage.mechanism.outline import outlines
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.contact import Contact

@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from flexstage.analysis.assessment.budget import budget
+from flexstage.analysis.assessment.error_budget import ErrorBudget
+from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.assessment.measures import stroke
+from flexstage.analysis.assessment.requirements import Sense, Verdict, asked_factor, requirements
 from flexstage.analysis.attempt import Attempts
-from flexstage.analysis.budget import budget
-from flexstage.analysis.deflection import Deflection, deflection
-from flexstage.analysis.drift import Drift, drift
-from flexstage.analysis.error_budget import ErrorBudget
-from flexstage.analysis.judge import judge
-from flexstage.analysis.load_effect import LoadEffect, load_effect
-from flexstage.analysis.lost_motion import LostMotion, lost_motion
-from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
-from flexstage.analysis.measures import stroke
-from flexstage.analysis.modes import Modes, modes
-from flexstage.analysis.requirements import Sense, Verdict, asked_factor, requirements
-from flexstage.analysis.response import response, transmissibility
-from flexstage.analysis.standing import require_standing, standing
-from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
-from flexstage.analysis.units import UnitResult, units
+from flexstage.analysis.dynamics.modes import Modes, modes
+from flexstage.analysis.dynamics.response import response, transmissibility
+from flexstage.analysis.linear_statics.deflection import Deflection, deflection
+from flexstage.analysis.linear_statics.drift import Drift, drift
+from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
+from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
+from flexstage.analysis.linear_statics.units import UnitResult, units
+from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
+from flexstage.analysis.loaded.standing import require_standing, standing
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.reach import ForceReach
 from flexstage.analysis.workspace.reach import reach as reach_of
@@ -33,7 +33,7 @@ from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
 from flexstage.base.lazy import Late
 from flexstage.base.number import Table
-from flexstage.base.threads import one_thread
+from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.frequency import Response
@@ -43,9 +43,9 @@ from flexstage.models.mapped import mapped
 from flexstage.models.theory import Model
 
 if TYPE_CHECKING:
-    from flexstage.analysis import load_cases
+    from flexstage.analysis.loaded import load_cases
 else:
-    load_cases = Late("flexstage.analysis.load_cases")
+    load_cases = Late("flexstage.analysis.loaded.load_cases")
 
 __all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
 

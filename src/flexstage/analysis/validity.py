@@ -9,7 +9,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.number import Table
 from flexstage.beams import validity as beams
 from flexstage.beams.validity import Validity
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, material_of

@@ -166,7 +166,7 @@ def native_code() -> Iterator[Row]:
     """
     try:
         from flexstage.base.finding import DesignError
-        from flexstage.base.native import compiler, folder, folder_defect
+        from flexstage.base.processes.native import compiler, folder, folder_defect
     except ImportError:
         return
     what, wanted = "compiled code", "a compiler of C, a folder of your own"

@@ -34,7 +34,7 @@ def _print_rows(rows: Iterable[Row]) -> None:
 def self_test() -> Row:
     """Compute the paper's frequencies of the shipped stage and compare."""
     # Imported here: a package that is missing or broken is a row of the examination.
-    from flexstage.analysis.modes import modes
+    from flexstage.analysis.dynamics.modes import modes
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.models.mapped import mapped
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Table, freeze
-from flexstage.base.quantity import COMPLIANCE_MATRIX, DIRECTION, DIRECTIONS, STIFFNESS_MATRIX, Bound
+from flexstage.base.units.quantity import COMPLIANCE_MATRIX, DIRECTION, DIRECTIONS, STIFFNESS_MATRIX, Bound
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -18,11 +18,11 @@ from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_typ
 
 import numpy as np
 
-from flexstage.base.digest import Description
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.base.quantity import Quantity
+from flexstage.base.storage.digest import Description
+from flexstage.base.units.quantity import Quantity
 
 _Kind = TypeVar("_Kind")
 
@@ -97,7 +97,7 @@ class Field:
     def key(self) -> str:
         """The name with the unit.
 
-        >>> from flexstage.base.quantity import STIFFNESS
+        >>> from flexstage.base.units.quantity import STIFFNESS
         >>> Field("axial", float, (STIFFNESS,)).key
         'axial_n_per_m'
         """

@@ -12,9 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.base.digest import keep
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.number import Array, first_design
+from flexstage.base.storage.digest import keep
 from flexstage.beams import LAWS
 from flexstage.beams.beam import Beam
 from flexstage.beams.held import Held, join

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.base.digest import keep
 from flexstage.base.number import Array
+from flexstage.base.storage.digest import keep
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import beam_of, law_of
 from flexstage.parts.given import Joint

@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from flexstage.base.digest import keep
 from flexstage.base.number import Array
+from flexstage.base.storage.digest import keep
 from flexstage.beams.beam import Beam
 from flexstage.beams.compliance import Law, beam_of, held_modes, law, law_of
 from flexstage.beams.held import Held, join

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.scale import X
+from flexstage.base.units.scale import X
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link
 from flexstage.parts.body import Body
 

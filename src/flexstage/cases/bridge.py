@@ -15,11 +15,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.quantity import ANGLE, LENGTH, POSITIVE
-from flexstage.base.scale import X, Y, Z, deg, kHz, mm, nm, um
+from flexstage.base.units.quantity import ANGLE, LENGTH, POSITIVE
+from flexstage.base.units.scale import X, Y, Z, deg, kHz, mm, nm, um
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, stock_tags
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Block, Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Positive

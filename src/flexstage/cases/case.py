@@ -11,7 +11,7 @@ import numpy as np
 
 from flexstage.base.number import Table, stack
 from flexstage.cases.parameters import Stated, with_parameters
-from flexstage.mechanism.address import get
+from flexstage.mechanism.addresses.address import get
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, round_to_digits
 

@@ -15,10 +15,10 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
-from flexstage.base.scale import X, Y, Z, deg, kHz, mm, um
+from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
+from flexstage.base.units.scale import X, Y, Z, deg, kHz, mm, um
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Opening, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Block, Body, Cylinder, Solid
 from flexstage.parts.freedom import ROTATIONS, Freedom
 from flexstage.parts.gauge import Gauge, Positive

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from flexstage.base.number import Number
-from flexstage.base.unit import quantity_of_unit
+from flexstage.base.units.unit import quantity_of_unit
 from flexstage.cases.case import Shipped
 from flexstage.cases.parameters import Stated, parameter
-from flexstage.mechanism.address import set_value
-from flexstage.mechanism.formulas import NUMBERS
+from flexstage.mechanism.addresses.address import set_value
+from flexstage.mechanism.grammar.formulas import NUMBERS
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads, patch
 

@@ -13,12 +13,12 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
-from flexstage.base.scale import deg, kHz, mm
+from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE
+from flexstage.base.units.scale import deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SOURCES, STEEL, STRONG_STACK, stock_tags
 from flexstage.cases.strut import Strut
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import Mechanism, ModalDamping, Opening, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.gauge import Positive
 from flexstage.parts.neck import Neck

@@ -13,12 +13,12 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import ANGLE, LENGTH, MASS, POSITIVE
-from flexstage.base.scale import GPa, MPa, deg, kHz, mm
+from flexstage.base.units.quantity import ANGLE, LENGTH, MASS, POSITIVE
+from flexstage.base.units.scale import GPa, MPa, deg, kHz, mm
 from flexstage.cases.bipod import Bipod
 from flexstage.cases.stock import SOURCES
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, ModalDamping, Placement, Unit
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Body, Inertia
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
-from flexstage.base.scale import X, Z, kHz, mm
+from flexstage.base.units.quantity import LENGTH, POSITIVE
+from flexstage.base.units.scale import X, Z, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Block, Body
 from flexstage.parts.gauge import Positive
 from flexstage.parts.leaf import Leaf

@@ -14,12 +14,12 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, freeze
-from flexstage.base.quantity import Quantity
-from flexstage.base.unit import parse, show
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import parse, show
+from flexstage.mechanism.addresses.path import complete, replace_member
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.node import ChoiceNode, NumberNode, WholeNode
-from flexstage.mechanism.path import complete, replace_member
+from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import ChoiceNode, NumberNode, WholeNode
 
 Stated: TypeAlias = str | float | Array
 """A parameter as a user gives it: a text with its unit, or a number or an array of numbers in SI."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from flexstage.base.scale import GPa, MPa, N_per_um, kHz, mm, nm, uF, um
+from flexstage.base.units.scale import GPa, MPa, N_per_um, kHz, mm, nm, uF, um
 from flexstage.parts.encoder import Encoder
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material

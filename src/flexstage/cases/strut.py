@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from flexstage.base.number import Number, Vector
-from flexstage.base.scale import mm
+from flexstage.base.units.scale import mm
 from flexstage.mechanism.mechanism import Link, Unit
 from flexstage.parts.body import Body, Cylinder
 from flexstage.parts.neck import Neck

@@ -13,11 +13,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, MASS, POSITIVE
-from flexstage.base.scale import GPa, X, deg, kHz, mm
+from flexstage.base.units.quantity import LENGTH, MASS, POSITIVE
+from flexstage.base.units.scale import GPa, X, deg, kHz, mm
 from flexstage.cases.bipod import SIDES, Bipod
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import PLATFORM, Link, Mechanism, ModalDamping, Placement, Unit
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Body, Inertia, Payload
 from flexstage.parts.leaf import Leaf, LeafSection
 from flexstage.parts.material import Material

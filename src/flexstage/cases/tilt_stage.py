@@ -13,11 +13,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
-from flexstage.base.scale import X, Y, Z, kHz, mm
+from flexstage.base.units.quantity import LENGTH, POSITIVE
+from flexstage.base.units.scale import X, Y, Z, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, COIL, SCALE, SOURCES, STEEL, stock_tags
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, ModalDamping, Probe
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Body, Extrusion
 from flexstage.parts.cross_hinge import CrossHinge
 from flexstage.parts.voice_coil import VoiceCoil

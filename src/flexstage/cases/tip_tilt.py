@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
-from flexstage.base.scale import X, Y, Z, deg, kHz, mm
+from flexstage.base.units.quantity import LENGTH, POSITIVE
+from flexstage.base.units.scale import X, Y, Z, deg, kHz, mm
 from flexstage.cases.stock import ALUMINIUM, GAUGE, GLASS_CERAMIC, SLIM_STACK, SOURCES, STEEL, stock_tags
 from flexstage.cases.strut import Strut
+from flexstage.mechanism.assembly.pattern import Facing, Polar
 from flexstage.mechanism.mechanism import Link, Mechanism, ModalDamping, Placement, Probe, Unit
-from flexstage.mechanism.pattern import Facing, Polar
 from flexstage.parts.body import Block, Body, Cylinder
 from flexstage.parts.gauge import Positive
 from flexstage.parts.leaf import Leaf

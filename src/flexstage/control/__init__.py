@@ -3,14 +3,14 @@
 from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
-    "system": "System",
-    "electronics": "AmplifierSettings GaugeSettings hardware",
-    "plants": "plant",
-    "closed": "Cut loop",
-    "stability": "verdict",
-    "stability_margins": "margins",
+    "systems.system": "System",
+    "plant_models.electronics": "AmplifierSettings GaugeSettings hardware",
+    "plant_models.plants": "plant",
+    "systems.closed": "Cut loop",
+    "robustness.stability": "verdict",
+    "robustness.stability_margins": "margins",
     "noise": "noise_budget",
-    "exchange": "from_control to_control",
+    "systems.exchange": "from_control to_control",
     "controllers.pi": "PI",
     "controllers.pid": "PID",
     "controllers.resonant": "IntegralResonant",
@@ -28,14 +28,14 @@ HOMES = {
     "simulation.machine": "machine",
     "simulation.run": "simulate",
     "simulation.result": "step_figures tracking",
-    "hysteresis.inverse": "hysteresis_inverse",
-    "hysteresis.bouc_wen": "bouc_wen",
-    "hysteresis.preisach": "preisach",
+    "hysteresis.models.inverse": "hysteresis_inverse",
+    "hysteresis.models.bouc_wen": "bouc_wen",
+    "hysteresis.models.preisach": "preisach",
     "hysteresis.creep": "LogCreep exponentials",
     "hysteresis.stack": "dump_hysteresis load_hysteresis stack_hysteresis",
     "hysteresis.stack_test": "stack_test",
     "study.choices": "Axes Axis Compensation ControllerKind Criterion Following Notching StackKind",
-    "study.amplifiers": "ChargeSetup",
+    "study.hardware.amplifiers": "ChargeSetup",
     "study.setup": (
         "AmplifierSetup ControllerSetup DampingSetup FileMotion Floor FollowSetup GaugeSetup GoalSetup HystereticStacks LoopNumbers "
         "LoopSetup Motion NotchAt PrefilterAt RasterMotion VibrationSetup SineMotion SpiralMotion StepMotion"
@@ -43,7 +43,7 @@ HOMES = {
     "study.file": "load_setup",
     "study.compare": "compare_controllers",
     "study.study": "loop_study",
-    "report": "loop_report",
+    "show.report": "loop_report",
     "export.files": "write_controller write_fmu write_plant",
 }
 __getattr__, __dir__ = lazy_attributes(__name__, HOMES)

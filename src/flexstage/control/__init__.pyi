@@ -1,4 +1,4 @@
-from flexstage.control.closed import (
+from flexstage.control.systems.closed import (
     Cut as Cut,
     loop as loop,
 )
@@ -25,12 +25,12 @@ from flexstage.control.controllers.prefilter import (
 from flexstage.control.controllers.resonant import (
     IntegralResonant as IntegralResonant,
 )
-from flexstage.control.electronics import (
+from flexstage.control.plant_models.electronics import (
     AmplifierSettings as AmplifierSettings,
     GaugeSettings as GaugeSettings,
     hardware as hardware,
 )
-from flexstage.control.exchange import (
+from flexstage.control.systems.exchange import (
     from_control as from_control,
     to_control as to_control,
 )
@@ -39,17 +39,17 @@ from flexstage.control.export.files import (
     write_fmu as write_fmu,
     write_plant as write_plant,
 )
-from flexstage.control.hysteresis.bouc_wen import (
+from flexstage.control.hysteresis.models.bouc_wen import (
     bouc_wen as bouc_wen,
 )
 from flexstage.control.hysteresis.creep import (
     LogCreep as LogCreep,
     exponentials as exponentials,
 )
-from flexstage.control.hysteresis.inverse import (
+from flexstage.control.hysteresis.models.inverse import (
     hysteresis_inverse as hysteresis_inverse,
 )
-from flexstage.control.hysteresis.preisach import (
+from flexstage.control.hysteresis.models.preisach import (
     preisach as preisach,
 )
 from flexstage.control.hysteresis.stack import (
@@ -63,10 +63,10 @@ from flexstage.control.hysteresis.stack_test import (
 from flexstage.control.noise import (
     noise_budget as noise_budget,
 )
-from flexstage.control.plants import (
+from flexstage.control.plant_models.plants import (
     plant as plant,
 )
-from flexstage.control.report import (
+from flexstage.control.show.report import (
     loop_report as loop_report,
 )
 from flexstage.control.simulation.machine import (
@@ -79,13 +79,13 @@ from flexstage.control.simulation.result import (
 from flexstage.control.simulation.run import (
     simulate as simulate,
 )
-from flexstage.control.stability import (
+from flexstage.control.robustness.stability import (
     verdict as verdict,
 )
-from flexstage.control.stability_margins import (
+from flexstage.control.robustness.stability_margins import (
     margins as margins,
 )
-from flexstage.control.study.amplifiers import (
+from flexstage.control.study.hardware.amplifiers import (
     ChargeSetup as ChargeSetup,
 )
 from flexstage.control.study.choices import (
@@ -128,7 +128,7 @@ from flexstage.control.study.compare import (
 from flexstage.control.study.study import (
     loop_study as loop_study,
 )
-from flexstage.control.system import (
+from flexstage.control.systems.system import (
     System as System,
 )
 from flexstage.control.trajectory.path import (

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
@@ -50,7 +50,7 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
     reference point with all strokes zero (`analysis.deflection`, or a statics' compliance times a wrench). What a load does outside the
     ideal motions no stroke takes back. Linear; raises `DesignError` for a deflection that is no twist.
 
-    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
@@ -95,7 +95,7 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     model); with G = R_a it is R_a^+ Lambda R_a, what the lost-motion analysis predicts. `deflection` (6,) is the plant's under the loads,
     strokes held. Raises `DesignError` for a plant of other actuators.
 
-    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
@@ -136,7 +136,7 @@ def finite_error(given: Compensation, kinematics: Kinematics, plant: Matrix, pos
     What they have beyond the linear J a is added to the elastic T a: reached = V^+ (T a + p(a) - J a). First order in compliance and second
     and higher in strokes; their product is left out.
 
-    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.finite import forward_kinematics
     >>> from flexstage.models.ideal import ideal
@@ -159,7 +159,7 @@ def finite_strokes(given: Compensation, kinematics: Kinematics, ideal: Array) ->
     a = G R_a^+ a_ideal + offset: with the gains G that correct lost motion, (R_a V^+ T)^-1 a_ideal. Raises `DesignError` where the number
     of strokes does not fit.
 
-    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped

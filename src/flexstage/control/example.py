@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.control.closed import Loop, loop
-from flexstage.control.electronics import Hardware, hardware
-from flexstage.control.plants import Plant, plant
-from flexstage.control.system import System
+from flexstage.control.plant_models.electronics import Hardware, hardware
+from flexstage.control.plant_models.plants import Plant, plant
+from flexstage.control.systems.closed import Loop, loop
+from flexstage.control.systems.system import System
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import Channel
 from flexstage.models.lumped import lumped

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.base.quantity import ACCELERATION_NOISE, CURRENT, FREQUENCY, NOISE_DENSITY, RATIO, RESISTANCE, VELOCITY_NOISE
+from flexstage.base.units.quantity import ACCELERATION_NOISE, CURRENT, FREQUENCY, NOISE_DENSITY, RATIO, RESISTANCE, VELOCITY_NOISE
 from flexstage.control.study import setup as forms
 from flexstage.control.study.choices import Compensation, Criterion, Following
 from flexstage.show.command.values import Values, first_that_parses, motions

@@ -8,21 +8,21 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.random_response import Spectrum, quadrature, spectrum_findings
+from flexstage.analysis.dynamics.random_response import Spectrum, quadrature, spectrum_findings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW, Axes, Called
-from flexstage.control.closed import Loop
-from flexstage.control.curves import points_around, rates_of
-from flexstage.control.electronics import Amplifier, Sensor
-from flexstage.control.plants import SENSED
-from flexstage.control.resolvent import resolvent
-from flexstage.control.stability import require_stable
-from flexstage.control.system import System, select
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.plant_models.electronics import Amplifier, Sensor
+from flexstage.control.plant_models.plants import SENSED
+from flexstage.control.robustness.stability import require_stable
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.curves import points_around, rates_of
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System, select
 from flexstage.control.white_noise import Kind, Source, bounded_amplifiers, mean_squares, white_system
 from flexstage.mechanism.mechanism import GROUND
 from flexstage.models.linear.model import Channel

@@ -9,10 +9,10 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.control.closed import Loop
-from flexstage.control.electronics import Amplifier, Sensor
-from flexstage.control.plants import Plant, sensor_filter
-from flexstage.control.system import System, connect, select
+from flexstage.control.plant_models.electronics import Amplifier, Sensor
+from flexstage.control.plant_models.plants import Plant, sensor_filter
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.system import System, connect, select
 from flexstage.models.linear.model import Channel
 
 

@@ -3,13 +3,13 @@
 from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
-    "record": "Channel Record Role in_memory",
-    "options": "Allow Arrays Kind Options",
+    "records.record": "Channel Record Role in_memory",
+    "records.options": "Allow Arrays Kind Options",
     "formats.read": "read_record",
     "formats.write": "write_record",
-    "health": "Needs examine",
-    "cross_spectra": "Segments spectra",
-    "transfer": "h1 h2",
+    "records.health": "Needs examine",
+    "spectral.cross_spectra": "Segments spectra",
+    "spectral.transfer": "h1 h2",
     "identification.excitation": "Excitation",
     "identification.identify": "Search identify",
     "comparison": "compare",

@@ -1,7 +1,7 @@
 from flexstage.experiment.comparison import (
     compare as compare,
 )
-from flexstage.experiment.cross_spectra import (
+from flexstage.experiment.spectral.cross_spectra import (
     Segments as Segments,
     spectra as spectra,
 )
@@ -11,7 +11,7 @@ from flexstage.experiment.formats.read import (
 from flexstage.experiment.formats.write import (
     write_record as write_record,
 )
-from flexstage.experiment.health import (
+from flexstage.experiment.records.health import (
     Needs as Needs,
     examine as examine,
 )
@@ -22,19 +22,19 @@ from flexstage.experiment.identification.identify import (
     Search as Search,
     identify as identify,
 )
-from flexstage.experiment.options import (
+from flexstage.experiment.records.options import (
     Allow as Allow,
     Arrays as Arrays,
     Kind as Kind,
     Options as Options,
 )
-from flexstage.experiment.record import (
+from flexstage.experiment.records.record import (
     Channel as Channel,
     Record as Record,
     Role as Role,
     in_memory as in_memory,
 )
-from flexstage.experiment.transfer import (
+from flexstage.experiment.spectral.transfer import (
     h1 as h1,
     h2 as h2,
 )

@@ -10,15 +10,15 @@ import numpy as np
 import scipy
 
 from flexstage.analysis.complete import platform_modes, read
-from flexstage.analysis.modes import Modes, clusters
-from flexstage.analysis.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.modes import Modes, clusters
+from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
-from flexstage.base.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO
 from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.shapes_on_stage import si_factor, si_shapes

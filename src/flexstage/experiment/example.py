@@ -6,8 +6,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Modal, background
-from flexstage.experiment.identification.lines import edges, gather_cells, record_lines
-from flexstage.experiment.record import Channel, Record, Role, in_memory
+from flexstage.experiment.records.record import Channel, Record, Role, in_memory
+from flexstage.experiment.spectral.lines import edges, gather_cells, record_lines
 
 POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
 """Its pole in Hz: a natural frequency of 10 Hz, damped by 2 %."""

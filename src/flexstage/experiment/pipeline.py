@@ -11,16 +11,16 @@ import numpy as np
 from flexstage.base.finding import DesignError, Finding, join_findings, refuse, require
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW
-from flexstage.experiment.cross_spectra import Spectra, Tell, pool, spectra
-from flexstage.experiment.health import Needs, responses_findings, usable_record
 from flexstage.experiment.identification.evidence import choose_segments
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, identify
-from flexstage.experiment.identification.unrecorded import identify_decay, identify_floor
-from flexstage.experiment.options import Allow
-from flexstage.experiment.record import Record, Responses, report_reading
-from flexstage.experiment.transfer import h2, multiple_coherence, spectral_ratio
+from flexstage.experiment.identification.outputs.unrecorded import identify_decay, identify_floor
+from flexstage.experiment.records.health import Needs, responses_findings, usable_record
+from flexstage.experiment.records.options import Allow
+from flexstage.experiment.records.record import Record, Responses, report_reading
+from flexstage.experiment.spectral.cross_spectra import Spectra, Tell, pool, spectra
+from flexstage.experiment.spectral.transfer import h2, multiple_coherence, spectral_ratio
 
 Told: TypeAlias = Callable[[str, float], None]
 """Told what is done now, and the share of all that is done."""

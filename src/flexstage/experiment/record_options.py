@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lazy import Late
-from flexstage.base.quantity import FREQUENCY
-from flexstage.base.unit import parse
-from flexstage.experiment import options
-from flexstage.experiment.cross_spectra import Segments
-from flexstage.experiment.health import Needs
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.base.units.unit import parse
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records import options
+from flexstage.experiment.records.health import Needs
+from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.shapes_on_stage import StageShapes, stage_shapes
+from flexstage.experiment.spectral.cross_spectra import Segments
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel

@@ -8,13 +8,13 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.dimension import dimension_of
 from flexstage.base.number import Array, first_design
-from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
+from flexstage.base.units.dimension import dimension_of
+from flexstage.base.units.quantity import RATIO
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.record import Channel
-from flexstage.experiment.unit import unit_problem
+from flexstage.experiment.records.record import Channel
+from flexstage.experiment.records.unit import unit_problem
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS

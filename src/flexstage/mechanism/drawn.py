@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flexstage.base.finding import Finding, require
-from flexstage.mechanism.expand import PlacedLink
+from flexstage.mechanism.assembly.expand import PlacedLink
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.given import Given, Origin
 from flexstage.parts.part import Restricted, material_of
@@ -35,7 +35,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
     """The link with the drawn part that its given one stands for, and that part's material: how long it is, how it grows and loses energy.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> link = expand(double_triangle()).links["B1/front"]
     >>> as_drawn(double_triangle(), link) is link
     True

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, TypeAlias
 
-from flexstage.base.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
 from flexstage.base.notebook import InNotebook, RenderHook
 from flexstage.base.number import Number, Table, Vector
-from flexstage.base.quantity import (
+from flexstage.base.storage.digest import DOCUMENT_ONLY, KEY, WHERE_STATED, Description
+from flexstage.base.units.quantity import (
     ACCELERATION,
     ANY,
     DIRECTION,
@@ -24,7 +24,7 @@ from flexstage.base.quantity import (
     TEMPERATURE,
     TIME,
 )
-from flexstage.mechanism.pattern import ORIGIN, Pattern, between, middle
+from flexstage.mechanism.assembly.pattern import ORIGIN, Pattern, between, middle
 from flexstage.parts.body import Body, Payload
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Instrument, Positive

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Table, Vector
-from flexstage.mechanism.expand import apply_changes, copies
-from flexstage.mechanism.likeness import ancestry, drawn_units, link_lineage
+from flexstage.mechanism.assembly.expand import apply_changes, copies
+from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
+from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
-from flexstage.mechanism.pattern import Pose
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint

@@ -15,8 +15,8 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Number
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
-from flexstage.mechanism.incidence import free_deformations, layout
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.incidence import free_deformations, layout
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.freedom import ALL

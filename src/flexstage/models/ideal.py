@@ -18,13 +18,13 @@ import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, as_csr, few
+from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import law
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, Same, expand
-from flexstage.mechanism.incidence import LARGE, Layout, deformation, free_deformations, is_single, layout, require_room, twist_at
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, Same, expand
+from flexstage.mechanism.assembly.incidence import LARGE, Layout, deformation, free_deformations, is_single, layout, require_room, twist_at
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage

@@ -15,18 +15,18 @@ import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number, first_design
 from flexstage.base.sparse import Rows, Sparse, below
+from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import Law, law, law_of, viscous_damping
 from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.incidence import LARGE, Layout, end_twists, is_single, layout, require_room, twist_at, with_ground
+from flexstage.mechanism.assembly.moving_mass import moving_inertia
 from flexstage.mechanism.drawn import as_drawn
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
-from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.incidence import LARGE, Layout, end_twists, is_single, layout, require_room, twist_at, with_ground
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.mechanism.restrict import Freedoms
 from flexstage.models.linear.channels import (
     Motions,

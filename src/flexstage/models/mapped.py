@@ -14,15 +14,15 @@ import numpy as np
 import scipy
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
+from flexstage.base.storage.digest import digest
+from flexstage.base.units.quantity import COMPLIANCE, LENGTH, RATIO, ROTATIONAL_STIFFNESS, STIFFNESS
 from flexstage.beams.compliance import compliance
-from flexstage.mechanism.expand import Assembly, PlacedLink, copies, expand
-from flexstage.mechanism.incidence import deformation, layout, twist_at
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, copies, expand
+from flexstage.mechanism.assembly.incidence import deformation, layout, twist_at
+from flexstage.mechanism.assembly.moving_mass import moving_inertia
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.moving_mass import moving_inertia
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.elimination import null_space
 from flexstage.models.linear.kinematics import Kinematics

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import DISPLACEMENT, VOLTAGE, Quantity
+from flexstage.base.units.quantity import DISPLACEMENT, VOLTAGE, Quantity
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.parts.shape import Elastic, Order
 

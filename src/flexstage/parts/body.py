@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Array, Number, Table, Vector, first_design, stack
-from flexstage.base.quantity import DIRECTION, INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
+from flexstage.base.units.quantity import DIRECTION, INERTIA, LENGTH, MASS, NOT_NEGATIVE, POSITIVE
 from flexstage.parts.profile import single
 from flexstage.parts.shape import Order
 from flexstage.spatial.frame import Frame, axes

@@ -14,7 +14,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, refuse
 from flexstage.base.number import Array, Number, stack
-from flexstage.base.quantity import ANGLE, FORCE, LENGTH, POSITIVE, RATIO, Bound
+from flexstage.base.units.quantity import ANGLE, FORCE, LENGTH, POSITIVE, RATIO, Bound
 from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.material import Material, Paired
 from flexstage.parts.shape import Elastic

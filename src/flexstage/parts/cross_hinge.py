@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import ANGLE, LENGTH, POSITIVE, RATIO
+from flexstage.base.units.quantity import ANGLE, LENGTH, POSITIVE, RATIO
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member, radial_leaf
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.leaf import Leaf, LeafSection

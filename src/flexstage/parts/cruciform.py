@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.base.number import Array, Number, magnitude
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.section import Section
 from flexstage.parts.shape import Order, Shaped

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.parts.body import Block, Body
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, radial_leaf
 from flexstage.parts.freedom import Freedom, others

@@ -8,9 +8,9 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
-from flexstage.base.quantity import FORCE, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import FORCE, MASS, NOT_NEGATIVE, POSITIVE
 from flexstage.parts.actuator import ForceLimit, ThrustActuator
 from flexstage.parts.material import Material
 from flexstage.parts.stated import Stated, point_masses

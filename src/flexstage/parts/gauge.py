@@ -9,9 +9,9 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number, magnitude
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, ROTATION, Quantity
+from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, ROTATION, Quantity
 from flexstage.parts.freedom import ROTATIONS, Freedom
 
 

@@ -9,10 +9,10 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, Vector, stack
-from flexstage.base.quantity import COMPLIANCE_MATRIX, LENGTH, MASS, NOT_NEGATIVE
+from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
+from flexstage.base.units.quantity import COMPLIANCE_MATRIX, LENGTH, MASS, NOT_NEGATIVE
 from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.mass import tensor

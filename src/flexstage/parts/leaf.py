@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import CURVATURE, LENGTH, POSITIVE, TEMPERATURE
+from flexstage.base.units.quantity import CURVATURE, LENGTH, POSITIVE, TEMPERATURE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import INNER_MODES, Order, Shaped, reversed_or_none

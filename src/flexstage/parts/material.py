@@ -9,10 +9,10 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, Vector
-from flexstage.base.quantity import (
+from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
+from flexstage.base.units.quantity import (
     DENSITY,
     DIRECTION,
     EXPANSION,

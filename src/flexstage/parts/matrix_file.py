@@ -13,9 +13,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import scipy
 
-from flexstage.base.files import hdf, mat, require_regular
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.memory import gigabytes, require_memory
+from flexstage.base.processes.memory import gigabytes, require_memory
+from flexstage.base.storage.files import hdf, mat, require_regular
 from flexstage.parts.superelement import Superelement
 
 MatrixLike: TypeAlias = Any

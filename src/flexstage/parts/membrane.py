@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, MASS, NOT_NEGATIVE, POSITIVE
+from flexstage.base.units.quantity import LENGTH, MASS, NOT_NEGATIVE, POSITIVE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic, Order
 

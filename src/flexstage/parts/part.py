@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
-from flexstage.base.digest import Description
 from flexstage.base.finding import refuse
 from flexstage.base.number import Number
+from flexstage.base.storage.digest import Description
 from flexstage.parts.actuator import Actuator
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint

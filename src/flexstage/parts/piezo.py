@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
-from flexstage.base.quantity import (
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import (
     BENDING_RIGIDITY,
     CAPACITANCE,
     DISPLACEMENT,

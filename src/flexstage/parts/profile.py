@@ -13,9 +13,9 @@ from typing import Annotated, ClassVar, TypeAlias
 
 import numpy as np
 
-from flexstage.base.digest import Description
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE, RATIO, Bound
+from flexstage.base.storage.digest import Description
+from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE, RATIO, Bound
 
 
 @dataclass(frozen=True, eq=False)

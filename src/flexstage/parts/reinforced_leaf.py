@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.profile import single
 from flexstage.parts.section import Rectangle, Section

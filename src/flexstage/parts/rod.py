@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import CURVATURE, LENGTH, POSITIVE
+from flexstage.base.units.quantity import CURVATURE, LENGTH, POSITIVE
 from flexstage.parts.freedom import Freedom, others
 from flexstage.parts.section import Circle, circle
 from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none

@@ -14,10 +14,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import Description
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import LENGTH, RATIO, Bound, Quantity
+from flexstage.base.storage.digest import Description
+from flexstage.base.units.quantity import LENGTH, RATIO, Bound, Quantity
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.material import Material
 from flexstage.parts.profile import (

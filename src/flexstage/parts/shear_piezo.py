@@ -8,10 +8,10 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import (
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import (
     CAPACITANCE,
     DISPLACEMENT,
     FORCE,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE
 from flexstage.parts.gauge import Instrument
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Annotated, ClassVar
 
-from flexstage.base.digest import DOCUMENT_ONLY, Description
 from flexstage.base.number import Number, Table, Vector
-from flexstage.base.quantity import DIRECTION, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, Bound
+from flexstage.base.storage.digest import DOCUMENT_ONLY, Description
+from flexstage.base.units.quantity import DIRECTION, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, Bound
 from flexstage.parts.body import Inertia
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.shape import Elastic

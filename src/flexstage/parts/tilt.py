@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-from flexstage.base.digest import DOCUMENT_ONLY
 from flexstage.base.number import Number
-from flexstage.base.quantity import FREQUENCY, NOT_NEGATIVE, POSITIVE, ROTATION, ROTATION_NOISE
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import FREQUENCY, NOT_NEGATIVE, POSITIVE, ROTATION, ROTATION_NOISE
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.gauge import Instrument
 

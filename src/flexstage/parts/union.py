@@ -18,9 +18,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import scipy
 
-from flexstage.base.digest import Description, digest
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array, Number, stack
+from flexstage.base.storage.digest import Description, digest
 from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, Sphere, triangles, within_polygon
 from flexstage.parts.surface import PLANE, ROUND, Face, Hull, Path, Prism, Surface, gains, hull_planes
 from flexstage.spatial.convex import Boxes, separations

@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors
-from flexstage.analysis.misalign import Misaligned, Misalignments
-from flexstage.analysis.stroke import Beyond, Stroke
-from flexstage.base.digest import digest
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors
+from flexstage.analysis.loaded.misalign import Misaligned, Misalignments
+from flexstage.analysis.loaded.stroke import Beyond, Stroke
 from flexstage.base.labelled import NOISE_RULE, Matrix, quiet
 from flexstage.base.number import Array
+from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.critical import Kind
-from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.paths.critical import Kind
+from flexstage.models.nonlinear.paths.path import Path
 from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from flexstage.base.quantity import Quantity
-from flexstage.base.unit import convert
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import convert
 
 DIGITS = 5
 NO_VALUE = "-"
@@ -111,7 +111,7 @@ def preferred_unit(unit: str) -> DisplayUnit:
 def field_unit(quantity: Quantity) -> DisplayUnit:
     """The unit a description's field is shown in: its quantity's, whichever unit of it that is, as of named numbers.
 
-    >>> from flexstage.base.quantity import ANGLE, LENGTH
+    >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
     (DisplayUnit(unit='mm', factor=1000.0), 57.29578)
     """
@@ -121,7 +121,7 @@ def field_unit(quantity: Quantity) -> DisplayUnit:
 def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
     """The unit in which results of a quantity are shown: `unit`, one of its display units, or where it is absent the quantity's own.
 
-    >>> from flexstage.base.quantity import PIEZO_GAIN
+    >>> from flexstage.base.units.quantity import PIEZO_GAIN
     >>> display_unit(PIEZO_GAIN, "um/V"), display_unit(None)
     (DisplayUnit(unit='um/V', factor=1000000.0), DisplayUnit(unit='', factor=1.0))
     """

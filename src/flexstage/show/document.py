@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.cautions import Caveats, caveats
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.deflection import Deflection
-from flexstage.analysis.mass_matrix import MassMatrix
-from flexstage.analysis.requirements import Verdict
-from flexstage.analysis.statics import FreedomStiffness, Statics
-from flexstage.base.digest import digest
-from flexstage.base.document import Document, plain
+from flexstage.analysis.linear_statics.deflection import Deflection
+from flexstage.analysis.linear_statics.mass_matrix import MassMatrix
+from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics
 from flexstage.base.finding import Finding
 from flexstage.base.record import SideBySide, walk
+from flexstage.base.storage.digest import digest
+from flexstage.base.storage.document import Document, plain
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.frequency import Response

@@ -11,7 +11,7 @@ from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.cases.parameters import parameters
 from flexstage.cases.registry import CASES, shipped_case
 from flexstage.mechanism.catalogue import Catalogue, Section
-from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.parts.gauge import Gauge
 from flexstage.parts.material import Material
 from flexstage.parts.piezo import Piezo

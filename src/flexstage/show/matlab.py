@@ -12,10 +12,10 @@ import scipy
 
 from flexstage.analysis.complete import Analysis
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
 from flexstage.base.labelled import Matrix
-from flexstage.base.sheet import NUMBERS, Sheet, parts
+from flexstage.base.storage.digest import digest
+from flexstage.base.storage.sheet import NUMBERS, Sheet, parts
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
 from flexstage.models.linear.damping import damping_law

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from flexstage.analysis.drift import Drift
-from flexstage.analysis.error_budget import ErrorBudget
-from flexstage.analysis.lost_motion import LostMotion
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.random_response import RandomResponse
-from flexstage.analysis.sensitivities import Sensitivities
-from flexstage.analysis.statics import Statics
+from flexstage.analysis.assessment.error_budget import ErrorBudget
+from flexstage.analysis.assessment.sensitivities import Sensitivities
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.dynamics.random_response import RandomResponse
+from flexstage.analysis.linear_statics.drift import Drift
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.statics import Statics
 from flexstage.analysis.workspace.workspace import Workspace
-from flexstage.base.digest import digest
 from flexstage.base.finding import DesignError
+from flexstage.base.storage.digest import digest
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.kinematics import Kinematics

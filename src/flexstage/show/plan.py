@@ -11,10 +11,10 @@ import numpy as np
 
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array, first_design
-from flexstage.mechanism.expand import copy_names, expand
+from flexstage.mechanism.assembly.expand import copy_names, expand
+from flexstage.mechanism.assembly.pattern import Normal, Polar
+from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, posed
-from flexstage.mechanism.outline import outlines
-from flexstage.mechanism.pattern import Normal, Polar
 from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, Solid
 from flexstage.show.display import number
 from flexstage.show.figures.style import FULL, INK, MUTED, PAPER, SERIES, canvas, style_context

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from flexstage.analysis.assessment.difference import Comparison
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.difference import Comparison
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
+from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.show.page import Head, page
 from flexstage.show.scene.stage import scene

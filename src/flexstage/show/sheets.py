@@ -10,7 +10,7 @@ from typing import Any
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
-from flexstage.base.sheet import Sheet, parts, plain_cell
+from flexstage.base.storage.sheet import Sheet, parts, plain_cell
 from flexstage.show.table import first_design
 
 _FORMULA = ("=", "+", "-", "@")

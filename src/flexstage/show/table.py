@@ -12,9 +12,9 @@ import numpy as np
 from flexstage.base.labelled import NOISE, NOISE_RULE, Matrix, quiet, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import Bound, Quantity
 from flexstage.base.record import Field, values_of
-from flexstage.base.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
+from flexstage.base.storage.sheet import NUMBERS, Sheet, is_cell, parts, plain_cell, rows_of
+from flexstage.base.units.quantity import Bound, Quantity
 from flexstage.show.display import (
     DIGITS,
     NO_VALUE,
@@ -199,7 +199,7 @@ def further(rest: int) -> str:
 def field_column(field: Field, values: Sequence[Any]) -> tuple[Column, list[Cell]]:
     """The column of a field and its cells, for tables that stand beside others' columns.
 
-    >>> from flexstage.base.quantity import SHARE, STIFFNESS
+    >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
     >>> field_column(Field("loss", float, (SHARE,)), [0.03, 1e-17])[1]
     [Cell(text='3 %', mark=<Mark.PLAIN: 'plain'>, bar=0.03), Cell(text='0 %', mark=<Mark.PLAIN: 'plain'>, bar=0.0)]

@@ -14,7 +14,7 @@ from typing import Any
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.sheet import Sheet, parts, plain_cell
+from flexstage.base.storage.sheet import Sheet, parts, plain_cell
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
 from flexstage.show.table import first_design

@@ -3,19 +3,19 @@
 from flexstage.base.lazy import lazy_attributes
 
 HOMES = {
-    "fea.cache": "Cache",
-    "fea.fineness": "Fineness Reduction",
-    "fea.estimate": "Accuracy",
-    "fea.hinge": "hinge_compliance",
-    "fea.model": "model",
+    "fea.jobs.cache": "Cache",
+    "fea.meshing.fineness": "Fineness Reduction",
+    "fea.meshing.estimate": "Accuracy",
+    "fea.hinges.hinge": "hinge_compliance",
+    "fea.solver.model": "model",
     "exchange.matrices": "export_superelement",
-    "moving": "to_glb",
-    "resolution": "Resolution",
-    "hinges": "solid_hinges",
-    "units": "solid_units",
-    "stage": "solid_stage",
-    "verification": "verify",
-    "modes": "fea_modes",
-    "calibration": "calibrate",
+    "show.moving": "to_glb",
+    "results.resolution": "Resolution",
+    "results.hinges": "solid_hinges",
+    "results.units": "solid_units",
+    "results.stage": "solid_stage",
+    "results.verification": "verify",
+    "results.modes": "fea_modes",
+    "results.calibration": "calibrate",
 }
 __getattr__, __dir__ = lazy_attributes(__name__, HOMES)

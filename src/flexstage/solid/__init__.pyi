@@ -1,44 +1,44 @@
-from flexstage.solid.calibration import (
+from flexstage.solid.results.calibration import (
     calibrate as calibrate,
 )
 from flexstage.solid.exchange.matrices import (
     export_superelement as export_superelement,
 )
-from flexstage.solid.fea.cache import (
+from flexstage.solid.fea.jobs.cache import (
     Cache as Cache,
 )
-from flexstage.solid.fea.estimate import (
+from flexstage.solid.fea.meshing.estimate import (
     Accuracy as Accuracy,
 )
-from flexstage.solid.fea.fineness import (
+from flexstage.solid.fea.meshing.fineness import (
     Fineness as Fineness,
     Reduction as Reduction,
 )
-from flexstage.solid.fea.hinge import (
+from flexstage.solid.fea.hinges.hinge import (
     hinge_compliance as hinge_compliance,
 )
-from flexstage.solid.fea.model import (
+from flexstage.solid.fea.solver.model import (
     model as model,
 )
-from flexstage.solid.hinges import (
+from flexstage.solid.results.hinges import (
     solid_hinges as solid_hinges,
 )
-from flexstage.solid.modes import (
+from flexstage.solid.results.modes import (
     fea_modes as fea_modes,
 )
-from flexstage.solid.moving import (
+from flexstage.solid.show.moving import (
     to_glb as to_glb,
 )
-from flexstage.solid.resolution import (
+from flexstage.solid.results.resolution import (
     Resolution as Resolution,
 )
-from flexstage.solid.stage import (
+from flexstage.solid.results.stage import (
     solid_stage as solid_stage,
 )
-from flexstage.solid.units import (
+from flexstage.solid.results.units import (
     solid_units as solid_units,
 )
-from flexstage.solid.verification import (
+from flexstage.solid.results.verification import (
     verify as verify,
 )
 

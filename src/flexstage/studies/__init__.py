@@ -5,11 +5,11 @@ from flexstage.base.lazy import lazy_attributes
 HOMES = {
     "sweeps.effects": "effects",
     "sweeps.file": "load_study",
-    "sweeps.run": "Run sweep",
-    "sweeps.store": "read_results",
+    "sweeps.execution.run": "Run sweep",
+    "sweeps.execution.store": "read_results",
     "optimisation.file": "load_wanted",
-    "optimisation.optimum": "optimise",
-    "optimisation.front": "pareto_front",
+    "optimisation.search.optimum": "optimise",
+    "optimisation.search.front": "pareto_front",
     "tolerances.file": "load_tolerance",
     "tolerances.run": "tolerance",
 }

@@ -1,10 +1,10 @@
 from flexstage.studies.optimisation.file import (
     load_wanted as load_wanted,
 )
-from flexstage.studies.optimisation.front import (
+from flexstage.studies.optimisation.search.front import (
     pareto_front as pareto_front,
 )
-from flexstage.studies.optimisation.optimum import (
+from flexstage.studies.optimisation.search.optimum import (
     optimise as optimise,
 )
 from flexstage.studies.sweeps.effects import (
@@ -13,11 +13,11 @@ from flexstage.studies.sweeps.effects import (
 from flexstage.studies.sweeps.file import (
     load_study as load_study,
 )
-from flexstage.studies.sweeps.run import (
+from flexstage.studies.sweeps.execution.run import (
     Run as Run,
     sweep as sweep,
 )
-from flexstage.studies.sweeps.store import (
+from flexstage.studies.sweeps.execution.store import (
     read_results as read_results,
 )
 from flexstage.studies.tolerances.file import (

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from flexstage.base.digest import KEY
 from flexstage.base.finding import DesignError
-from flexstage.base.quantity import RATIO, Bound, Quantity
-from flexstage.mechanism.grammar import OpenNode
+from flexstage.base.storage.digest import KEY
+from flexstage.base.units.quantity import RATIO, Bound, Quantity
+from flexstage.mechanism.grammar.grammar import OpenNode
+from flexstage.mechanism.grammar.node import AmountNode, ChoiceNode, NumberNode, TextsNode
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.mechanism.node import AmountNode, ChoiceNode, NumberNode, TextsNode
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml
 from flexstage.mechanism.store.lines import with_lines
@@ -162,7 +162,7 @@ def is_share(raw: str | float) -> bool:
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
     """An amount in SI; raises `DesignError` at `where` where it is none of that quantity.
 
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")
     0.0015
     """

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.mesh import PieceMesh
-from flexstage.solid.fea.piece import Medium
+from flexstage.solid.fea.geometry.piece import Medium
+from flexstage.solid.fea.meshing.mesh import PieceMesh
 from tests.elsewhere.calculix.grid import Grid, grid, spread
 from tests.elsewhere.calculix.ours import MODES
 from tests.elsewhere.calculix.problems import Problem, Solution

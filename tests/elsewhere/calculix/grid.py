@@ -13,7 +13,7 @@ import ngsolve
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.mesh import PieceMesh
+from flexstage.solid.fea.meshing.mesh import PieceMesh
 
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 SIDES = ((0, 1), (1, 2), (2, 0))

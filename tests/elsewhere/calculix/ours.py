@@ -14,9 +14,9 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.field import Field, factorise, field, inertia, stiffness
-from flexstage.solid.fea.mesh import PieceMesh
-from flexstage.solid.fea.piece import MILLIMETRES
+from flexstage.solid.fea.geometry.piece import MILLIMETRES
+from flexstage.solid.fea.meshing.mesh import PieceMesh
+from flexstage.solid.fea.solver.field import Field, factorise, field, inertia, stiffness
 from tests.elsewhere.calculix.problems import Problem, Solution
 
 MODES = 6

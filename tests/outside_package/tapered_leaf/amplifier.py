@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from flexstage.base.quantity import FREQUENCY, POSITIVE
-from flexstage.control.electronics import AmplifierSettings
-from flexstage.control.study.amplifiers import AmplifierForm
+from flexstage.base.units.quantity import FREQUENCY, POSITIVE
+from flexstage.control.plant_models.electronics import AmplifierSettings
+from flexstage.control.study.hardware.amplifiers import AmplifierForm
 
 
 @dataclass(frozen=True)

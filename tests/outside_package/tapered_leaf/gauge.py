@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, POSITIVE, RATIO
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, POSITIVE, RATIO
 from flexstage.parts.gauge import DisplacementGauge
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.experiment.formats.format import Format
-from flexstage.experiment.options import Options, assign
-from flexstage.experiment.record import Channel, Record, in_memory
+from flexstage.experiment.records.options import Options, assign
+from flexstage.experiment.records.record import Channel, Record, in_memory
 
 
 def is_log(start: bytes, _suffix: str) -> bool:

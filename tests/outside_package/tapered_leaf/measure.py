@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from flexstage.analysis.assessment.measures import Measure, MeasureKind
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.measures import Measure, MeasureKind
 from flexstage.base.number import Array
-from flexstage.base.quantity import DISPLACEMENT
+from flexstage.base.units.quantity import DISPLACEMENT
 
 
 @partial(MeasureKind, "sag", DISPLACEMENT)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import LENGTH, POSITIVE
+from flexstage.base.units.quantity import LENGTH, POSITIVE
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound, Member
 from flexstage.parts.leaf import Leaf
 

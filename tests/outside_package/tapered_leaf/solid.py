@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from netgen import occ
 
-from flexstage.solid.fea.piece import MILLIMETRES
+from flexstage.solid.fea.geometry.piece import MILLIMETRES
 from tapered_leaf.part import Taper
 
 

@@ -11,9 +11,9 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_actuators
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.quantity import DISPLACEMENT, FORCE, STIFFNESS
 from flexstage.base.record import VIEW, Along, Heading
-from flexstage.mechanism.expand import expand
+from flexstage.base.units.quantity import DISPLACEMENT, FORCE, STIFFNESS
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain

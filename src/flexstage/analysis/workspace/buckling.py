@@ -8,16 +8,16 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.stability import Stability, stability
+from flexstage.analysis.loaded.stability import Stability, stability
 from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.analysis.workspace.wrench import corner_wrenches
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, index_of_largest
-from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW, Along
+from flexstage.base.units.quantity import RATIO
 from flexstage.beams.compliance import law_of
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.piezo import Piezo

@@ -13,12 +13,12 @@ from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, stack
-from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
-from flexstage.base.unit import show
-from flexstage.mechanism.expand import expand
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.unit import show
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.geometry.outline import Outline, outlines
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.outline import Outline, outlines
 
 _TOUCHING = 1e-9
 _AXES = ("x", "y", "z")

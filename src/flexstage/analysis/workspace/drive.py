@@ -11,8 +11,8 @@ from flexstage.analysis.workspace.stroke import stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, stack
-from flexstage.base.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.base.record import Along, Heading
+from flexstage.base.units.quantity import CAPACITANCE, PIEZO_GAIN, VOLTAGE
 from flexstage.mechanism.mechanism import Mechanism
 
 

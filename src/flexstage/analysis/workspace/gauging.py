@@ -13,9 +13,9 @@ from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
 from flexstage.base.record import INNER, VIEW, Along
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.sight import Sight
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 

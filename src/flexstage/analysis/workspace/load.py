@@ -13,9 +13,9 @@ from flexstage.base.finding import Finding, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, Vector, stack
-from flexstage.base.quantity import FORCE, RATIO
 from flexstage.base.record import Along
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.base.units.quantity import FORCE, RATIO
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Force, Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, static_gain

@@ -13,9 +13,9 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
-from flexstage.mechanism.expand import expand
+from flexstage.base.units.quantity import LENGTH
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.finite import design_shape, forward_kinematics
 from flexstage.models.linear.kinematics import Kinematics

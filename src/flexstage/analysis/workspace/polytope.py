@@ -14,8 +14,8 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import RATIO
 from flexstage.base.record import VIEW
+from flexstage.base.units.quantity import RATIO
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _MOST_VERTEX_CANDIDATES = 20_000

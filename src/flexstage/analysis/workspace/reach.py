@@ -19,7 +19,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design, magnitude
 from flexstage.base.record import VIEW, Axes
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics

@@ -15,9 +15,9 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import SingleAxis
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import LENGTH, RATIO
-from flexstage.base.unit import show
-from flexstage.mechanism.expand import PlacedLink, expand
+from flexstage.base.units.quantity import LENGTH, RATIO
+from flexstage.base.units.unit import show
+from flexstage.mechanism.assembly.expand import PlacedLink, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.part import Part, inner

@@ -7,8 +7,8 @@ import numpy as np
 from flexstage.analysis.workspace.stroke import SingleAxis, StrokeLimits, mapping_at, single_axis, stroke_limits
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, stack
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import layout, twist_at
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.channels import see
 from flexstage.models.linear.kinematics import Kinematics

@@ -14,10 +14,10 @@ from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, index_of_largest
-from flexstage.base.quantity import RATIO
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import RATIO
 from flexstage.beams.stress import has_section, stress
-from flexstage.mechanism.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.material import Material

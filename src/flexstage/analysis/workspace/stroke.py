@@ -13,10 +13,10 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, magnitude, stack
-from flexstage.base.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
 from flexstage.base.record import VIEW, Along, Heading
-from flexstage.mechanism.expand import expand
-from flexstage.mechanism.incidence import layout, twist_at
+from flexstage.base.units.quantity import DISPLACEMENT, LENGTH, RATIO, SHARE, Bound
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.incidence import layout, twist_at
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.parts.actuator import ChargedActuator, StrokeActuator

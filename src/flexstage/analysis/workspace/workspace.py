@@ -8,7 +8,7 @@ from functools import partial
 from typing import Annotated
 
 from flexstage.analysis.attempt import Attempts
-from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.analysis.workspace.blocking import PlatformLine, StackLine, platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.clearance import Clearance, clearance
@@ -24,9 +24,9 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Number, Table
+from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import VIEW
-from flexstage.base.threads import one_thread
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics

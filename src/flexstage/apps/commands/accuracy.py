@@ -7,17 +7,17 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
-from flexstage.analysis import budget as budgeting
-from flexstage.analysis import drift as drifting
-from flexstage.analysis import sensitivities as derivatives
+from flexstage.analysis.assessment import budget as budgeting
+from flexstage.analysis.assessment import sensitivities as derivatives
 from flexstage.analysis.complete import read, required_command
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics import drift as drifting
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.reach import reach
 from flexstage.analysis.workspace.small import SecondOrder, second_order
-from flexstage.base.quantity import TEMPERATURE
 from flexstage.base.record import SideBySide
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import TEMPERATURE
+from flexstage.base.units.unit import parse
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing

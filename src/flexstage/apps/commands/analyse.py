@@ -11,10 +11,10 @@ from typing import Annotated, Any
 import typer
 
 from flexstage.analysis import complete
+from flexstage.analysis.assessment.difference import Comparison, difference, set_values
 from flexstage.analysis.cautions import caveats
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.difference import Comparison, difference, set_values
-from flexstage.base.document import Document, as_text
+from flexstage.base.storage.document import Document, as_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv, write_workbook
 from flexstage.show.command.design import change, open_design

@@ -8,22 +8,22 @@ from typing import Annotated
 
 import typer
 
-from flexstage.analysis import lost_motion as losses
-from flexstage.analysis import response as responses
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.complete import platform_modes, read
-from flexstage.analysis.deflection import Deflection, deflection
-from flexstage.analysis.lost_motion import LostMotion
-from flexstage.analysis.mass_matrix import MassMatrix, mass_matrix
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.random_response import random_response
-from flexstage.analysis.stance import Stance
-from flexstage.analysis.standing import standing
-from flexstage.analysis.statics import FreedomStiffness, Statics, freedom_stiffness, statics
+from flexstage.analysis.dynamics import response as responses
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.dynamics.random_response import random_response
+from flexstage.analysis.linear_statics import lost_motion as losses
+from flexstage.analysis.linear_statics.deflection import Deflection, deflection
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
+from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
+from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import refuse
-from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import SideBySide, walk
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.damping import damping_law
@@ -49,7 +49,7 @@ from flexstage.show.tables.response import response_table
 from flexstage.show.viewer.course import modes_at_data
 from flexstage.show.viewer.data import stage_data
 from flexstage.show.viewer.view import view_of
-from flexstage.solid.moving import glb_of
+from flexstage.solid.show.moving import glb_of
 from flexstage.spatial.frame import COMPONENTS
 
 

@@ -11,8 +11,8 @@ import typer
 
 from flexstage.analysis.cautions import caveats, model_findings
 from flexstage.apps.words import File
-from flexstage.base.document import as_text
 from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.storage.document import as_text
 from flexstage.base.version import __version__
 from flexstage.cases.registry import shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema

@@ -9,22 +9,22 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from flexstage.analysis.course import Course, course, drive_quantity
-from flexstage.analysis.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
-from flexstage.analysis.misalign import misalign as misaligned
-from flexstage.analysis.misalign import misalignments
-from flexstage.analysis.requirements import asked_factor
-from flexstage.analysis.stance import require_consistent
-from flexstage.analysis.stroke import Beyond
-from flexstage.analysis.stroke import stroke as over_stroke
+from flexstage.analysis.assessment.requirements import asked_factor
+from flexstage.analysis.loaded.course import Course, course, drive_quantity
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
+from flexstage.analysis.loaded.misalign import misalign as misaligned
+from flexstage.analysis.loaded.misalign import misalignments
+from flexstage.analysis.loaded.stance import require_consistent
+from flexstage.analysis.loaded.stroke import Beyond
+from flexstage.analysis.loaded.stroke import stroke as over_stroke
 from flexstage.apps.words import Side
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
-from flexstage.base.quantity import ANGLE, LENGTH, RATIO, Quantity
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
+from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
-from flexstage.models.nonlinear.path import beyond as follow
+from flexstage.models.nonlinear.paths.path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.apps.studio.reading import design
+from flexstage.apps.studio.design.reading import design
 from flexstage.models.batch.engine import Plan, plan, platform_modes
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from flexstage.apps.studio.protocol import Problem
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.jobs import Line
-from flexstage.base.threads import one_thread
+from flexstage.base.processes.jobs import Line
+from flexstage.base.processes.threads import one_thread
 
 _HERE = "flexstage.apps.studio"
 TASKS: Mapping[str, str] = {
@@ -85,7 +85,7 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
 
 def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, ...]:
     """Findings with their lines in the text that tasks take first, the file second."""
-    from flexstage.apps.studio.reading import problems_of
+    from flexstage.apps.studio.design.reading import problems_of
 
     return problems_of(error.findings, str(arguments[0]), str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from flexstage.apps.studio.engine import Outcome, problem, work
 from flexstage.apps.studio.protocol import Problem
-from flexstage.base.jobs import Heard, Word, Worker
+from flexstage.base.processes.jobs import Heard, Word, Worker
 
 _AGAIN = "The process that computes is started anew; ask again, and report it if this happens twice"
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.history import Stored
+from flexstage.apps.studio.design.history import Stored
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.jobs import environment
-from flexstage.base.progress import LINE, LINES
-from flexstage.base.store import make_temporary_folder, write
+from flexstage.base.processes.jobs import environment
+from flexstage.base.processes.progress import LINE, LINES
+from flexstage.base.storage.store import make_temporary_folder, write
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx", "--hardware", "--example")
 _STUDIES = ("sweep", "optimise")

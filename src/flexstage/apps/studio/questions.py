@@ -7,16 +7,17 @@ from functools import lru_cache
 
 import numpy as np
 
+from flexstage.analysis.assessment.judge import bench_of, value_or_reason
+from flexstage.analysis.assessment.measures import frequency, platform_frequency
+from flexstage.analysis.assessment.requirements import Sense, Verdict
+from flexstage.analysis.assessment.sensitivities import Sensitivities, sensitivities, slope, step_parameters, steppable
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.bench import Bench
 from flexstage.analysis.cautions import part_cautions
-from flexstage.analysis.judge import bench_of, value_or_reason
-from flexstage.analysis.measures import frequency, platform_frequency
-from flexstage.analysis.requirements import Sense, Verdict
-from flexstage.analysis.sensitivities import Sensitivities, sensitivities, slope, step_parameters, steppable
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.wrench import dead_wrenches
+from flexstage.apps.studio.design.reading import address_of, design, link_lines, problems_of
 from flexstage.apps.studio.protocol import (
     Card,
     Clash,
@@ -31,7 +32,6 @@ from flexstage.apps.studio.protocol import (
     Slope,
     Slopes,
 )
-from flexstage.apps.studio.reading import address_of, design, link_lines, problems_of
 from flexstage.apps.studio.results import bench, judged, matrix
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
 from flexstage.base.labelled import NOISE, ratio_units
@@ -39,10 +39,10 @@ from flexstage.base.labelled import Matrix as Labelled
 from flexstage.base.number import Array, first_design
 from flexstage.beams.compliance import compliance, stiffness
 from flexstage.beams.stress import stress
-from flexstage.mechanism.address import addresses, get
-from flexstage.mechanism.contact import gaps
-from flexstage.mechanism.expand import PlacedLink, PlacedSuperelement, expand
-from flexstage.mechanism.locate import unit_of_copy
+from flexstage.mechanism.addresses.address import addresses, get
+from flexstage.mechanism.addresses.locate import unit_of_copy
+from flexstage.mechanism.assembly.expand import PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.geometry.contact import gaps
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.ideal import free_freedoms

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexstage.analysis.attempt import Attempts
-from flexstage.analysis.bench import Bench
-from flexstage.analysis.difference import (
+from flexstage.analysis.assessment.difference import (
     KeyFigure,
     frequency_figures,
     loss_figures,
@@ -19,16 +17,19 @@ from flexstage.analysis.difference import (
     requirement_figures,
     stiffness_figures,
 )
-from flexstage.analysis.judge import bench_of, judge
-from flexstage.analysis.lost_motion import LostMotion
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.requirements import Verdict
-from flexstage.analysis.response import response
-from flexstage.analysis.statics import Statics, statics
+from flexstage.analysis.assessment.judge import bench_of, judge
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.analysis.attempt import Attempts
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.dynamics.response import response
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.statics import Statics, statics
 from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.stops import single_strokes, with_stops
 from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import SingleAxis, single_axis
+from flexstage.apps.studio.design.reading import design, problems_of
 from flexstage.apps.studio.protocol import (
     Cautions,
     Curve,
@@ -43,7 +44,6 @@ from flexstage.apps.studio.protocol import (
     Stroke,
     Verdicts,
 )
-from flexstage.apps.studio.reading import design, problems_of
 from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix as Labelled

@@ -19,8 +19,8 @@ from websockets.http11 import Request, Response
 
 from flexstage import show
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.history import Stored
-from flexstage.apps.studio.journal import Journal
+from flexstage.apps.studio.design.history import Stored
+from flexstage.apps.studio.design.journal import Journal
 from flexstage.apps.studio.session import Session
 from flexstage.apps.studio.wire import FOLLOWING, Teller, decode
 from flexstage.base.finding import DesignError, refuse

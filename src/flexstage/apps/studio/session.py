@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 from flexstage.apps.studio import protocol as say
-from flexstage.apps.studio.answers import Reading
+from flexstage.apps.studio.design.answers import Reading
+from flexstage.apps.studio.design.history import History, Stored
+from flexstage.apps.studio.design.journal import Draft, Journal, discard, drafts
+from flexstage.apps.studio.design.palette import snippets
 from flexstage.apps.studio.engine import Outcome, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
-from flexstage.apps.studio.history import History, Stored
 from flexstage.apps.studio.jobs import Jobs
-from flexstage.apps.studio.journal import Draft, Journal, discard, drafts
-from flexstage.apps.studio.palette import snippets
 from flexstage.base.finding import DesignError, refuse
 
 _QUIET = 0.3

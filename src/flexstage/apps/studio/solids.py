@@ -7,20 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.pairing import Moving, Pair, pair_modes
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.apps.studio.protocol import Fact, SolidMode, SolidModes
 from flexstage.apps.studio.results import bench, drawn
 from flexstage.base.finding import DesignError
 from flexstage.beams.compliance import compliance
-from flexstage.mechanism.expand import PlacedLink
+from flexstage.mechanism.assembly.expand import PlacedLink
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import number, percent
-from flexstage.solid.fea.cache import HINGES, Cache, find
-from flexstage.solid.fea.hinge_cache import hinge_jobs
-from flexstage.solid.hinges import accuracy_of, as_drawn, distinct_hinges, turned_forms
-from flexstage.solid.modes import fea_modes_from_cache
-from flexstage.solid.sections import fea_motions
+from flexstage.solid.fea.jobs.cache import HINGES, Cache, find
+from flexstage.solid.fea.jobs.hinge_cache import hinge_jobs
+from flexstage.solid.results.hinges import accuracy_of, as_drawn, distinct_hinges, turned_forms
+from flexstage.solid.results.modes import fea_modes_from_cache
+from flexstage.solid.show.sections import fea_motions
 from flexstage.spatial.frame import COMPONENTS
 
 _ABSENT = "The cache holds no finite elements of this stage as it is: Verify computes them"

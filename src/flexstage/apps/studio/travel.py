@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexstage.analysis.course import Course, course
-from flexstage.analysis.stroke import stroke
+from flexstage.analysis.loaded.course import Course, course
+from flexstage.analysis.loaded.stroke import stroke
+from flexstage.apps.studio.design.reading import design, problems_of
 from flexstage.apps.studio.protocol import Travel, Travelled, Underway
-from flexstage.apps.studio.reading import design, problems_of
 from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.unit import parse
+from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear

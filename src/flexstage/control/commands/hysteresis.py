@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import refuse
-from flexstage.base.quantity import VOLTAGE
-from flexstage.base.unit import parse
-from flexstage.control.hysteresis.report import hysteresis_report
+from flexstage.base.units.quantity import VOLTAGE
+from flexstage.base.units.unit import parse
+from flexstage.control.hysteresis.show.report import hysteresis_report
+from flexstage.control.hysteresis.show.tables import plays_table, stack_table
 from flexstage.control.hysteresis.stack import dumps_hysteresis
 from flexstage.control.hysteresis.stack_test import Channels, stack_test
-from flexstage.control.hysteresis.tables import plays_table, stack_table
-from flexstage.experiment.record import Record
 from flexstage.experiment.record_options import Arrays, Rate, RecordTexts, Units, open_records
+from flexstage.experiment.records.record import Record
 from flexstage.show.command.answer import answer
 from flexstage.show.command.options import Csv, Json, Report, Xlsx, output_option, text_option
 from flexstage.show.command.output import require_writable, save

@@ -10,17 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.jobs import cores
 from flexstage.base.lazy import Late
-from flexstage.base.quantity import (
+from flexstage.base.processes.jobs import cores
+from flexstage.base.units.quantity import (
     DISPLACEMENT,
     FREQUENCY,
     NOISE_DENSITY,
     RATIO,
     TIME,
 )
-from flexstage.control import error_tables as errors
-from flexstage.control import tables
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.loop_files import file_findings, require_names, write_export, write_hardware, written_files
 from flexstage.control.loop_options import (
@@ -32,6 +30,8 @@ from flexstage.control.loop_options import (
     override,
     trajectory_setup,
 )
+from flexstage.control.show import error_tables as errors
+from flexstage.control.show import tables
 from flexstage.control.study import setup as forms
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Axes, Compensation, Following
@@ -55,10 +55,10 @@ from flexstage.show.command.values import Values
 from flexstage.show.table import Table
 
 if TYPE_CHECKING:
-    from flexstage.analysis.solid_modes import FeaModes
-    from flexstage.control import report as pages
+    from flexstage.analysis.dynamics.solid_modes import FeaModes
+    from flexstage.control.show import report as pages
 else:
-    pages = Late("flexstage.control.report")  # figures, scenes and sections: thirty modules
+    pages = Late("flexstage.control.show.report")  # figures, scenes and sections: thirty modules
 
 
 def loop(  # noqa: PLR0913  a loop has that many knobs

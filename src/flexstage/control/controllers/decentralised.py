@@ -14,8 +14,8 @@ from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.prefilter import Prefilter, with_prefilters
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.system import System, select, side_by_side
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.systems.system import System, select, side_by_side
 from flexstage.models.linear.model import Channel
 
 
@@ -48,7 +48,7 @@ class Decentralised(CheckedFields):
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
-        >>> from flexstage.control.coordinates import coordinates
+        >>> from flexstage.control.plant_models.coordinates import coordinates
         >>> from flexstage.cases.parallelogram import parallelogram
         >>> from flexstage.models.ideal import ideal
         >>> loops = platform_loops(coordinates(ideal(parallelogram())))
@@ -84,7 +84,7 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> loops = platform_loops(coordinates(ideal(parallelogram())))
@@ -116,7 +116,7 @@ def _filtered(law: System, notch: System) -> System:
 def channels(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
     """Channels `kind.<c>` of all coordinates.
 
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> channels("error", coordinates(ideal(parallelogram())))
@@ -132,8 +132,8 @@ def _strokes(kind: str, coordinates: Coordinates) -> tuple[Channel, ...]:
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
     """The controller whose commands have `gains` (n, f) times the reference added; inputs `reference.<c>` before what was applied.
 
-    >>> from flexstage.control.coordinates import coordinates
-    >>> from flexstage.control.system import static
+    >>> from flexstage.control.plant_models.coordinates import coordinates
+    >>> from flexstage.control.systems.system import static
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> found = static(np.zeros((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))

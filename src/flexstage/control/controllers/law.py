@@ -11,8 +11,8 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.base.record import Heading
-from flexstage.control.sampling import bilinear
-from flexstage.control.system import System
+from flexstage.control.systems.sampling import bilinear
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 ENTRIES = (Channel("error", "m"), Channel("pose", "m"), Channel("applied", "m"))

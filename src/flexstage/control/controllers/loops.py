@@ -7,11 +7,11 @@ from enum import Enum
 
 import numpy as np
 
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, first_design
-from flexstage.control.coordinates import Coordinates
+from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.spatial.frame import COMPONENTS
 
 _DEPENDENT = 1e-6
@@ -49,7 +49,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
     Raises `DesignError` for more actuators than motions: an integrator each would be more than the gauges can hold.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.models.ideal import ideal
     >>> actuator_loops(coordinates(ideal(double_triangle()))).names
     ('B1', 'B2', 'B3', 'B4', 'B5', 'B6')
@@ -68,7 +68,7 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
     `strokes` (n, f) takes the place of R_a, for example the gains that correct lost motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.models.ideal import ideal
     >>> found = platform_loops(coordinates(ideal(double_triangle())))
     >>> found.names, found.sense.diagonal().round(4).tolist()
@@ -84,8 +84,8 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     A mode's part of the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths); modes are taken from the largest down, each
     time by what is not motion of those taken before. Indices ascend. Raises `DesignError` where too few modes are given.
 
-    >>> from flexstage.control.coordinates import coordinates
-    >>> from flexstage.analysis.modes import modes
+    >>> from flexstage.control.plant_models.coordinates import coordinates
+    >>> from flexstage.analysis.dynamics.modes import modes
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
@@ -121,7 +121,7 @@ def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None =
     shapes that do not span the coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.models.ideal import ideal
     >>> found = modal_loops(coordinates(ideal(parallelogram())), np.eye(6)[:, :1])
     >>> found.names, found.sense.tolist()

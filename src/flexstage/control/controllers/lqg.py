@@ -11,8 +11,8 @@ import scipy
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import channels, with_feedforward
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.system import System
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 _DIRECT = 1e-12

@@ -10,9 +10,9 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
-from flexstage.base.quantity import FREQUENCY
-from flexstage.control.sampling import bilinear
-from flexstage.control.system import System
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.systems.sampling import bilinear
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 _WIDTH = 0.7

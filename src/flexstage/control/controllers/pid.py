@@ -9,10 +9,10 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
-from flexstage.base.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
+from flexstage.base.units.quantity import FREQUENCY, RATE, SHORT_TIME, TIME
 from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
 from flexstage.control.controllers.pi import PI, tracking_findings
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 
 
 @dataclass(frozen=True)

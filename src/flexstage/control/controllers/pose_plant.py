@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.control.controllers.decentralised import channels
-from flexstage.control.plants import Plant, zero_order_hold
-from flexstage.control.system import System, select
+from flexstage.control.plant_models.plants import Plant, zero_order_hold
+from flexstage.control.systems.system import System, select
 
 
 def pose_plant(plant: Plant) -> System:

@@ -9,11 +9,11 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.quantity import FREQUENCY, RATE
 from flexstage.base.record import Heading
+from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.controllers.family import Family, Place, tracking_gain, warped
 from flexstage.control.controllers.law import FIVE_DIGITS, law_system, tracking_rate
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 
 _POSITIONS = (0.25, 0.5, 0.78)
 _FREQUENCIES = (1.0,)

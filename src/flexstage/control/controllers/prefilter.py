@@ -10,10 +10,10 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
-from flexstage.control.coordinates import Coordinates
-from flexstage.control.sampling import bilinear
-from flexstage.control.system import System, connect
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.systems.sampling import bilinear
+from flexstage.control.systems.system import System, connect
 from flexstage.models.linear.model import Channel
 
 _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
@@ -63,8 +63,8 @@ def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sens
     Inputs `reference.<c>` are added where the controller has none.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.coordinates import coordinates
-    >>> from flexstage.control.system import static
+    >>> from flexstage.control.plant_models.coordinates import coordinates
+    >>> from flexstage.control.systems.system import static
     >>> from flexstage.models.ideal import ideal
     >>> gain = static(np.ones((1, 1)), (Channel("error.x", "m"),), (Channel("command.B", "m"),))
     >>> found = with_prefilters(gain, (Prefilter(90.0),), np.eye(1), coordinates(ideal(parallelogram())))

@@ -10,10 +10,10 @@ import numpy as np
 
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.quantity import RATE, TIME
 from flexstage.base.record import Heading
+from flexstage.base.units.quantity import RATE, TIME
 from flexstage.control.controllers.law import FIVE_DIGITS, gain_findings, law_system, slow_tracking_findings, tracking_rate
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 
 
 @dataclass(frozen=True)

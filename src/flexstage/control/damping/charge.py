@@ -9,13 +9,13 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY, SHARE
 from flexstage.base.record import INNER, Along, Heading
+from flexstage.base.units.quantity import FREQUENCY, SHARE
 from flexstage.control.damping.damped_plant import tension_signs
 from flexstage.control.damping.legs import Leg, pair_modes
-from flexstage.control.electronics import ChargeDrive
-from flexstage.control.plants import Plant
-from flexstage.control.system import System, connect, rename, select
+from flexstage.control.plant_models.electronics import ChargeDrive
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel, LinearModel
 
 

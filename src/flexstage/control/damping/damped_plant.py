@@ -10,13 +10,13 @@ import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import FREQUENCY, RATE
 from flexstage.base.record import INNER, VIEW, Along
+from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.damping.force_feedback import ForceFeedback, damping_of_pair, most_damping
 from flexstage.control.damping.legs import Leg, Pairs
-from flexstage.control.plants import ADDED, SENSED, Plant
-from flexstage.control.reduction import resonances
-from flexstage.control.system import System, connect, rename, select
+from flexstage.control.plant_models.plants import ADDED, SENSED, Plant
+from flexstage.control.plant_models.reduction import resonances
+from flexstage.control.systems.system import System, connect, rename, select
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, FORCES
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 

@@ -10,10 +10,10 @@ import scipy
 
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.assembly.pattern import copy_names
+from flexstage.mechanism.assembly.sight import link_names
 from flexstage.mechanism.mechanism import LinkProbe, Mechanism
-from flexstage.mechanism.pattern import copy_names
-from flexstage.mechanism.sight import link_names
 from flexstage.models.linear.eigen import eigen
 from flexstage.models.linear.model import LinearModel
 

@@ -14,7 +14,7 @@ import scipy
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array
-from flexstage.base.store import move_all, write, write_temporary
+from flexstage.base.storage.store import move_all, write, write_temporary
 from flexstage.base.text import printable
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.damping.sampled import SampledLegs
@@ -25,10 +25,10 @@ from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.code.program import Program
 from flexstage.control.export.code.text import identifier
 from flexstage.control.export.fmu.unit import fmu
-from flexstage.control.plants import Plant, zero_order_hold
+from flexstage.control.plant_models.plants import Plant, zero_order_hold
 from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.run import simulate
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 _TESTED = 300

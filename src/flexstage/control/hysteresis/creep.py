@@ -12,8 +12,8 @@ import scipy
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, freeze
-from flexstage.base.quantity import TIME
-from flexstage.control.system import System
+from flexstage.base.units.quantity import TIME
+from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 

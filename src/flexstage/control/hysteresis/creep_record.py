@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.base.quantity import LENGTH, TIME
+from flexstage.base.units.quantity import LENGTH, TIME
 from flexstage.control.hysteresis.creep import LogCreep
 
 _STILL = 0.01

@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.hysteresis.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.creep import LogCreep
+from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
 from flexstage.control.hysteresis.stack_test import StackTest, stack_test
-from flexstage.experiment.record import Channel, Record, Role, in_memory
+from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 
 _TURNS = (0, 1000, 0, 1000, 100, 900, 200, 800, 300, 700, 400, 600, 500, 1000, 0, 700, 0, 400, 0)
 _CHANNELS = (Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT))

@@ -8,8 +8,8 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 
 _ROUNDS = 40
 _SETTLED = 1e-8

@@ -10,9 +10,9 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.control.hysteresis.branches import MAJOR, branches_of, record_findings
 from flexstage.control.hysteresis.fit import Fit, drift_of, fit_form, form_of, known_from, play_outputs
-from flexstage.control.hysteresis.inverse import inverse_findings
+from flexstage.control.hysteresis.models.inverse import inverse_findings
+from flexstage.control.hysteresis.models.shape import Range, major_loop
 from flexstage.control.hysteresis.result import IdentifiedHysteresis, Trial
-from flexstage.control.hysteresis.shape import Range, major_loop
 
 _PLAYS = (2, 4, 8, 16, 32)
 _PIECES = (2, 4, 8)
@@ -40,7 +40,7 @@ def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = 
 
     Raises `DesignError` for a record that is none of a hysteresis: see `record_findings`, and for drift and errors beyond 2 % and 10 %.
 
-    >>> from flexstage.control.hysteresis.bouc_wen import bouc_wen
+    >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> legs = [np.linspace(a, b, 60) for a, b in ((0, 1e3), (1e3, 0), (0, 1e3), (1e3, 200), (200, 800), (800, 0), (0, 600), (600, 0))]
     >>> volts = np.concatenate(legs)
     >>> found = identify_hysteresis(volts, bouc_wen(150e-6, (0.0, 1000.0), 0.15).run(volts))

@@ -8,10 +8,10 @@ from typing import Annotated
 from flexstage.base.finding import Finding
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import LENGTH, PIEZO_GAIN, VOLTAGE
 from flexstage.base.record import INNER, VIEW
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.shape import Range
+from flexstage.base.units.quantity import LENGTH, PIEZO_GAIN, VOLTAGE
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.shape import Range
 
 
 @dataclass(frozen=True)

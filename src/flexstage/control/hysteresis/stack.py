@@ -11,12 +11,12 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
-from flexstage.base.store import write
+from flexstage.base.storage.store import write
+from flexstage.base.units.quantity import DISPLACEMENT, NOT_NEGATIVE, PIEZO_GAIN, POSITIVE, RATIO, TIME, VOLTAGE
 from flexstage.control.hysteresis.creep import LogCreep
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope, straight
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.mechanism.grammar import node_of
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml, read_text

@@ -16,12 +16,12 @@ from flexstage.base.number import Array
 from flexstage.base.record import VIEW
 from flexstage.control.hysteresis.creep_record import IdentifiedCreep, identify_creep
 from flexstage.control.hysteresis.identify import identify_hysteresis
-from flexstage.control.hysteresis.inverse import inverse
+from flexstage.control.hysteresis.models.inverse import inverse
+from flexstage.control.hysteresis.models.shape import Range
 from flexstage.control.hysteresis.result import IdentifiedHysteresis
-from flexstage.control.hysteresis.shape import Range
 from flexstage.control.hysteresis.stack import StackHysteresis, stack_hysteresis
-from flexstage.experiment.record import Channel, Record
-from flexstage.experiment.unit import in_si, same_dimension, unit_problem
+from flexstage.experiment.records.record import Channel, Record
+from flexstage.experiment.records.unit import in_si, same_dimension, unit_problem
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
     Channels are converted to V and m. `limits` are the actuator's volts. Raises `DesignError` for channels that cannot be told, units that
     are absent or of something else, and for what `identify_hysteresis` and `identify_creep` refuse.
 
-    >>> from flexstage.experiment.record import in_memory
+    >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
     >>> strokes = np.where(np.gradient(volts) > 0.0, 0.15 * volts, 0.15 * volts + 4e-5 * volts * (1000.0 - volts))
     >>> test = stack_test(in_memory([Channel("u", "V"), Channel("y", "um")], 100.0, np.column_stack([volts, strokes])))

@@ -10,11 +10,11 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW, Along, Axes
-from flexstage.control.closed import Loop
+from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.learning.responses import Band, frequencies_of, inverse, motions, readings, through
-from flexstage.control.system import System
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.system import System
 
 _CONTRACTS = 0.8
 """What is learned anew in a pass stays below this share of what was there, wherever the modes lie."""

@@ -11,12 +11,12 @@ import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import INNER, Along, Axes
-from flexstage.control.closed import Loop
+from flexstage.base.units.quantity import FREQUENCY, TIME
 from flexstage.control.learning.learn import fade_ends, filter_path, line_grid, robust_band, wanted_readings
 from flexstage.control.learning.responses import Band, frequencies_of, readings
-from flexstage.control.system import System
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.system import System
 
 _MEMORY = 6.0
 """How far the filters reach both ways, in periods of the end of the band."""

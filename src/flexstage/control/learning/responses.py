@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.closed import Loop
 from flexstage.control.controllers.pose_plant import pose_plant
-from flexstage.control.plants import Plant
-from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System, select
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System, select
 
 _AT_REST = 1e-4
 _TAPER = 0.75

@@ -6,20 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexstage.analysis.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.base.number import Array
-from flexstage.control.closed import loop
+from flexstage.control.robustness.stability import require_stable
 from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.recorder import POSITION, TABLES, VOLTAGE, Recorder
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.running import RunningLoop
-from flexstage.control.stability import require_stable
 from flexstage.control.study.resolve import resolve
 from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.runs import command_ends, driven_machine, rest_time
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import stacks_of
 from flexstage.control.study.study import pose_gains
+from flexstage.control.systems.closed import loop
 from flexstage.mechanism.mechanism import Mechanism
 
 _MICRO = 1e6

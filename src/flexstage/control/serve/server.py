@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexstage.base.finding import refuse
-from flexstage.base.threads import one_thread
+from flexstage.base.processes.threads import one_thread
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.gcs import LONGEST, Session
 

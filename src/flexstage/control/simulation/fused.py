@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.hysteresis.inverse import inverse
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.inverse import inverse
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.simulation.machine import Amplifiers
 
 Kernel = Callable[[Array, Array], Array]

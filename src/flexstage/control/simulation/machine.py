@@ -11,12 +11,12 @@ from flexstage.analysis.workspace.drive import Drive
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.control.electronics import Amplifier
-from flexstage.control.hysteresis.inverse import inverse_findings
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.protocol import Hysteresis
-from flexstage.control.plants import Plant, zero_order_hold
-from flexstage.control.system import System, select
+from flexstage.control.hysteresis.models.inverse import inverse_findings
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.protocol import Hysteresis
+from flexstage.control.plant_models.electronics import Amplifier
+from flexstage.control.plant_models.plants import Plant, zero_order_hold
+from flexstage.control.systems.system import System, select
 from flexstage.models.linear.model import Channel
 
 

@@ -7,13 +7,13 @@ from enum import IntEnum
 
 import numpy as np
 
-from flexstage.analysis.random_response import Spectrum
+from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.stream import generator
-from flexstage.control.electronics import Amplifier, Sensor
-from flexstage.control.plants import Plant
-from flexstage.control.resolvent import resolvent
+from flexstage.control.plant_models.electronics import Amplifier, Sensor
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.resolvent import resolvent
 from flexstage.control.white_noise import gauge_noise
 
 

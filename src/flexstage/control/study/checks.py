@@ -25,7 +25,7 @@ from flexstage.control.study.setup import (
     VibrationSetup,
 )
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.grammar.grammar import node_of
 
 _HIGHEST_ORDER = 20
 _MOST_PASSES = 50

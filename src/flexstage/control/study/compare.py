@@ -9,15 +9,15 @@ from typing import Annotated, TypeAlias
 
 import numpy as np
 
-from flexstage.analysis.solid_modes import FeaModes
-from flexstage.analysis.stance import Stance
+from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.analysis.loaded.stance import Stance
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
-from flexstage.base.jobs import CallError, Line, results
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import DISPLACEMENT, FREQUENCY, RATIO, TIME
+from flexstage.base.processes.jobs import CallError, Line, results
 from flexstage.base.record import INNER, VIEW, Along
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, RATIO, TIME
 from flexstage.control.controllers.kinds import CONTROLLERS
 from flexstage.control.controllers.loops import platform_loops
 from flexstage.control.noise import Kind, NoiseBudget
@@ -30,7 +30,7 @@ from flexstage.control.tuning.search import field
 from flexstage.control.tuning.view import view
 from flexstage.control.tuning.wish import Wish
 from flexstage.experiment.pipeline import Identification, Told
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)

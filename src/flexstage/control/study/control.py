@@ -12,8 +12,8 @@ import numpy as np
 from flexstage.analysis.complete import platform_modes
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.controllers.decentralised import Decentralised, channels
 from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.kinds import CONTROLLERS
@@ -27,7 +27,7 @@ from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.study.choices import Axes, Compensation, ControllerKind, Notching, OfferedKind
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.setup import GAINS, ControllerSetup, GoalSetup, LoopNumbers, NotchAt, PrefilterAt
-from flexstage.control.system import System, static
+from flexstage.control.systems.system import System, static
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.find import Asked, find
 from flexstage.control.tuning.goal import Goal, Kind, Tuning

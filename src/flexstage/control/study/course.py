@@ -13,9 +13,9 @@ from flexstage.analysis.workspace.stroke import StrokeLimits
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
-from flexstage.base.quantity import TIME
 from flexstage.base.record import INNER
-from flexstage.control.coordinates import Coordinates
+from flexstage.base.units.quantity import TIME
+from flexstage.control.plant_models.coordinates import Coordinates
 from flexstage.control.study.setup import FileMotion, Motion, RasterMotion, SineMotion, SpiralMotion, StepMotion, TrajectorySetup
 from flexstage.control.trajectory.check import reach_findings, speed_findings
 from flexstage.control.trajectory.path import Trajectory, reference
@@ -61,7 +61,7 @@ def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Cours
     Raises `DesignError` for motions that the loop does not have, and for numbers that make no trajectory.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.models.ideal import ideal
     >>> found = courses(StepMotion(), coordinates(ideal(parallelogram())))
     >>> [(each.name, each.trajectory.at(np.array([1.0])).tolist()) for each in found]
@@ -137,7 +137,7 @@ def sampled_course(course: Course, coordinates: Coordinates, step: float, second
     Raises `DesignError` where that is too short or too long to be simulated.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.models.ideal import ideal
     >>> loop = coordinates(ideal(parallelogram()))
     >>> times, poses = sampled_course(courses(StepMotion(), loop)[0], loop, 1e-3, 0.1)
@@ -156,7 +156,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     """What of a course the strokes do not reach; `gains` (strokes by coordinate) are those that the poses are commanded by.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.coordinates import coordinates
+    >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.analysis.workspace.stroke import stroke_limits
     >>> from flexstage.models.ideal import ideal
     >>> stage = parallelogram()

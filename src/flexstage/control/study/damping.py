@@ -19,8 +19,8 @@ from flexstage.control.damping.damped_plant import (
 )
 from flexstage.control.damping.force_feedback import ForceFeedback
 from flexstage.control.damping.legs import Leg, Pairs, pair_zeros
-from flexstage.control.plants import Plant
-from flexstage.control.reduction import reduce_modes
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.plant_models.reduction import reduce_modes
 from flexstage.control.study.setup import DampingSetup
 from flexstage.models.linear.model import LinearModel
 

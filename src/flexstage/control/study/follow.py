@@ -9,7 +9,6 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.control.closed import Loop
 from flexstage.control.learning.learn import Learned, Lesson, inverse_path, learn
 from flexstage.control.learning.repeat import Repeated, Repetition, repeat
 from flexstage.control.learning.shaper import zv, zvd
@@ -17,7 +16,8 @@ from flexstage.control.simulation.result import Simulated
 from flexstage.control.study.choices import Following
 from flexstage.control.study.course import Course
 from flexstage.control.study.setup import FollowSetup
-from flexstage.control.system import System
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.system import System
 
 _FEWEST = 2.0
 

@@ -9,25 +9,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.analysis.complete import felt, platform_modes
-from flexstage.analysis.load_effect import LoadEffect, load_effect
-from flexstage.analysis.random_response import Spectrum
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.random_response import Spectrum
+from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.number import Array, Table
 from flexstage.control.damping.charge import ChargedStacks, at_constant_charge, describe_charge, leak_charge
 from flexstage.control.damping.damped_plant import ActiveDamping
 from flexstage.control.damping.legs import Leg, legs
-from flexstage.control.electronics import ChargeDrive, GaugeSettings, Hardware, hardware
-from flexstage.control.measured_plant import measured_plant
-from flexstage.control.plants import Plant, plant
-from flexstage.control.reduction import reduce_modes, resonances
+from flexstage.control.plant_models.electronics import ChargeDrive, GaugeSettings, Hardware, hardware
+from flexstage.control.plant_models.measured_plant import measured_plant
+from flexstage.control.plant_models.plants import Plant, plant
+from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.study.checks import setup_findings
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.damping import damp
-from flexstage.control.study.floor import floor_spectra
+from flexstage.control.study.hardware.floor import floor_spectra
 from flexstage.control.study.setup import GaugeSetup, LoopSetup
 from flexstage.experiment.identification.identified import Identified
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.kinematics import Kinematics
@@ -35,7 +35,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 
 if TYPE_CHECKING:
-    from flexstage.analysis.stance import Stance
+    from flexstage.analysis.loaded.stance import Stance
 
 _USUAL = 10e3
 _OVER_HIGHEST = 10.0

@@ -8,13 +8,13 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.complete import read
-from flexstage.analysis.deflection import deflection
-from flexstage.analysis.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.linear_statics.deflection import deflection
+from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
-from flexstage.base.quantity import LENGTH
 from flexstage.base.record import VIEW
+from flexstage.base.units.quantity import LENGTH
 from flexstage.control.compensation import StaticError, ideal_compensation, lost_motion_compensation, static_error
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.mechanism.mechanism import PLATFORM
@@ -42,7 +42,7 @@ class RestErrors(InNotebook):
 def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
     """Errors at rest of a settled set-up.
 
-    >>> from flexstage.analysis.lost_motion import lost_motion
+    >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.study.resolve import resolve
     >>> from flexstage.control.study.setup import LoopSetup

@@ -10,11 +10,11 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding
 from flexstage.base.number import Array
-from flexstage.control.closed import Cut, Loop, loop
-from flexstage.control.retention import MARGIN_CHANGE, Retention, retention
-from flexstage.control.stability_margins import margins, peaks
+from flexstage.control.plant_models.retention import MARGIN_CHANGE, Retention, retention
+from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, retain_modes
+from flexstage.control.systems.closed import Cut, Loop, loop
 
 
 def control_and_modes(

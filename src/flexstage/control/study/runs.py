@@ -15,13 +15,12 @@ from flexstage.analysis.workspace.stroke import stacks as piezo_stacks
 from flexstage.base.finding import Finding, require
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Table
-from flexstage.base.quantity import DISPLACEMENT, POWER, SPEED, TEMPERATURE, TIME
 from flexstage.base.record import INNER, VIEW
-from flexstage.control.closed import Loop
-from flexstage.control.creep_plant import add_creep
+from flexstage.base.units.quantity import DISPLACEMENT, POWER, SPEED, TEMPERATURE, TIME
 from flexstage.control.learning.learn import Learned
 from flexstage.control.learning.repeat import Repeated
-from flexstage.control.plants import ADDED
+from flexstage.control.plant_models.creep_plant import add_creep
+from flexstage.control.plant_models.plants import ADDED
 from flexstage.control.simulation.machine import Machine, machine
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.result import Excursion, Simulated, StepFigures, other_motions, step_figures, tracking
@@ -33,7 +32,8 @@ from flexstage.control.study.course import Course, course_cautions, course_findi
 from flexstage.control.study.follow import Runner, follow
 from flexstage.control.study.resolve import ResolvedSetup
 from flexstage.control.study.stacks import Stacks
-from flexstage.mechanism.expand import expand
+from flexstage.control.systems.closed import Loop
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.parts.actuator import ThrustActuator
 
 _TIME_CONSTANTS = 8.0
@@ -155,7 +155,7 @@ def runs(
     findings: motions that the stage does not have, courses beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.control.closed import loop
+    >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.study.control import make_controller
     >>> from flexstage.control.study.resolve import resolve
     >>> from flexstage.control.study.setup import ControllerSetup, LoopSetup

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Annotated, Any, ClassVar, TypeAlias
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.quantity import (
+from flexstage.base.units.quantity import (
     ACCELERATION,
     ACCELERATION_NOISE,
     ANGLE,
@@ -28,11 +28,11 @@ from flexstage.base.quantity import (
     Bound,
 )
 from flexstage.control.controllers.kinds import CONTROLLERS
-from flexstage.control.study.amplifier_kinds import AMPLIFIERS
-from flexstage.control.study.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
+from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
+from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.tuning.aim import Aim
-from flexstage.mechanism.node import ChoiceNode, Wanted
+from flexstage.mechanism.grammar.node import ChoiceNode, Wanted
 from flexstage.models.theory import Model
 
 _PEAK = Bound(low=1.0, open_low=True)

@@ -12,17 +12,17 @@ import numpy as np
 
 from flexstage.analysis.workspace.drive import Drive, drive
 from flexstage.base.number import Array
-from flexstage.base.quantity import LENGTH, SHARE
 from flexstage.base.record import Along, Heading
-from flexstage.control.hysteresis.bouc_wen import BoucWen, bouc_wen
+from flexstage.base.units.quantity import LENGTH, SHARE
 from flexstage.control.hysteresis.creep import Creep, LogCreep, exponentials
 from flexstage.control.hysteresis.identify import identify_hysteresis
-from flexstage.control.hysteresis.inverse import hysteresis_inverse, inverse_state
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.protocol import Hysteresis
-from flexstage.control.hysteresis.scaled import Stacks as Ranges
-from flexstage.control.hysteresis.scaled import scale_to_stacks
-from flexstage.control.hysteresis.shape import Range, major_loop
+from flexstage.control.hysteresis.models.bouc_wen import BoucWen, bouc_wen
+from flexstage.control.hysteresis.models.inverse import hysteresis_inverse, inverse_state
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.protocol import Hysteresis
+from flexstage.control.hysteresis.models.scaled import Stacks as Ranges
+from flexstage.control.hysteresis.models.scaled import scale_to_stacks
+from flexstage.control.hysteresis.models.shape import Range, major_loop
 from flexstage.control.hysteresis.stack import load_hysteresis
 from flexstage.control.study.choices import StackKind
 from flexstage.control.study.setup import HystereticStacks
@@ -151,7 +151,7 @@ def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
     """Widths (n,) of each stack's settled loop over its own volts.
 
-    >>> from flexstage.control.hysteresis.bouc_wen import bouc_wen
+    >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> loop_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()
     [0.1]
     """

@@ -8,31 +8,29 @@ from typing import Annotated, ClassVar, TypeVar
 
 import numpy as np
 
-from flexstage.analysis.load_effect import LoadEffect
-from flexstage.analysis.lost_motion import LostMotion, lost_motion
-from flexstage.analysis.solid_modes import FeaModes
-from flexstage.analysis.stance import Stance
+from flexstage.analysis.dynamics.solid_modes import FeaModes
+from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
+from flexstage.analysis.loaded.load_effect import LoadEffect
+from flexstage.analysis.loaded.stance import Stance
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Table, first_design
-from flexstage.base.quantity import FREQUENCY, RATE
+from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER, VIEW
-from flexstage.base.threads import one_thread
-from flexstage.control.closed import Cut, Loop, loop
-from flexstage.control.curves import Curves, curves
+from flexstage.base.units.quantity import FREQUENCY, RATE
 from flexstage.control.damping.charge import ChargedStacks
 from flexstage.control.damping.damped_plant import ActiveDamping
-from flexstage.control.disk import DiskMargin, disk_margins
-from flexstage.control.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.noise import NoiseBudget, noise_budget
-from flexstage.control.plants import Plant
-from flexstage.control.retention import Retention
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.plant_models.retention import Retention
+from flexstage.control.robustness.disk import DiskMargin, disk_margins
+from flexstage.control.robustness.measured_margins import MeasuredMargins, coherence_findings, measured_margins
+from flexstage.control.robustness.stability import Verdict, require_stable, verdict
+from flexstage.control.robustness.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
 from flexstage.control.simulation.result import Simulated
-from flexstage.control.stability import Verdict, require_stable, verdict
-from flexstage.control.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control
 from flexstage.control.study.resolve import ResolvedSetup, on_test, resolve
@@ -41,6 +39,8 @@ from flexstage.control.study.retained import control_and_modes, stated_modes_cau
 from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
+from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
 

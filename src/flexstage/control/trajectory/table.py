@@ -13,8 +13,8 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.control.trajectory.path import Peaks
-from flexstage.experiment.record import Channel, Record
-from flexstage.experiment.unit import in_si, plain_unit
+from flexstage.experiment.records.record import Channel, Record
+from flexstage.experiment.records.unit import in_si, plain_unit
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -81,7 +81,7 @@ def from_record(record: Record, point: str = PLATFORM) -> Table:
 
     Raises `DesignError` where there is none, and for units that are not those of a length or an angle.
 
-    >>> from flexstage.experiment.record import in_memory
+    >>> from flexstage.experiment.records.record import in_memory
     >>> asked = from_record(in_memory([Channel("x", "um"), Channel("u1", "V")], 2.0, np.array([[0.0, 1.0], [3.0, 1.0]])))
     >>> asked.coordinates, asked.at(np.array([0.25])).tolist()
     (('x',), [[1.5e-06]])

@@ -17,8 +17,8 @@ from flexstage.control.controllers.family import Family, Place
 from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.lqg import LQG, Disturbances, Weights, estimator, observer_gain, with_observer
 from flexstage.control.controllers.notch import Notch, notch_of_mode
-from flexstage.control.resolvent import Resolvent, resolvent
-from flexstage.control.system import System
+from flexstage.control.systems.resolvent import Resolvent, resolvent
+from flexstage.control.systems.system import System
 from flexstage.control.tuning.goal import Goal, Judgement, Kind
 from flexstage.control.tuning.judge import crossing_frequency, judge_loop, keeps_peak, own_bandwidths
 from flexstage.control.tuning.laws import laws

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexstage.analysis.random_response import Spectrum
+from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.lqg import LQG, Disturbances
 from flexstage.control.controllers.prefilter import Prefilter
-from flexstage.control.plants import Plant
+from flexstage.control.plant_models.plants import Plant
 from flexstage.control.tuning.attempt import Task
 from flexstage.control.tuning.goal import Goal, Judgement, Kind, Tuning
 from flexstage.control.tuning.judge import closed_growth, judge_loop

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System
 from flexstage.control.tuning.goal import Judgement
 from flexstage.control.tuning.view import View
 from flexstage.models.linear.model import Channel

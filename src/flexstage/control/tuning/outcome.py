@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System
 from flexstage.control.tuning.judge import highest_gain
 from flexstage.control.tuning.search import Field
 from flexstage.control.tuning.view import View

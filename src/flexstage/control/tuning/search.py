@@ -10,14 +10,14 @@ from typing import cast
 import numpy as np
 import scipy
 
-from flexstage.analysis.random_response import Spectrum
+from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.number import Array
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.notch import Notch
 from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
-from flexstage.control.resolvent import resolvent
-from flexstage.control.system import select
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import select
 from flexstage.control.tuning.aim import Aim
 from flexstage.control.tuning.fit import BAND, STIFF, Bounds, Misfit, OneLoop, Squares, descend, keeps, sum_squares
 from flexstage.control.tuning.goal import Kind

@@ -12,7 +12,7 @@ from flexstage.base.finding import DesignError, Finding, require
 from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.notch import notch_findings
-from flexstage.control.plants import Plant
+from flexstage.control.plant_models.plants import Plant
 from flexstage.control.tuning.attempt import Attempt, Task, attempt, reach
 from flexstage.control.tuning.goal import Judgement, Kind, Tuning, goal_findings
 from flexstage.control.tuning.view import View, view

@@ -11,9 +11,9 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.control.controllers.loops import Loops
 from flexstage.control.controllers.pose_plant import pose_plant
-from flexstage.control.plants import Plant
-from flexstage.control.resolvent import resolvent
-from flexstage.control.system import System
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
 """Frequencies evenly in the logarithm, and how many a decade has at least: 2 to 4 % apart."""

@@ -25,8 +25,8 @@ from flexstage.experiment.record_options import (
     identify_records,
     shapes_on,
 )
-from flexstage.experiment.report import compare_report
-from flexstage.experiment.sections import compare_tables
+from flexstage.experiment.show.report import compare_report
+from flexstage.experiment.show.sections import compare_tables
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design

@@ -28,9 +28,9 @@ from flexstage.experiment.record_options import (
     identify_records,
     shapes_on,
 )
-from flexstage.experiment.report import identify_report
 from flexstage.experiment.shapes_on_stage import StageShapes
-from flexstage.experiment.tables import identified_table, measured_shape_table, peak_table, recorded_table
+from flexstage.experiment.show.report import identify_report
+from flexstage.experiment.show.tables import identified_table, measured_shape_table, peak_table, recorded_table
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer

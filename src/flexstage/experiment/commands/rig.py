@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
+from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test

@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
-from flexstage.analysis.standing import standing
+from flexstage.analysis.loaded.standing import standing
 from flexstage.base.finding import refuse
-from flexstage.base.quantity import RATIO
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import RATIO
+from flexstage.base.units.unit import parse
 from flexstage.experiment.record_options import (
     Allow,
     Arrays,

@@ -14,13 +14,13 @@ from typing import Protocol
 
 import numpy as np
 
-from flexstage.base.files import Attribute
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.experiment.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
-from flexstage.experiment.options import Allow, Arrays, Kind, Options, assign, matches, number_names, select_names
-from flexstage.experiment.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
-from flexstage.experiment.unit import plain_unit
+from flexstage.base.storage.files import Attribute
+from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.records.options import Allow, Arrays, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.records.record import Channel, InMemory, Record, Responses, Role, Samples, rising_problem
+from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
 """What files written here say of themselves."""

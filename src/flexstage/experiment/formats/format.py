@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.experiment.options import Options
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.options import Options
+from flexstage.experiment.records.record import Record, Responses
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table.layout import Layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.options import Allow, Options, assign, number_names, select_names
-from flexstage.experiment.record import Channel, Record, Role
+from flexstage.experiment.records.options import Allow, Options, assign, number_names, select_names
+from flexstage.experiment.records.record import Channel, Record, Role
 
 _HEAD = 1 << 18
 _ENTRY = re.compile(r"#\s*(?P<key>[A-Z_]+\d*)\s*=\s*(?P<value>.*?)\s*")

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.files import Attribute, Hdf, HdfArray, hdf, new_hdf
 from flexstage.base.number import Array
-from flexstage.base.store import atomic_write
+from flexstage.base.storage.files import Attribute, Hdf, HdfArray, hdf, new_hdf
+from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, Variable, read_arrays
 from flexstage.experiment.formats.format import Format
-from flexstage.experiment.options import Options
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.options import Options
+from flexstage.experiment.records.record import Record, Responses
 
 BLOCK = 65_536
 NUMBERS = frozenset("fiub")
@@ -87,7 +87,7 @@ def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     Raises `DesignError` where it is none, breaks off or is damaged, and as `read_arrays` does.
 
     >>> import h5py, tempfile
-    >>> from flexstage.experiment.options import Arrays
+    >>> from flexstage.experiment.records.options import Arrays
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
     ...         file["test/u"], file["test/y"], file.attrs["fs"] = [1.0, 2.0], [3.0, 4.0], 50.0
@@ -120,7 +120,7 @@ def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     where the file cannot be written.
 
     >>> import h5py, tempfile
-    >>> from flexstage.experiment.record import Channel, in_memory
+    >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_hdf(Path(folder) / "a.h5", in_memory([Channel("S1", "um")], 3.0, np.array([[0.1], [0.2]])))
     ...     with h5py.File(Path(folder) / "a.h5") as file:

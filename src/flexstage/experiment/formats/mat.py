@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import scipy
 
-from flexstage.base.files import Hdf, HdfArray, Opaque, hdf, mat
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.store import atomic_write
+from flexstage.base.storage.files import Hdf, HdfArray, Opaque, hdf, mat
+from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.arrays import RECORD_FORM, RESPONSES_FORM, Contents, HeldArray, Variable, read_arrays
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.hdf import NUMBERS, StoredArray, is_hdf
-from flexstage.experiment.options import Options
-from flexstage.experiment.record import Channel, Record, Responses
+from flexstage.experiment.records.options import Options
+from flexstage.experiment.records.record import Channel, Record, Responses
 
 _LARGEST = 2**31 - 1
 _HEAD = 512
@@ -43,7 +43,7 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     `read_arrays` does.
 
     >>> import scipy.io, tempfile
-    >>> from flexstage.experiment.options import Arrays
+    >>> from flexstage.experiment.records.options import Arrays
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     scipy.io.savemat(Path(folder) / "a.mat", {"test": {"u": [1.0, 2.0], "fs": 50.0}, "units": ["V"]})
     ...     (found,) = read_mat(Path(folder) / "a.mat", Options(arrays=Arrays(samples=("test.u",), rate=("test.fs",))))
@@ -100,7 +100,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     file cannot be written.
 
     >>> import scipy.io, tempfile
-    >>> from flexstage.experiment.record import in_memory
+    >>> from flexstage.experiment.records.record import in_memory
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_mat(Path(folder) / "a.mat", in_memory([Channel("S1", "um")], 3.0, np.array([[0.1], [0.2]])))
     ...     scipy.io.loadmat(Path(folder) / "a.mat")["samples"].tolist()

@@ -6,13 +6,13 @@ import os
 from pathlib import Path
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.files import require_regular
 from flexstage.base.finding import refuse
+from flexstage.base.storage.files import require_regular
 from flexstage.experiment.formats import FORMATS
 from flexstage.experiment.formats.format import Format
 from flexstage.experiment.formats.table import CSV
-from flexstage.experiment.options import Kind, Options
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.options import Kind, Options
+from flexstage.experiment.records.record import Record, Responses
 
 _DEFAULT = Options()
 _START = 4096
@@ -37,7 +37,7 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
 
     >>> import tempfile
     >>> import numpy as np
-    >>> from flexstage.experiment.record import Channel, in_memory
+    >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> from flexstage.experiment.formats.write import write
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write(Path(folder) / "a.uff", in_memory([Channel("u1", "V"), Channel("S1", "um")], 2048.0, np.zeros((8, 2))))

@@ -8,7 +8,7 @@ from pathlib import Path
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.experiment.formats import FORMATS
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.record import Record, Responses
 
 
 @check_arguments
@@ -21,7 +21,7 @@ def write(path: str | os.PathLike[str], what: Record | Responses, form: str = ""
     >>> import tempfile
     >>> import numpy as np
     >>> from flexstage.experiment.formats.read import read
-    >>> from flexstage.experiment.record import Channel, in_memory
+    >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write(Path(folder) / "a.csv", in_memory([Channel("S1", "um")], 3.0, np.array([[0.1], [0.2]])))
     ...     read(Path(folder) / "a.csv").values.tolist()

@@ -10,13 +10,13 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.cross_spectra import Segments, Spectra, Tell, Window, pool, spectra
-from flexstage.experiment.identification.growth import noise_growth
-from flexstage.experiment.identification.lines import Cells, Lines, block_count, record_lines
-from flexstage.experiment.identification.smear import SMEARING, Smear
-from flexstage.experiment.identification.tones import Tone, remove_tones
-from flexstage.experiment.record import Channel, Record, Responses, rising_problem
-from flexstage.experiment.transfer import h1, multiple_coherence, noise_density
+from flexstage.experiment.identification.outputs.tones import Tone, remove_tones
+from flexstage.experiment.records.record import Channel, Record, Responses, rising_problem
+from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Tell, Window, pool, spectra
+from flexstage.experiment.spectral.growth import noise_growth
+from flexstage.experiment.spectral.lines import Cells, Lines, block_count, record_lines
+from flexstage.experiment.spectral.smear import SMEARING, Smear
+from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
 _SEGMENTS = 24.0
 _PER_INPUT = 3.0

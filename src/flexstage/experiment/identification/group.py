@@ -11,11 +11,11 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.bands import Extent
 from flexstage.experiment.identification.cluster import Candidate, vector_assurance
 from flexstage.experiment.identification.confidence import Deviations, deviations, drive_strength, freedoms, misfits, significance
+from flexstage.experiment.identification.diagnosis.unexplained import SURPRISING, excess, suggest_mode
 from flexstage.experiment.identification.evidence import Evidence
 from flexstage.experiment.identification.jackknife import jackknife, sub_bands
 from flexstage.experiment.identification.likelihood import Band, Fit, Modal, background, fit, noise, scatter, silence, with_shapes
-from flexstage.experiment.identification.lines import Cells
-from flexstage.experiment.identification.unexplained import SURPRISING, excess, suggest_mode
+from flexstage.experiment.spectral.lines import Cells
 
 ONCE_IN = 1e-9
 """How often noise may pass for a mode."""
@@ -79,7 +79,7 @@ def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], 
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
-    >>> from flexstage.experiment.identification.lines import edges, gather_cells
+    >>> from flexstage.experiment.spectral.lines import edges, gather_cells
     >>> known, pole = evidence(one_mode_record(), None), 1.01 * POLE
     >>> [cells] = gather_cells(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
     >>> found = fit_group(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))

@@ -11,13 +11,13 @@ import numpy as np
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY, TIME
 from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import FREQUENCY, TIME
 from flexstage.experiment.identification.cluster import Stabilisation
 from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.peaks import Peak
+from flexstage.experiment.identification.diagnosis.peaks import Peak
 from flexstage.experiment.identification.residues import modal_sum, remainder_sum
-from flexstage.experiment.record import Channel, Responses
+from flexstage.experiment.records.record import Channel, Responses
 
 
 @dataclass(frozen=True)

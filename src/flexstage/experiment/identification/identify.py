@@ -10,23 +10,23 @@ import numpy as np
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.cross_spectra import Segments, Spectra, Tell
-from flexstage.experiment.identification.adequacy import Reach, few_lines
 from flexstage.experiment.identification.bands import TOGETHER, extents, sweeps
-from flexstage.experiment.identification.caution import Modes, warnings
 from flexstage.experiment.identification.cluster import Candidate, Stabilisation, merge, stabilisation
-from flexstage.experiment.identification.driven import Drive, measure_drives
+from flexstage.experiment.identification.diagnosis.adequacy import Reach, few_lines
+from flexstage.experiment.identification.diagnosis.caution import Modes, warnings
+from flexstage.experiment.identification.diagnosis.driven import Drive, measure_drives
+from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
+from flexstage.experiment.identification.diagnosis.peaks import Left, peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.identification.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
 from flexstage.experiment.identification.likelihood import Modal
-from flexstage.experiment.identification.lines import edges, gather_cells
 from flexstage.experiment.identification.lscf import lscf
-from flexstage.experiment.identification.peaks import Left, peaks
 from flexstage.experiment.identification.residues import modal_sum, remainder
-from flexstage.experiment.record import Record, Responses
+from flexstage.experiment.records.record import Record, Responses
+from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Tell
+from flexstage.experiment.spectral.lines import edges, gather_cells
 
 _LARGEST = 72
 _LONGEST = 40

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.lines import Cells, legendre_coefficients, nodes
-from flexstage.experiment.identification.smear import Smear
+from flexstage.experiment.spectral.lines import Cells, legendre_coefficients, nodes
+from flexstage.experiment.spectral.smear import Smear
 
 _CHUNK = 4_000_000
 _FREE, _SMALL = 1e-9, 1e-4

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from flexstage.analysis.sensitivities import departure, not_numbers
+from flexstage.analysis.assessment.sensitivities import departure, not_numbers
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Array, Table
-from flexstage.mechanism.address import get, quantity_of, set_value
-from flexstage.mechanism.locate import canonical, locate
+from flexstage.mechanism.addresses.address import get, quantity_of, set_value
+from flexstage.mechanism.addresses.locate import canonical, locate
+from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import NumberNode
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.analysis.workspace.stroke import stacks
-from flexstage.base.dimension import dimension_of
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
+from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.identification.identified import Identified
-from flexstage.experiment.record import Channel
-from flexstage.experiment.unit import unit_problem
+from flexstage.experiment.records.record import Channel
+from flexstage.experiment.records.unit import unit_problem
 from flexstage.experiment.virtual_rig.plan import drivable_actuators, volts_per_metre
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel

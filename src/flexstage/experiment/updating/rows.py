@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from flexstage.analysis.assessment.sensitivities import project, slope, step_parameters, steppable
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.sensitivities import project, slope, step_parameters, steppable
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.experiment.comparison import Compared

@@ -15,8 +15,8 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER, VIEW
-from flexstage.base.threads import one_thread
 from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
@@ -34,7 +34,7 @@ from flexstage.experiment.updating.rows import (
     start_design,
     static_gains,
 )
-from flexstage.mechanism.address import get
+from flexstage.mechanism.addresses.address import get
 from flexstage.mechanism.mechanism import Mechanism
 
 _TOLD, _HARDLY = 0.1, 0.2

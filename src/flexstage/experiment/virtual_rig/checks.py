@@ -11,7 +11,7 @@ from flexstage.experiment.virtual_rig.chain import Chain
 from flexstage.experiment.virtual_rig.plan import Plan, drivable_actuators, highest_mode
 from flexstage.experiment.virtual_rig.recorded import Recorded
 from flexstage.experiment.virtual_rig.setup import RigSetup
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 

@@ -10,7 +10,7 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.workspace.stroke import stacks, stroke_limits
 from flexstage.base.number import Array, Number
 from flexstage.experiment.virtual_rig.setup import RigSetup
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.actuator import ChargedActuator

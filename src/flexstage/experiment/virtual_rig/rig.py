@@ -6,8 +6,8 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import require
-from flexstage.experiment.cross_spectra import Tell
-from flexstage.experiment.record import Channel, Record, Role
+from flexstage.experiment.records.record import Channel, Record, Role
+from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.virtual_rig.chain import chain
 from flexstage.experiment.virtual_rig.checks import plan_findings, range_findings, setup_findings
 from flexstage.experiment.virtual_rig.plan import Plan, plan_test

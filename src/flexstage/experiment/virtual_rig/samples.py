@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.cross_spectra import Tell
+from flexstage.experiment.spectral.cross_spectra import Tell
 from flexstage.experiment.virtual_rig.chain import Chain
 from flexstage.experiment.virtual_rig.noise import Stream, walk, white
 from flexstage.experiment.virtual_rig.plan import Plan

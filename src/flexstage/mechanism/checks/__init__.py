@@ -11,6 +11,7 @@ from dataclasses import replace
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Table
+from flexstage.mechanism.assembly.expand import compound_findings, place_findings
 from flexstage.mechanism.checks.formula import formula_findings
 from flexstage.mechanism.checks.geometry import geometry_findings, matrix_findings
 from flexstage.mechanism.checks.graph import graph_findings
@@ -19,7 +20,6 @@ from flexstage.mechanism.checks.name import copy_findings, name_findings
 from flexstage.mechanism.checks.orientation import orientation_findings
 from flexstage.mechanism.checks.provenance import change_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
-from flexstage.mechanism.expand import compound_findings, place_findings
 from flexstage.mechanism.mechanism import Mechanism
 
 __all__ = ["check", "copy_findings", "package_findings", "require_valid"]

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.expression import Expression, ExpressionError, parse_expression
 from flexstage.base.finding import DesignError, Finding
-from flexstage.base.unit import quantity_of_unit
-from flexstage.mechanism.address import get, quantity_of
-from flexstage.mechanism.formulas import PREFIX, amount_of, cycle_findings, formula_value, scope_of, shown_unit, spelling_findings
+from flexstage.base.units.expression import Expression, ExpressionError, parse_expression
+from flexstage.base.units.unit import quantity_of_unit
+from flexstage.mechanism.addresses.address import get, quantity_of
+from flexstage.mechanism.grammar.formulas import PREFIX, amount_of, cycle_findings, formula_value, scope_of, shown_unit, spelling_findings
 from flexstage.mechanism.mechanism import Mechanism, NamedNumber
 
 _ALIKE = 1e-9

@@ -12,14 +12,14 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number, first_design, stack
-from flexstage.base.quantity import LENGTH, Quantity
-from flexstage.base.unit import show
+from flexstage.base.units.quantity import LENGTH, Quantity
+from flexstage.base.units.unit import show
+from flexstage.mechanism.addresses.locate import link_path, locate
+from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_changes, placed_bodies
+from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.checks.value import first_failing
-from flexstage.mechanism.expand import NO_IMAGE, apply_changes, placed_bodies
-from flexstage.mechanism.likeness import drawn_units
-from flexstage.mechanism.locate import link_path, locate
+from flexstage.mechanism.grammar.node import join
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import join
 from flexstage.parts.body import Body, Extrusion, Imported, Inertia, Solid, winding
 from flexstage.parts.condensation import superelement_findings
 from flexstage.parts.given import Given

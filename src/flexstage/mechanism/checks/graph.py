@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from flexstage.base.finding import Finding, name_first
-from flexstage.mechanism.expand import copy_names, joined, placed_bodies
-from flexstage.mechanism.likeness import drawn_units
+from flexstage.mechanism.assembly.expand import copy_names, joined, placed_bodies
+from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import imposes_stroke
 

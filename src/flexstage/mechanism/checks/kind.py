@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
 
 from flexstage.base.finding import Finding
-from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 
 

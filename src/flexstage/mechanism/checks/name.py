@@ -7,12 +7,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from flexstage.base.finding import Finding, suggest_nearest
-from flexstage.mechanism.expand import joined, placed_bodies, port_findings
-from flexstage.mechanism.grammar import RESERVED
-from flexstage.mechanism.likeness import drawn_units, likeness_findings
+from flexstage.mechanism.assembly.expand import joined, placed_bodies, port_findings
+from flexstage.mechanism.assembly.likeness import drawn_units, likeness_findings
+from flexstage.mechanism.assembly.pattern import copy_names
+from flexstage.mechanism.assembly.sight import gauge_findings
+from flexstage.mechanism.grammar.grammar import RESERVED
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NOT_GROWING, PLATFORM, GaugeSum, Link, Mechanism, Unit, posed
-from flexstage.mechanism.pattern import copy_names
-from flexstage.mechanism.sight import gauge_findings
 from flexstage.parts.body import Body, owner_of
 from flexstage.parts.given import Given
 from flexstage.parts.part import counter_of, material_of
@@ -45,7 +45,7 @@ def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Findings about placement keys that name copies (`B1-B3`): reversed, too many, or a copy named twice.
 
     >>> from flexstage.mechanism.mechanism import Placement
-    >>> from flexstage.mechanism.pattern import Pose
+    >>> from flexstage.mechanism.assembly.pattern import Pose
     >>> print(*copy_findings(Mechanism("", place={"B3-B1": Placement("leg", Pose())})))
     place.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
     """

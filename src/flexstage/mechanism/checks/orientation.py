@@ -8,9 +8,9 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Vector, stack
+from flexstage.mechanism.assembly.pattern import Pattern, Pose
 from flexstage.mechanism.checks.value import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Link, Mechanism, posed
-from flexstage.mechanism.pattern import Pattern, Pose
 from flexstage.parts.body import Body
 from flexstage.parts.freedom import Freedom
 from flexstage.parts.given import Joint

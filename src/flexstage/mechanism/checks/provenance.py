@@ -8,8 +8,8 @@ from typing import Any
 
 from flexstage.base.finding import DesignError, Finding, suggest_nearest
 from flexstage.base.number import Table
-from flexstage.mechanism.address import ASSUMED
-from flexstage.mechanism.locate import Place, locate
+from flexstage.mechanism.addresses.address import ASSUMED
+from flexstage.mechanism.addresses.locate import Place, locate
 from flexstage.mechanism.mechanism import Mechanism
 
 STATED = "stated"

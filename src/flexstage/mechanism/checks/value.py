@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.quantity import RATIO
-from flexstage.base.unit import parse, show
-from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.locate import locate
+from flexstage.base.units.quantity import RATIO
+from flexstage.base.units.unit import parse, show
+from flexstage.mechanism.addresses.locate import locate
+from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import NumberNode
 
 LARGEST = 1e40
 """Numbers beyond it, or nonzero below its reciprocal, in SI: their powers would leave the range of floats, and nothing is made so."""
@@ -58,7 +58,7 @@ def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
     """What is wrong with a number as a node says it should be.
 
-    >>> from flexstage.base.quantity import FREQUENCY, POSITIVE, RATIO, Bound
+    >>> from flexstage.base.units.quantity import FREQUENCY, POSITIVE, RATIO, Bound
     >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
     rate: found 0 Hz, which is not greater than 0 Hz. Write for example "4 kHz".
     >>> print(*number_findings("peak", 0.5, NumberNode(RATIO, Bound(1.0, open_low=True))))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
-from flexstage.base.store import write
+from flexstage.base.storage.store import write
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism

@@ -10,16 +10,16 @@ from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
-from flexstage.mechanism.address import set_text, set_value
+from flexstage.mechanism.addresses.address import set_text, set_value
+from flexstage.mechanism.addresses.locate import canonical, locate
+from flexstage.mechanism.assembly.mount import STAGES, Mount, mount_all
 from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
-from flexstage.mechanism.formulas import NUMBERS, read_numbers
-from flexstage.mechanism.grammar import CHANGES, TAGS, node_of
-from flexstage.mechanism.locate import canonical, locate
+from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
+from flexstage.mechanism.grammar.grammar import CHANGES, TAGS, node_of
+from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.mount import STAGES, Mount, mount_all
-from flexstage.mechanism.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 from flexstage.mechanism.store.anchor import anchor_paths
 from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
 from flexstage.mechanism.store.include import entry_of, with_included

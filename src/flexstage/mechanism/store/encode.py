@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexstage.base.finding import require
+from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.checks.kind import kind_findings
-from flexstage.mechanism.grammar import TAGS, node_of
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.grammar.grammar import TAGS, node_of
+from flexstage.mechanism.grammar.node import Node, Writer
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import Node, Writer
 from flexstage.mechanism.store.file import FORMAT
 
 _FIRST = ("format", "name", "numbers")
@@ -42,8 +42,8 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
 def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None = None) -> Any:
     """Return the form of a single value in a file, of what has a formula at its address that; raises `DesignError` if it has none.
 
-    >>> from flexstage.base.quantity import LENGTH
-    >>> from flexstage.mechanism.node import NumberNode
+    >>> from flexstage.base.units.quantity import LENGTH
+    >>> from flexstage.mechanism.grammar.node import NumberNode
     >>> plain(NumberNode(LENGTH), 0.00154, "parts.neck.thickness")
     '1.54 mm'
     """

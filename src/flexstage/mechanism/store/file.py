@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from flexstage.base.files import require_regular
 from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.storage.files import require_regular
 
 FORMAT = "flexstage 1"
 """What a design file says of its form."""

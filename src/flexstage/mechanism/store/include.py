@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from flexstage.base.finding import DesignError, Finding
-from flexstage.mechanism.grammar import TAGS
-from flexstage.mechanism.node import kind
+from flexstage.mechanism.grammar.grammar import TAGS
+from flexstage.mechanism.grammar.node import kind
 from flexstage.mechanism.store.file import FORMAT, parse_toml, read_text
 from flexstage.mechanism.store.lines import with_lines
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.lazy import Late
-from flexstage.mechanism.address import get, set_text, set_value
+from flexstage.mechanism.addresses.address import get, set_text, set_value
+from flexstage.mechanism.addresses.locate import Place, canonical, locate
+from flexstage.mechanism.addresses.path import member, with_mirror
+from flexstage.mechanism.assembly.mount import STAGES
 from flexstage.mechanism.catalogue import shipped_catalogue
-from flexstage.mechanism.grammar import TAGS, node_of
-from flexstage.mechanism.locate import Place, canonical, locate
+from flexstage.mechanism.grammar.grammar import TAGS, node_of
+from flexstage.mechanism.grammar.node import Node
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.mount import STAGES
-from flexstage.mechanism.node import Node
-from flexstage.mechanism.path import member, with_mirror
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain
 from flexstage.mechanism.store.file import parse_toml

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import refuse
 from flexstage.base.lazy import Late
-from flexstage.mechanism.address import tag_of
+from flexstage.mechanism.addresses.address import tag_of
+from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.catalogue import shipped_catalogue
-from flexstage.mechanism.formulas import NUMBERS
-from flexstage.mechanism.grammar import TAGS
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.grammar.formulas import NUMBERS
+from flexstage.mechanism.grammar.grammar import TAGS
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.file import parse_toml
@@ -72,7 +72,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
 
 
 def _same_physics(first: Mechanism, second: Mechanism) -> bool:
-    from flexstage.base.digest import digest
+    from flexstage.base.storage.digest import digest
 
     return digest(first, physics=True) == digest(second, physics=True)
 

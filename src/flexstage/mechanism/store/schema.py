@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from flexstage.mechanism.assembly.mount import STAGES, Mount
 from flexstage.mechanism.catalogue import shipped_catalogue
-from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import Definitions
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.mount import STAGES, Mount
-from flexstage.mechanism.node import Definitions
 from flexstage.mechanism.store.file import FORMAT
 from flexstage.mechanism.store.include import INCLUDE
 

@@ -10,7 +10,7 @@ from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.lazy import Late
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.checks import require_valid
-from flexstage.mechanism.grammar import TAGS, node_of
+from flexstage.mechanism.grammar.grammar import TAGS, node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.decode import mechanism_from
 from flexstage.mechanism.store.encode import plain

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import reduce
 
-from flexstage.base.unit import parse, quantity_of_unit, show
-from flexstage.mechanism.address import set_value
-from flexstage.mechanism.formulas import NUMBERS
-from flexstage.mechanism.grammar import node_of
+from flexstage.base.units.unit import parse, quantity_of_unit, show
+from flexstage.mechanism.addresses.address import set_value
+from flexstage.mechanism.addresses.path import replace_member
+from flexstage.mechanism.grammar.formulas import NUMBERS
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.path import replace_member
 
 
 def round_to_digits(mechanism: Mechanism, digits: int = 12) -> Mechanism:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from flexstage.base.finding import refuse
-from flexstage.mechanism.grammar import TAGS
+from flexstage.mechanism.grammar.grammar import TAGS
 
 _WIDTH = 140
 _BARE = re.compile(r"[A-Za-z0-9_-]+")

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.batch.features import GROUNDED, Topology
 from flexstage.models.batch.order import Elimination, elimination
+from flexstage.models.batch.parameters.features import GROUNDED, Topology
 from flexstage.spatial.frame import cross_matrix
 
 
@@ -67,8 +67,8 @@ def scheme(topology: Topology) -> Scheme:
     """The scheme of a topology: the platform is eliminated last.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.mechanism.expand import expand
-    >>> from flexstage.models.batch.features import topology
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> from flexstage.models.batch.parameters.features import topology
     >>> found = scheme(topology(expand(double_triangle())))
     >>> len(found.graph.edges), found.graph.levels  # legs from their feet to the platform
     (18, ((0, 6), (6, 12), (12, 15), (15, 18), (18, 19)))
@@ -80,7 +80,7 @@ def scheme(topology: Topology) -> Scheme:
 def carries(plan: Scheme, numbers: Array) -> Array:
     """The 6x6 (b, ends, 6, 6) from the twist of a body at its reference to that of a link's end, at the link, in its axes.
 
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> numbers = np.zeros((plan.topology.count, 1))
     >>> numbers[180:189, 0] = np.eye(3).ravel()
@@ -101,7 +101,7 @@ def carries(plan: Scheme, numbers: Array) -> Array:
 def blocks(plan: Scheme, numbers: Array) -> tuple[Blocks, Blocks]:
     """Stiffness and inertia (numbers (features, b)) as blocks in the order of elimination.
 
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> numbers = np.zeros((plan.topology.count, 1))
     >>> numbers[:36, 0], numbers[180:189, 0] = 2.0 * np.eye(6).ravel(), np.eye(3).ravel()
@@ -128,7 +128,7 @@ def blocks(plan: Scheme, numbers: Array) -> tuple[Blocks, Blocks]:
 def of_kind(plan: Scheme, numbers: Array, kind: str) -> Array:
     """Every feature of a kind (b, owners, *shape); inertias as 6x6 matrices.
 
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> of_kind(plan, np.zeros((plan.topology.count, 5)), "mass").shape
     (5, 1, 12, 12)
@@ -171,7 +171,7 @@ def _join(plan: Scheme, values: Array) -> Array:
 def dense(plan: Scheme, matrix: Blocks) -> Array:
     """The whole matrix (b, n, n) in the order of the topology's coordinates.
 
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> dense(plan, Blocks(np.ones((1, 1, 6, 6)), np.zeros((1, 0, 6, 6)))).shape
     (1, 6, 6)

@@ -13,9 +13,9 @@ import numpy as np
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme
 from flexstage.models.batch.choice import MARGIN, THRESHOLD
-from flexstage.models.batch.features import GROUNDED, PORTION, Feature, Rows
-from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
-from flexstage.models.batch.planes import SKEW, Planes, no_planes
+from flexstage.models.batch.parameters.features import GROUNDED, PORTION, Feature, Rows
+from flexstage.models.batch.parameters.numbers import MIRROR, MIRROR_SIGN, Change
+from flexstage.models.batch.parameters.planes import SKEW, Planes, no_planes
 from flexstage.models.batch.solution import LEAST_PIVOT, Solution, Stage
 from flexstage.models.batch.subspace import TOGETHER, Start
 
@@ -120,7 +120,7 @@ def by_kernel(library: ctypes.CDLL, stage: Stage, start: Start, tables: Tables) 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
     >>> from flexstage.models.batch.kernel import kernel
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
     >>> library = kernel()
@@ -163,7 +163,7 @@ def kernel_job(width: int, stage: Stage, start: Start, tables: Tables) -> Job:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((3, 0)))
     >>> tables = Tables(stage.scheme, (), stage.planes)

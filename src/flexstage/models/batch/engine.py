@@ -15,20 +15,20 @@ import numpy as np
 
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array
-from flexstage.base.threads import one_thread
+from flexstage.base.processes.threads import one_thread
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.batch.blocks import Scheme, blocks, dense, scheme
 from flexstage.models.batch.choice import Choice, choose
 from flexstage.models.batch.compiled import MODES, Tables, by_kernel
 from flexstage.models.batch.dense import Whole
-from flexstage.models.batch.features import Rows
 from flexstage.models.batch.kernel import kernel
 from flexstage.models.batch.locked import locked_solution
-from flexstage.models.batch.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of, rows_of
-from flexstage.models.batch.planes import Planes, no_planes, planes
+from flexstage.models.batch.parameters.features import Rows
+from flexstage.models.batch.parameters.numbers import Family, Slopes, family, numbers_and_slopes, numbers_of, rows_of
+from flexstage.models.batch.parameters.planes import Planes, no_planes, planes
+from flexstage.models.batch.parameters.surface import Surface, surface
 from flexstage.models.batch.solution import Solution, Stage, by_iteration, cluster_slopes, every_mode, wholly
 from flexstage.models.batch.subspace import Start
-from flexstage.models.batch.surface import Surface, surface
 from flexstage.models.lumped import lumped
 
 _CHUNK, PORTION = 1024, 128

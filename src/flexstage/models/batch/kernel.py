@@ -10,7 +10,7 @@ import ctypes
 import functools
 from pathlib import Path
 
-from flexstage.base.native import compiler, kernel_lanes, kernel_library, kernel_recipe, key
+from flexstage.base.processes.native import compiler, kernel_lanes, kernel_library, kernel_recipe, key
 
 _WHAT, _SOURCE = "the kernel", Path(__file__).with_name("kernel.c")
 

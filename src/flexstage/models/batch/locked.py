@@ -9,7 +9,7 @@ from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.batch.choice import Choice, groups, means, platform_rows
 from flexstage.models.batch.dense import Whole, whole
-from flexstage.models.batch.numbers import Family, describe, step_numbers, width
+from flexstage.models.batch.parameters.numbers import Family, describe, step_numbers, width
 from flexstage.models.batch.solution import Solution, platform_indices
 from flexstage.models.linear.model import Contributions, LinearModel, assemble
 from flexstage.models.lumped import lumped
@@ -19,7 +19,7 @@ def locked_solution(family: Family, values: Array, choice: Choice, *, slopes: bo
     """The platform's modes of one design (P,); none where it can move freely.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.models.batch.numbers import family
+    >>> from flexstage.models.batch.parameters.numbers import family
     >>> found = locked_solution(family(double_triangle(), ()), np.zeros(0), Choice(), slopes=False)
     >>> (found.values[0, :2] ** 0.5 / (2 * np.pi)).round(1).tolist()
     [106.0, 106.0]

@@ -12,8 +12,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.batch.blocks import Scheme, carries, inertia_matrix, of_kind
-from flexstage.models.batch.features import TURNS, Feature
-from flexstage.models.batch.numbers import MIRROR, MIRROR_SIGN, Change
+from flexstage.models.batch.parameters.features import TURNS, Feature
+from flexstage.models.batch.parameters.numbers import MIRROR, MIRROR_SIGN, Change
 from flexstage.spatial.frame import cross_matrix
 
 
@@ -36,7 +36,7 @@ def motion(plan: Scheme, numbers: Array, shapes: Array, value: Array) -> Motion:
     """The modes `shapes` (b, bodies in the order of elimination, 6, k) as links see them.
 
     >>> from flexstage.models.batch.blocks import scheme
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> numbers = np.zeros((plan.topology.count, 1))
     >>> numbers[:36, 0], numbers[180:189, 0] = 2.0 * np.eye(6).ravel(), np.eye(3).ravel()
@@ -59,7 +59,7 @@ def slope(plan: Scheme, seen: Motion, change: Change, values: Array) -> Array:
     """Phi^T (dK - lambda dM) Phi (b, k, k) of a feature that changes by `values` (rows, b).
 
     >>> from flexstage.models.batch.blocks import scheme
-    >>> from flexstage.models.batch.features import Topology
+    >>> from flexstage.models.batch.parameters.features import Topology
     >>> plan = scheme(Topology(("platform",), ((0, -1, 0),), 1, locked=False))
     >>> numbers = np.zeros((plan.topology.count, 1))
     >>> numbers[:36, 0], numbers[180:189, 0] = 2.0 * np.eye(6).ravel(), np.eye(3).ravel()

@@ -11,8 +11,8 @@ from flexstage.models.batch.blocks import Blocks, Scheme, blocks, dense, of_kind
 from flexstage.models.batch.choice import Choice, choose, groups, means
 from flexstage.models.batch.dense import Whole, whole
 from flexstage.models.batch.factor import factor
-from flexstage.models.batch.features import Rows
-from flexstage.models.batch.numbers import Slopes
+from flexstage.models.batch.parameters.features import Rows
+from flexstage.models.batch.parameters.numbers import Slopes
 from flexstage.models.batch.slopes import motion, slope
 from flexstage.models.batch.subspace import Found, Problem, Start, iterate
 from flexstage.models.linear.eigen import cholesky
@@ -93,7 +93,7 @@ def by_iteration(stage: Stage, start: Start) -> Solution:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
     >>> by_iteration(Stage(stage.scheme, numbers), stage.start).good.tolist()
@@ -116,7 +116,7 @@ def found_modes(scheme: Scheme, matrices: tuple[Blocks, Blocks], platform: Array
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
     >>> matrices = blocks(stage.scheme, numbers)
@@ -160,7 +160,7 @@ def wholly(stage: Stage, choice: Choice) -> list[Solution]:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> numbers = numbers_of(stage.family, np.zeros((1, 0)))
     >>> (wholly(Stage(stage.scheme, numbers), Choice())[0].values[0, :2] ** 0.5 / (2 * np.pi)).round(1).tolist()
@@ -186,7 +186,7 @@ def every_mode(scheme: Scheme, numbers: Array) -> Whole:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.batch.engine import plan
-    >>> from flexstage.models.batch.numbers import numbers_of
+    >>> from flexstage.models.batch.parameters.numbers import numbers_of
     >>> stage = plan(double_triangle(), ())
     >>> len(every_mode(stage.scheme, numbers_of(stage.family, np.zeros((1, 0)))).values)
     114

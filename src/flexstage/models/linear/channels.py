@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly
+from flexstage.mechanism.assembly.expand import Assembly
+from flexstage.mechanism.assembly.sight import PlacedGauge, Sight
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.mechanism.sight import PlacedGauge, Sight
 from flexstage.models.linear.model import Channel
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, Frame
 
@@ -40,7 +40,7 @@ def wrench_places(assembly: Assembly) -> dict[str, Place]:
     """Where wrenches act: the platform's reference point and the named points.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> list(wrench_places(expand(parallelogram())))
     ['platform', 'corner']
     """
@@ -52,7 +52,7 @@ def twist_places(assembly: Assembly) -> dict[str, Place]:
     """Where twists are read: where wrenches act, and the reference points of all other bodies.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> list(twist_places(expand(parallelogram())))
     ['platform', 'corner', 'B/base', 'B/tip']
     """
@@ -64,7 +64,7 @@ def input_channels(assembly: Assembly) -> tuple[Channel, ...]:
     """Strokes and forces by actuator, then wrenches by place.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> [channel.name for channel in input_channels(expand(parallelogram()))][:3]
     ['B', 'platform.fx', 'platform.fy']
     """
@@ -76,7 +76,7 @@ def output_channels(assembly: Assembly) -> tuple[Channel, ...]:
     """Twists by place, gauges, stress resultants by link, wrenches by port (`frame.left.fx`): what the body there exerts on the element.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> found = output_channels(expand(parallelogram()))
     >>> found[0].name, found[-1].name, len(found) == 6 * (4 + 5) + 1  # places, links, a gauge
     ('platform.x', 'B/front.mz', True)
@@ -92,7 +92,7 @@ def wrench_owners(assembly: Assembly) -> tuple[str, ...]:
     """What passes a wrench that is an output: the links, then the ports of superelements.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> wrench_owners(expand(parallelogram()))[:2]
     ('left', 'right')
     """
@@ -107,7 +107,7 @@ def absolute(assembly: Assembly) -> Array:
     """Which outputs (p,) change when everything moves with the ground: the twists do, gauges and links do not feel it.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> int(absolute(expand(parallelogram())).sum())  # six of each of four places
     24
     """
@@ -132,7 +132,7 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
     """The reading (..., 1, n) of every gauge: bodies' motions against those of their bases, each along or about an axis, with its weight.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> alone = Motions({}, lambda body, frame: np.full((6, 1), float(body == "platform")))
     >>> [row.tolist() for row in gauge_rows(expand(parallelogram()), alone)]
     [[[1.0]]]
@@ -157,7 +157,7 @@ def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> di
     """What every input imposes on each link (..., r, m) that strokes: its stroke the deformation (..., r) stated by link, others nothing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> imposed_strokes(expand(parallelogram()), {"B/pzt": np.array([1.0, 0.0])})["B/pzt"][:, :2].tolist()
     [[1.0, 0.0], [0.0, 0.0]]
     """
@@ -172,7 +172,7 @@ def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
     The opposite acts on the first body, both at the link's centre.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.expand import expand
+    >>> from flexstage.mechanism.assembly.expand import expand
     >>> exerted_wrenches(expand(parallelogram()))  # a stack alone
     {}
     """

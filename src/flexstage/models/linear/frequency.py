@@ -9,11 +9,11 @@ from typing import Annotated, Any
 import numpy as np
 
 from flexstage.base.labelled import Matrix, ratio_units
-from flexstage.base.memory import require_memory
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
-from flexstage.base.quantity import FREQUENCY
+from flexstage.base.processes.memory import require_memory
 from flexstage.base.record import INNER, VIEW, Axes, Called
+from flexstage.base.units.quantity import FREQUENCY
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
 from flexstage.models.linear.damping import law_ratios, structural_stiffness
 from flexstage.models.linear.eigen import Eigen, eigen

@@ -12,8 +12,8 @@ from flexstage.base.finding import Finding, join_findings, refuse
 from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, Number, first_design
-from flexstage.base.quantity import LENGTH
 from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.units.quantity import LENGTH
 from flexstage.models.linear.blockage import Blockage
 from flexstage.parts.freedom import Freedom
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.native import kernel_library
 from flexstage.base.number import Array
+from flexstage.base.processes.native import kernel_library
 from flexstage.beams.flexure.law import FlexureLaw
 from flexstage.beams.flexure.modes import gauss
 from flexstage.models.nonlinear.graph import Rest

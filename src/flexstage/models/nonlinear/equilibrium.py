@@ -13,10 +13,10 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array, Number
 from flexstage.models.linear.channels import wrench_places
-from flexstage.models.nonlinear.arc import rescue
-from flexstage.models.nonlinear.follow import continued
-from flexstage.models.nonlinear.hold import Hold
+from flexstage.models.nonlinear.elements.hold import Hold
 from flexstage.models.nonlinear.newton import TOLD, USUAL, Found, Task, equilibrate, equilibrate_designs, merge, search
+from flexstage.models.nonlinear.paths.arc import rescue
+from flexstage.models.nonlinear.paths.follow import continued
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
 from flexstage.spatial.frame import COMPONENTS
@@ -193,7 +193,7 @@ def equilibria(
     `DesignError` where bodies, links or what they join differ.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.address import set_value
+    >>> from flexstage.mechanism.addresses.address import set_value
     >>> from flexstage.models.nonlinear.stage import nonlinear
     >>> designs = [nonlinear(set_value(parallelogram(), "materials.steel.young", value)) for value in (180e9, 210e9)]
     >>> [round(float(each.displacement()[0] * 1e6), 2) for each in equilibria(designs, {"platform.fx": 100.0}, weight=0.0)]

@@ -9,11 +9,11 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.beams.flexure.law import FlexureLaw
-from flexstage.models.nonlinear.condense import Answer, condense, settle
-from flexstage.models.nonlinear.corotated import stiffen_ports
-from flexstage.models.nonlinear.element import Shape, Tangent, shape, tangent
-from flexstage.models.nonlinear.hinge import Ends, Hinges, imposed, stiffen
-from flexstage.models.nonlinear.hold import Hold, gradients
+from flexstage.models.nonlinear.elements.condense import Answer, condense, settle
+from flexstage.models.nonlinear.elements.corotated import stiffen_ports
+from flexstage.models.nonlinear.elements.element import Shape, Tangent, shape, tangent
+from flexstage.models.nonlinear.elements.hinge import Ends, Hinges, imposed, stiffen
+from flexstage.models.nonlinear.elements.hold import Hold, gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose
 from flexstage.models.nonlinear.summed import Dense, Sum, empty_sum, solved

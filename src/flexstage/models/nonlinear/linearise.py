@@ -25,12 +25,12 @@ from flexstage.models.linear.channels import (
 )
 from flexstage.models.linear.elimination import eliminate
 from flexstage.models.linear.model import Contribution, LinearModel, strain_forces
-from flexstage.models.nonlinear.corotated import Corotated, moved, stiffen_ports
-from flexstage.models.nonlinear.element import mode_paths
+from flexstage.models.nonlinear.elements.corotated import Corotated, moved, stiffen_ports
+from flexstage.models.nonlinear.elements.element import mode_paths
+from flexstage.models.nonlinear.elements.hinge import stiffen
+from flexstage.models.nonlinear.elements.hold import gradients
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, end_motion, geometric, hinge_ends, weight_motion
-from flexstage.models.nonlinear.hinge import stiffen
-from flexstage.models.nonlinear.hold import gradients
 from flexstage.models.nonlinear.stage import Flexures, Nonlinear
 from flexstage.parts.part import inner
 from flexstage.spatial.frame import COMPONENTS, FORCES, Frame, cross_matrix, spatial_rotation, transport, twist_transform

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.condense import system
-from flexstage.models.nonlinear.critical import Critical
+from flexstage.models.nonlinear.elements.condense import system
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.graph import Bent, assemble, follow
 from flexstage.models.nonlinear.linearise import flexure_motions, modal_motions
+from flexstage.models.nonlinear.paths.critical import Critical
 
 
 @dataclass(frozen=True, eq=False)

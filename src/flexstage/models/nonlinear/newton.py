@@ -9,8 +9,8 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.models.nonlinear.compiled import iterate_compiled, kernel, tables
+from flexstage.models.nonlinear.elements.hold import Hold
 from flexstage.models.nonlinear.graph import Rest, System, advance, apart, assemble, rest
-from flexstage.models.nonlinear.hold import Hold
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
 from flexstage.models.nonlinear.walk import walked

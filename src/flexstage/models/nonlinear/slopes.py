@@ -10,11 +10,11 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, Number
-from flexstage.mechanism.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.design import design, designs
-from flexstage.mechanism.locate import locate
+from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import NumberNode
 from flexstage.models.nonlinear.equilibrium import State, corrected, equilibria, equilibrium
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 
@@ -46,7 +46,7 @@ def over_designs(
     NaN, as `results` has them. Leaves of one proportion share their tables.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.mechanism.address import set_value
+    >>> from flexstage.mechanism.addresses.address import set_value
     >>> several = set_value(parallelogram(), "materials.steel.young", np.array([200e9, 210e9]))
     >>> over_designs(several, State.twist, weight=0.0).shape
     (2, 6)

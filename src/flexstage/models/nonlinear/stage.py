@@ -10,24 +10,24 @@ from typing import ClassVar
 import numpy as np
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.digest import digest
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array, stack
+from flexstage.base.storage.digest import digest
 from flexstage.beams.compliance import law
 from flexstage.beams.flexure.law import DEFAULT, FlexureLaw, Resolution
 from flexstage.beams.flexure.of_part import flexure_law
 from flexstage.beams.geometric import foreshortening
 from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expansion import expansion, ground_of
+from flexstage.mechanism.assembly.incidence import layout
+from flexstage.mechanism.assembly.moving_mass import carried_masses, moving_inertia
 from flexstage.mechanism.drawn import as_drawn
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement, expand
-from flexstage.mechanism.expansion import expansion, ground_of
-from flexstage.mechanism.incidence import layout
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, Damping, Mechanism
-from flexstage.mechanism.moving_mass import carried_masses, moving_inertia
 from flexstage.models.linear.channels import exerted_wrenches, imposed_strokes, input_channels, wrench_places
 from flexstage.models.linear.model import Channel
-from flexstage.models.nonlinear.corotated import Corotated
-from flexstage.models.nonlinear.hinge import Hinges
+from flexstage.models.nonlinear.elements.corotated import Corotated
+from flexstage.models.nonlinear.elements.hinge import Hinges
 from flexstage.models.nonlinear.state import Loads, Pose
 from flexstage.parts.condensation import condense
 from flexstage.parts.part import push_of, span, strut_of

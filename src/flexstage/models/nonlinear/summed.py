@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.condense import solve
+from flexstage.models.nonlinear.elements.condense import solve
 
 MANY = 400
 """Unknowns from which on zeros are left out."""

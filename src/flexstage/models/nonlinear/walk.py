@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.models.nonlinear.element import shape
+from flexstage.models.nonlinear.elements.element import shape
 from flexstage.models.nonlinear.graph import flexure_weight
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Loads, Pose

@@ -12,8 +12,8 @@ from typing import Any
 from rich.console import Console
 
 from flexstage.analysis.cautions import Caveats, caveats
-from flexstage.base.document import Document, as_text
 from flexstage.base.finding import Finding
+from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model

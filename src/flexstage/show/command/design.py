@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from flexstage.analysis.complete import felt, read
-from flexstage.base.expression import parse_expression
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.mechanism.address import assign
+from flexstage.base.units.expression import parse_expression
+from flexstage.mechanism.addresses.address import assign
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load

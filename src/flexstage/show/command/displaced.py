@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from flexstage.analysis.load_effect import LoadEffect, load_effect
+from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.lazy import Late
-from flexstage.base.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
 from flexstage.base.record import SideBySide
-from flexstage.base.unit import parse, quantity_of_unit
+from flexstage.base.units.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
+from flexstage.base.units.unit import parse, quantity_of_unit
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
@@ -20,12 +20,12 @@ from flexstage.show.command.options import text_option
 from flexstage.show.table import Table, matrix_table
 
 if TYPE_CHECKING:
-    from flexstage.analysis import stance as stances
-    from flexstage.analysis.stance import Stance
+    from flexstage.analysis.loaded import stance as stances
+    from flexstage.analysis.loaded.stance import Stance
     from flexstage.models.nonlinear import stage as displaced
     from flexstage.models.nonlinear.stage import Nonlinear
 else:  # few commands are asked about another place than the drawn one
-    stances, displaced = Late("flexstage.analysis.stance"), Late("flexstage.models.nonlinear.stage")
+    stances, displaced = Late("flexstage.analysis.loaded.stance"), Late("flexstage.models.nonlinear.stage")
 
 Load: TypeAlias = Annotated[
     list[str] | None,

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.store import remove_temporary_leftovers
+from flexstage.base.storage.store import remove_temporary_leftovers
 from flexstage.show.command.output import pending_outputs
 from flexstage.show.command.terminal import print_note, print_warning, streams
 

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast
 
 if TYPE_CHECKING:  # the table of commands hands models and loads nothing heavy
-    from flexstage.analysis.solid_modes import FeaModes
+    from flexstage.analysis.dynamics.solid_modes import FeaModes
     from flexstage.mechanism.mechanism import Mechanism
 
 

@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.store import PendingFile, move_all, write_temporary
+from flexstage.base.storage.store import PendingFile, move_all, write_temporary
 from flexstage.show.command.terminal import print_bytes, print_note
 
 STDOUT = "-"

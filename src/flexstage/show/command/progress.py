@@ -12,7 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-from flexstage.base.progress import LINE, LINES, Step, seconds_left, time_left
+from flexstage.base.processes.progress import LINE, LINES, Step, seconds_left, time_left
 from flexstage.base.text import printable
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
 
-from flexstage.analysis.random_response import Rate, Spectrum
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
-from flexstage.base.quantity import ANGLE, DISPLACEMENT, Quantity
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import ANGLE, DISPLACEMENT, Quantity
+from flexstage.base.units.unit import parse
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import ports
 from flexstage.spatial.frame import COMPONENTS

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.error_budget import ErrorBudget
-from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.assessment.error_budget import ErrorBudget
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, number, percent, to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, name_rows, panels, style_context, text_width
@@ -147,7 +147,7 @@ def error_figure(budget: ErrorBudget) -> Any:
     """The error budget by axis and source, ideal and corrected command, linear sums, as a matplotlib Figure.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.budget import budget
+    >>> from flexstage.analysis.assessment.budget import budget
     >>> len(error_figure(budget(double_triangle(), {"z": 1e-5})).axes)
     2
     """

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.statics import DirectionalStiffness, Statics
+from flexstage.analysis.linear_statics.statics import DirectionalStiffness, Statics
 from flexstage.base.number import Array
 from flexstage.show.display import number, to_typography
 from flexstage.show.figures.style import HALF, INK, MUTED, SERIES, canvas, style_context

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.models.linear.frequency import Response
 from flexstage.show.display import preferred_unit, to_typography
 from flexstage.show.figures.style import FULL, MUTED, SERIES, Margins, canvas, panels, style_context
@@ -24,7 +24,7 @@ def response_figure(response: Response, modes: Modes | None = None) -> Any:
     Curves of the same unit share a column. The phase is that of e^{+j omega t}, unwrapped from the lowest frequency.
 
     >>> import flexstage as fs
-    >>> from flexstage.analysis.response import response
+    >>> from flexstage.analysis.dynamics.response import response
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> seen = response(fs.mapped(double_triangle()), ["platform"], ["B1", "B2", "B3", "B4", "B5", "B6"])
     >>> len(response_figure(seen).axes)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import listed_modes

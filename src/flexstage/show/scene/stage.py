@@ -11,9 +11,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, PlacedBody, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.expand import Assembly, PlacedBody, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.assembly.sight import Sight
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
-from flexstage.mechanism.sight import Sight
 from flexstage.parts.body import PlacedSolid
 from flexstage.parts.part import Part, is_actuator
 from flexstage.show.scene.facet import SHARP, Facet, Kind, Paint, circle, cross, extrude, line, loft, rectangle

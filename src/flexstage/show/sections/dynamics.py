@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.show.display import number, percent

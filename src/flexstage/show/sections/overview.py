@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from flexstage.analysis.assessment.difference import Comparison
+from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.difference import Comparison
-from flexstage.analysis.requirements import Verdict
 from flexstage.show.display import format_value, number, percent
 from flexstage.show.page import Fact, Facts, Headline, Prose, Section, section
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table

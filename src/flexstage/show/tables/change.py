@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import Enum
 
-from flexstage.analysis.difference import Change
-from flexstage.base.unit import show
-from flexstage.mechanism.address import get, quantity_of
+from flexstage.analysis.assessment.difference import Change
+from flexstage.base.units.unit import show
+from flexstage.mechanism.addresses.address import get, quantity_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.display import NO_VALUE, display_unit_of, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
@@ -29,7 +29,7 @@ def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> 
     """What was set: every value before and after, in the unit a design file shows it in.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.mechanism.address import assign
+    >>> from flexstage.mechanism.addresses.address import assign
     >>> stage = double_triangle()
     >>> set_table(stage, assign(stage, "parts.neck.thickness=1.4mm"), ["parts.neck.thickness"]).texts()[1]
     ['parts.neck.thickness', '1.54 mm', '1.4 mm', '-0.14 mm', '-9.09 %']

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexstage.analysis.deflection import Deflection
+from flexstage.analysis.linear_statics.deflection import Deflection
 from flexstage.show.table import Table, first_design, matrix_table
 
 _NOISE = 1e-9
@@ -17,7 +17,7 @@ def deflection_table(deflection: Deflection) -> Table:
 
     Rounding noise, against the largest translation or rotation, is shown as 0.
 
-    >>> from flexstage.analysis.deflection import deflection
+    >>> from flexstage.analysis.linear_statics.deflection import deflection
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
     >>> deflection_table(deflection(double_triangle(), lumped(double_triangle()))).texts()[1]

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from flexstage.base.number import Number
-from flexstage.base.quantity import Quantity
-from flexstage.mechanism.address import get, provenance, quantity_of
-from flexstage.mechanism.expand import copy_names, expand
-from flexstage.mechanism.grammar import node_of
+from flexstage.base.units.quantity import Quantity
+from flexstage.mechanism.addresses.address import get, provenance, quantity_of
+from flexstage.mechanism.assembly.expand import copy_names, expand
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.part import Part, Restricted
 from flexstage.show.display import field_unit, number

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.analysis.drift import Drift
-from flexstage.analysis.error_budget import STEPS, ErrorBudget
+from flexstage.analysis.assessment.error_budget import STEPS, ErrorBudget
+from flexstage.analysis.linear_statics.drift import Drift
 from flexstage.base.labelled import Matrix
-from flexstage.mechanism.expansion import Ground
+from flexstage.mechanism.assembly.expansion import Ground
 from flexstage.show.display import number
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names
 from flexstage.show.tables.workspace import command_text
@@ -19,7 +19,7 @@ def drift_table(drift: Drift) -> Table:
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.drift import drift
+    >>> from flexstage.analysis.linear_statics.drift import drift
     >>> stage = double_triangle()
     >>> drift_table(drift(stage, fs.lumped(stage), ground="steel")).texts()[0][1]
     'uniform [per K]'
@@ -60,7 +60,7 @@ def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
     """Largest errors by axis and source, without and with the lost-motion gains in the command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.budget import budget
+    >>> from flexstage.analysis.assessment.budget import budget
     >>> error_budget_tables(budget(double_triangle(), {"z": 1e-5}))[0].texts()[3][:2]
     ['z [nm]', '336.8']
     """
@@ -101,7 +101,7 @@ def gauge_drift_table(drift: Drift) -> Table | None:
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.drift import drift
+    >>> from flexstage.analysis.linear_statics.drift import drift
     >>> stage = double_triangle()
     >>> gauge_drift_table(drift(stage, fs.lumped(stage), ground="steel")).texts()[1][0]
     'S1 [um]'

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
-from flexstage.analysis.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
 from flexstage.base.labelled import NOISE, Matrix
 from flexstage.show.display import number, percent
 from flexstage.show.scene.primitives import first_value

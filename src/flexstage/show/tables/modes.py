@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.labelled import NOISE
 from flexstage.models.batch.choice import THRESHOLD
 from flexstage.show.display import align_numbers, percent

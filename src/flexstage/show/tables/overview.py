@@ -8,11 +8,11 @@ from itertools import groupby
 
 import numpy as np
 
-from flexstage.analysis import measures
+from flexstage.analysis.assessment import measures
+from flexstage.analysis.assessment.measures import MeasureKind
+from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
-from flexstage.analysis.measures import MeasureKind
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.requirements import Verdict
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.number import first_design
 from flexstage.show.display import NO_VALUE, align_numbers, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, make_table

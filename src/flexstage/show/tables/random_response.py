@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexstage.analysis.random_response import RandomResponse
+from flexstage.analysis.dynamics.random_response import RandomResponse
 from flexstage.show.display import format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 
@@ -14,7 +14,7 @@ _SILENT = 1e-9
 def random_table(found: RandomResponse) -> Table:
     """Rms value of every output over the band, and the share of its mean square that comes from each input.
 
-    >>> from flexstage.analysis.random_response import Spectrum, random_response
+    >>> from flexstage.analysis.dynamics.random_response import Spectrum, random_response
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
     >>> shaken = random_response(mapped(double_triangle()), ("platform.z",), {"ground.z": Spectrum(1e-18)}, (1.0, 1000.0))

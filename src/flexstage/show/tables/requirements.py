@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexstage.analysis.requirements import Verdict
-from flexstage.base.quantity import Quantity
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.base.units.quantity import Quantity
 from flexstage.show.display import DIGITS, field_unit, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table
 
@@ -18,7 +18,7 @@ def verdict_table(verdicts: Sequence[Verdict]) -> Table | None:
     """Requirements with demand, value and margin, met or not; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> verdict_table(judge(double_triangle())).texts()[7]
     ['frequency.platform.1', 'at least 100 Hz', '106.01 Hz', '+6.01 %', 'met']
     """
@@ -34,7 +34,7 @@ def is_met(verdict: Verdict) -> bool:
     """Whether a requirement is met by every design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> all(is_met(verdict) for verdict in judge(double_triangle()))
     True
     """
@@ -45,7 +45,7 @@ def meaning(verdict: Verdict) -> str:
     """What a requirement's key means, in words.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> meaning(judge(double_triangle())[6])
     'n-th natural frequency of the platform'
     """
@@ -56,7 +56,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     """How many requirements are met, and the least margin or those that are missed, in a sentence or two.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> verdict_text(judge(double_triangle()))
     'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
     """
@@ -74,7 +74,7 @@ def first_margin(verdict: Verdict) -> float:
     """The margin of a requirement, of the first design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> round(first_margin(judge(double_triangle())[6]), 4)
     0.0601
     """
@@ -85,7 +85,7 @@ def value_text(verdict: Verdict) -> str:
     """The value a requirement is judged by, in display units (first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> value_text(judge(double_triangle())[6])
     '106.01 Hz'
     """
@@ -97,7 +97,7 @@ def value_text(verdict: Verdict) -> str:
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
     """An SI value of a quantity in the unit the quantity is shown in, in a smaller one where there is less than a hundredth of it.
 
-    >>> from flexstage.base.quantity import STIFFNESS
+    >>> from flexstage.base.units.quantity import STIFFNESS
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)
     ('17 N/um', '420 N/m')
     """
@@ -112,7 +112,7 @@ def margin_text(verdict: Verdict) -> str:
     """The margin with its sign, as per cent of the limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> margin_text(judge(double_triangle())[6])
     '+6.01 %'
     """
@@ -140,7 +140,7 @@ def answer_text(verdict: Verdict) -> str:
     """A verdict in words.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import judge
+    >>> from flexstage.analysis.assessment.judge import judge
     >>> answer_text(judge(double_triangle())[6])
     'met'
     """

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexstage.analysis.sensitivities import Sensitivities
+from flexstage.analysis.assessment.sensitivities import Sensitivities
 from flexstage.base.number import Array
 from flexstage.show.display import format_value, number
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
@@ -16,7 +16,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     """The parameters that move the lowest frequencies most: change in per cent per per cent of the parameter.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.sensitivities import sensitivities
+    >>> from flexstage.analysis.assessment.sensitivities import sensitivities
     >>> seen = sensitivities(double_triangle(), ("materials.steel.young", "materials.steel.density"))
     >>> frequency_sensitivity_table(seen, modes=1).rows[0][0].text
     'materials.steel.density'
@@ -32,7 +32,7 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | No
     """The parameters that change the actuators' losses most: loss in per cent of stroke per per cent of the parameter; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.sensitivities import sensitivities
+    >>> from flexstage.analysis.assessment.sensitivities import sensitivities
     >>> seen = sensitivities(double_triangle(), ("lever_notch.thickness", "foot_notch.thickness"))
     >>> loss_sensitivity_table(seen).rows[0][0].text
     'lever_notch.thickness'

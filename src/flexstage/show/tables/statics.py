@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexstage.analysis.mass_matrix import MassMatrix
-from flexstage.analysis.statics import DirectionalStiffness, FreedomStiffness, Statics, by_freedom
+from flexstage.analysis.linear_statics.mass_matrix import MassMatrix
+from flexstage.analysis.linear_statics.statics import DirectionalStiffness, FreedomStiffness, Statics, by_freedom
 from flexstage.base.labelled import Matrix
 from flexstage.show.display import align_numbers, number, preferred_unit
 from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_table, matrix_table, short_names, unit_row_table
@@ -22,7 +22,7 @@ def stiffness_table(statics: Statics) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.analysis.linear_statics.statics import statics
     >>> stiffness_table(statics(mapped(double_triangle()))).texts()[1][:2]
     ['fx [N]', '15.45']
     """
@@ -34,7 +34,7 @@ def compliance_table(statics: Statics) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.analysis.linear_statics.statics import statics
     >>> compliance_table(statics(mapped(double_triangle()))).texts()[3][3]
     '0.099083'
     """
@@ -90,7 +90,7 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.analysis.linear_statics.statics import statics
     >>> direction_table(statics(mapped(double_triangle()))).texts()[1]
     ['0', '7.3326', '13.638', '15.45']
     """
@@ -120,7 +120,7 @@ def principal_table(statics: Statics) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.analysis.linear_statics.statics import statics
     >>> principal_table(statics(mapped(double_triangle()))).texts()[1]
     ['free', '13.638', '13.638', 'none', '0 %']
     """
@@ -144,7 +144,7 @@ def centre_table(statics: Statics) -> Table:
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> from flexstage.analysis.statics import statics
+    >>> from flexstage.analysis.linear_statics.statics import statics
     >>> centre_table(statics(mapped(double_triangle()))).texts()[1]
     ['platform', '0', '0', '-25']
     """

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from flexstage.analysis.stability import Stability
+from flexstage.analysis.loaded.stability import Stability
 from flexstage.analysis.workspace.blocking import PlatformLine
 from flexstage.analysis.workspace.buckling import Buckling
 from flexstage.analysis.workspace.load import LoadShare

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from flexstage.analysis.omitted import Omitted
-from flexstage.analysis.units import UnitResult
+from flexstage.analysis.linear_statics.omitted import Omitted
+from flexstage.analysis.linear_statics.units import UnitResult
 from flexstage.base.labelled import NOISE
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.scene.primitives import first_value
@@ -16,7 +16,7 @@ def unit_table(found: Mapping[str, UnitResult]) -> Table:
     """Every distinct unit alone: stiffness at its output, gain, loss.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.units import units
+    >>> from flexstage.analysis.linear_statics.units import units
     >>> unit_table(units(double_triangle())).texts()[1][:2]
     ['horizontal', 'B1']
     """
@@ -43,7 +43,7 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
     """The springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.units import units
+    >>> from flexstage.analysis.linear_statics.units import units
     >>> lever_table(units(double_triangle())).texts()[1][:2]
     ['vertical', '30.996 N/um']
     """

@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.analysis.load_cases import REST, CaseFactor
-from flexstage.analysis.misalign import Misaligned
-from flexstage.analysis.modes import Modes
-from flexstage.analysis.stance import Stance
-from flexstage.analysis.stroke import Beyond, Stroke
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor
+from flexstage.analysis.loaded.misalign import Misaligned
+from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.stroke import Beyond, Stroke
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import GROUND, Mechanism
-from flexstage.models.nonlinear.critical import Critical
 from flexstage.models.nonlinear.equilibrium import State
 from flexstage.models.nonlinear.lines import Line, Motions, centre_lines, critical_motion, mode_motions
-from flexstage.models.nonlinear.path import Path
+from flexstage.models.nonlinear.paths.critical import Critical
+from flexstage.models.nonlinear.paths.path import Path
 from flexstage.show.display import DisplayUnit, display_unit_of, format_value, to_typography
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.show.viewer.motions import Course, Curve, Group, Motion
@@ -298,7 +298,7 @@ def play(mechanism: Mechanism, path: Path) -> Any:
     >>> fs.play(stage, fs.path(fs.nonlinear(stage), "platform.x", [0.0, 1e-4])).html[:15]
     '<!doctype html>'
     """
-    from flexstage.analysis.stroke import stroke
+    from flexstage.analysis.loaded.stroke import stroke
     from flexstage.show.viewer.view import view_of
 
     data = stroke_data(mechanism, path, stroke(path))

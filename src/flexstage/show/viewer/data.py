@@ -12,10 +12,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flexstage.analysis.complete import platform_modes
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
 from flexstage.base.finding import DesignError, name_first
 from flexstage.base.number import Array
-from flexstage.mechanism.expand import Assembly, expand
+from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.lines import line_numbers
 from flexstage.models.ideal import ideal

@@ -9,13 +9,13 @@ from functools import cached_property
 
 import numpy as np
 
-from flexstage.analysis.drift import FIELDS, drift
-from flexstage.analysis.modes import Modes
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.linear_statics.drift import FIELDS, drift
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.strength import sized_links, stress_shares
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.base.number import Array, first_design
-from flexstage.mechanism.expand import expand
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel

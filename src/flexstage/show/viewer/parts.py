@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from flexstage.mechanism.expand import Assembly, PlacedLink, PlacedSuperelement
-from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.locate import link_path, unit_of_copy
+from flexstage.mechanism.addresses.locate import link_path, unit_of_copy
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement
+from flexstage.mechanism.assembly.pattern import copy_names
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.pattern import copy_names
 from flexstage.mechanism.store.lines import line_of
 from flexstage.parts.part import inner
 from flexstage.show.display import field_unit, format_value, number, to_typography

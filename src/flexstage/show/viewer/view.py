@@ -9,7 +9,7 @@ from pathlib import Path
 
 from flexstage.base.arguments import CheckedFields, check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.store import write
+from flexstage.base.storage.store import write
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.fragment import fragment

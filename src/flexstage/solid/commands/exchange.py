@@ -19,13 +19,13 @@ from flexstage.show.command.output import announce, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_result, print_warning
 from flexstage.solid.exchange.matrices import export_superelement
-from flexstage.solid.fea.apart import step_apart
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.fineness import Fineness, Reduction
-from flexstage.solid.fea.install import require_solver
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.fea.sound import stage_findings
-from flexstage.solid.read import read_solid, solids
+from flexstage.solid.fea.geometry.sound import stage_findings
+from flexstage.solid.fea.jobs.apart import step_apart
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.install import require_solver
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.meshing.fineness import Fineness, Reduction
+from flexstage.solid.results.read import read_solid, solids
 
 
 def cad(
@@ -73,7 +73,7 @@ def state(
     mechanism = load(design)
     chosen = _material(mechanism, material)
     require_solver()
-    from flexstage.solid.fea.imported import measure, with_properties  # needs the solver, refused by name where it is missing
+    from flexstage.solid.fea.geometry.imported import measure, with_properties  # needs the solver, refused by name where it is missing
 
     density = float(mechanism.materials[chosen].density)
     stated = with_properties(measure(part, solid), str(part.resolve()), chosen, density, solid)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.solid_modes import FeaModes
+from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
-from flexstage.solid import modes
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.parts import Ways
-from flexstage.solid.read import solids
-from flexstage.solid.resolution import DEFAULT
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.results import modes
+from flexstage.solid.results.read import solids
+from flexstage.solid.results.resolution import DEFAULT
 
 
 def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:

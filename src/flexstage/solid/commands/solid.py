@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import numpy as np
 import typer
 
-from flexstage.analysis.pairing import Pair
-from flexstage.analysis.standing import require_standing
-from flexstage.analysis.units import driven_units
+from flexstage.analysis.dynamics.pairing import Pair
+from flexstage.analysis.linear_statics.units import driven_units
+from flexstage.analysis.loaded.standing import require_standing
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.lazy import Late
-from flexstage.base.quantity import RATIO, Quantity
 from flexstage.base.record import SideBySide
-from flexstage.base.unit import parse
+from flexstage.base.units.quantity import RATIO, Quantity
+from flexstage.base.units.unit import parse
 from flexstage.beams.leaf import leaf_diagonal
+from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.drawn import with_drawn_parts
-from flexstage.mechanism.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
@@ -36,18 +36,19 @@ from flexstage.show.command.terminal import print_note, print_warning
 from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
-from flexstage.solid import calibration, verification
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.hinge_form import HingeForm, HingeSolid
-from flexstage.solid.fea.install import require_installed
-from flexstage.solid.fea.parts import Parts, Ways
-from flexstage.solid.fea.remote import Limits, Pool
-from flexstage.solid.hinges import Hinges, SolidHinge, hinges, solid_hinges
-from flexstage.solid.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
-from flexstage.solid.read import Solids, solids
-from flexstage.solid.resolution import NOT_ESTIMATED, Converged, Resolution
-from flexstage.solid.tables import (
+from flexstage.solid.fea.hinges.hinge_form import HingeForm, HingeSolid
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.install import require_installed
+from flexstage.solid.fea.jobs.parts import Parts, Ways
+from flexstage.solid.fea.jobs.remote import Limits, Pool
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.results import calibration, verification
+from flexstage.solid.results.hinges import Hinges, SolidHinge, hinges, solid_hinges
+from flexstage.solid.results.plan import Plan, reduction_plan, units_alone, verification_plan, work_ahead
+from flexstage.solid.results.read import Solids, solids
+from flexstage.solid.results.resolution import NOT_ESTIMATED, Converged, Resolution
+from flexstage.solid.results.verified import Known, recall, retain
+from flexstage.solid.show.tables import (
     block_table,
     calibration_table,
     command_table,
@@ -58,17 +59,16 @@ from flexstage.solid.tables import (
     verdict_table_of,
     verification_table,
 )
-from flexstage.solid.verified import Known, recall, retain
 from flexstage.solid.what import What
 
 if TYPE_CHECKING:
     from flexstage.show import page
     from flexstage.show.page import Headline, Section
     from flexstage.show.viewer.motions import Motion
-    from flexstage.solid import report as reports
-    from flexstage.solid import sections as pages
+    from flexstage.solid.show import report as reports
+    from flexstage.solid.show import sections as pages
 else:  # few are asked for a report
-    page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.report"), Late("flexstage.solid.sections")
+    page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.show.report"), Late("flexstage.solid.show.sections")
 
 Scope: TypeAlias = Annotated[
     What,

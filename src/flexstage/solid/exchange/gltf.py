@@ -15,8 +15,8 @@ from flexstage.base.number import Array
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.solid.exchange.paint import Colour, palette
-from flexstage.solid.fea.assemble import Placed
-from flexstage.solid.fea.surface import vertex_places
+from flexstage.solid.fea.solver.assemble import Placed
+from flexstage.solid.fea.solver.surface import vertex_places
 
 _KEYS = 33
 """Keyframes of one period: a sine drawn by chords is within 0.5 % of its amplitude."""

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.reducing import ComponentJob
-from flexstage.solid.fea.worker import Call
+from flexstage.solid.fea.jobs.reducing import ComponentJob
+from flexstage.solid.fea.jobs.worker import Call
+from flexstage.solid.fea.meshing.fineness import Fineness
 
 if TYPE_CHECKING:
-    from flexstage.solid.fea.mesh import PieceMesh
+    from flexstage.solid.fea.meshing.mesh import PieceMesh
 
 _CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 _ORDER = (1, 0, 2, 3)
@@ -40,7 +40,7 @@ class Gridding(ComponentJob):
 
     def work(self, call: Call) -> bytes:
         """The grid, stored as numpy does."""
-        from flexstage.solid.fea.mesh import mesh_component
+        from flexstage.solid.fea.meshing.mesh import mesh_component
 
         found = grid(mesh_component(self.component, self.fineness, call.report, call.attempt))
         stream = io.BytesIO()
@@ -65,7 +65,7 @@ def grid(mesh: PieceMesh) -> Grid:
 
     >>> import ngsolve
     >>> from netgen import occ
-    >>> from flexstage.solid.fea.mesh import PieceMesh
+    >>> from flexstage.solid.fea.meshing.mesh import PieceMesh
     >>> cube = ngsolve.Mesh(occ.OCCGeometry(occ.Box((0, 0, 0), (1, 1, 1))).GenerateMesh(maxh=2.0))
     >>> drawn = grid(PieceMesh(cube, (), (), np.zeros(cube.ne, dtype=int), np.zeros(cube.ne, dtype=bool)))
     >>> drawn.cells.shape == (cube.ne, 10), float(drawn.points.max())
@@ -73,7 +73,7 @@ def grid(mesh: PieceMesh) -> Grid:
     """
     import ngsolve
 
-    from flexstage.solid.fea.piece import MILLIMETRES
+    from flexstage.solid.fea.geometry.piece import MILLIMETRES
 
     elements = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.mesh.Elements(ngsolve.VOL)])[:, _ORDER]
     corners = np.array(_CORNERS)[list(_ORDER)]

@@ -11,18 +11,18 @@ import numpy as np
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import refuse, suggest_nearest
-from flexstage.base.progress import Progress
-from flexstage.base.store import atomic_write
+from flexstage.base.processes.progress import Progress
+from flexstage.base.storage.store import atomic_write
 from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.condensation import superelement
 from flexstage.parts.superelement import FileUnits, Port, Superelement
-from flexstage.solid.fea.cache import Cache
-from flexstage.solid.fea.component import Component, Interface, components
-from flexstage.solid.fea.fineness import Reduction
-from flexstage.solid.fea.parts import Ways, reduce_parts
-from flexstage.solid.fea.remote import Limits
-from flexstage.solid.fea.sound import sound_components
+from flexstage.solid.fea.geometry.sound import sound_components
+from flexstage.solid.fea.jobs.cache import Cache
+from flexstage.solid.fea.jobs.parts import Ways, reduce_parts
+from flexstage.solid.fea.jobs.remote import Limits
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.component import Component, Interface, components
 
 _CACHE, _STANDARD = Cache(), Reduction()
 

@@ -12,13 +12,13 @@ from pathlib import Path
 
 from netgen import occ
 
-from flexstage.base.store import temporary_folder
+from flexstage.base.storage.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.exchange.paint import Colour, palette
-from flexstage.solid.fea.draw import draw_form, move_solid
-from flexstage.solid.fea.piece import Piece
-from flexstage.solid.fea.stage_pieces import Stage, require_shapes, stage_pieces
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.piece import Piece
+from flexstage.solid.fea.geometry.stage_pieces import Stage, require_shapes, stage_pieces
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);[ \t]*\r?\n", re.DOTALL)
 _REFERENCE = re.compile(r"#(\d+)")

@@ -15,17 +15,17 @@ import meshio
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.base.progress import Progress
-from flexstage.base.store import temporary_folder
+from flexstage.base.processes.progress import Progress
+from flexstage.base.storage.store import temporary_folder
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.solid.exchange.grid import Grid, Gridding, grid_from_cache
-from flexstage.solid.fea.component import Component, components
-from flexstage.solid.fea.content import content
-from flexstage.solid.fea.fineness import Fineness
-from flexstage.solid.fea.install import require_solver
-from flexstage.solid.fea.remote import Limits, work_all
-from flexstage.solid.fea.stage_pieces import Stage, require_shapes, stage_pieces
+from flexstage.solid.fea.geometry.stage_pieces import Stage, require_shapes, stage_pieces
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.jobs.install import require_solver
+from flexstage.solid.fea.jobs.remote import Limits, work_all
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.solver.component import Component, components
 
 _LIMITS = Limits()
 

@@ -14,13 +14,13 @@ from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.optimisation.cost import search_cost
 from flexstage.studies.optimisation.file import load_wanted
-from flexstage.studies.optimisation.front import pareto_front
-from flexstage.studies.optimisation.optimum import optimise as run_optimise
-from flexstage.studies.optimisation.report import front_report, optimise_report
 from flexstage.studies.optimisation.result import Front, Optimum
+from flexstage.studies.optimisation.search.front import pareto_front
+from flexstage.studies.optimisation.search.optimum import optimise as run_optimise
 from flexstage.studies.optimisation.setting import setting
+from flexstage.studies.optimisation.show.report import front_report, optimise_report
+from flexstage.studies.optimisation.show.tables import contradiction_text, front_tables, optimise_tables
 from flexstage.studies.optimisation.stage_text import design_path, design_text, write_optimum
-from flexstage.studies.optimisation.tables import contradiction_text, front_tables, optimise_tables
 from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable

@@ -15,13 +15,13 @@ from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
 from flexstage.studies.sweeps.effects import effects
+from flexstage.studies.sweeps.execution.run import Run
+from flexstage.studies.sweeps.execution.run import sweep as run_sweep
 from flexstage.studies.sweeps.file import load_study
 from flexstage.studies.sweeps.loaded import loaded_findings
-from flexstage.studies.sweeps.report import sweep_report
 from flexstage.studies.sweeps.result import Sweep
-from flexstage.studies.sweeps.run import Run
-from flexstage.studies.sweeps.run import sweep as run_sweep
-from flexstage.studies.sweeps.tables import study_tables
+from flexstage.studies.sweeps.show.report import sweep_report
+from flexstage.studies.sweeps.show.tables import study_tables
 
 
 def sweep(  # noqa: PLR0913 (its options)

@@ -12,12 +12,12 @@ from flexstage.show.command.options import Csv, Json, Report, Resume, Scheduler,
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.loaded import loaded_findings
-from flexstage.studies.sweeps.run import Run
 from flexstage.studies.tolerances.file import load_tolerance
-from flexstage.studies.tolerances.report import tolerance_report
 from flexstage.studies.tolerances.run import tolerance as run_tolerance
-from flexstage.studies.tolerances.tables import tolerance_tables
+from flexstage.studies.tolerances.show.report import tolerance_report
+from flexstage.studies.tolerances.show.tables import tolerance_tables
 
 
 def tolerance(  # noqa: PLR0913 (its options)

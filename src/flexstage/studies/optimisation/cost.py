@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from flexstage.base.progress import duration
-from flexstage.base.threads import one_thread
-from flexstage.studies.optimisation.search import STEPS
+from flexstage.base.processes.progress import duration
+from flexstage.base.processes.threads import one_thread
+from flexstage.studies.optimisation.search.search import STEPS
 from flexstage.studies.optimisation.setting import Setting
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.requirements import Requirement, Verdict
+from flexstage.analysis.assessment.requirements import Requirement, Verdict
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called

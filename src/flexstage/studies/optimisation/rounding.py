@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.studies.optimisation.problem import SPARE, Problem
 from flexstage.studies.optimisation.result import Rounded
+from flexstage.studies.optimisation.search.problem import SPARE, Problem
 from flexstage.studies.optimisation.setting import Setting, share_of
 from flexstage.studies.optimisation.values import Point, values_of
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from flexstage.analysis.judge import bench_of, value_or_reason
-from flexstage.analysis.measures import Measure
-from flexstage.analysis.requirements import Requirement, Sense
+from flexstage.analysis.assessment.judge import bench_of, value_or_reason
+from flexstage.analysis.assessment.measures import Measure
+from flexstage.analysis.assessment.requirements import Requirement, Sense
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.mechanism.address import get
+from flexstage.mechanism.addresses.address import get
 from flexstage.mechanism.checks import require_valid
-from flexstage.studies.optimisation.problem import SPARE, Problem, Side
+from flexstage.studies.optimisation.search.problem import SPARE, Problem, Side
 from flexstage.studies.optimisation.values import Point, Values
 from flexstage.studies.optimisation.wanted import Objective, Wanted, limits
 from flexstage.studies.sweeps.definition import Study
@@ -122,7 +122,7 @@ def _stated_values(study: Study, variable: Variable) -> list[float]:
 def share_of(variable: Variable, value: float) -> float:
     """The share of a variable's range at which it has a value: the inverse of `Variable.at`.
 
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> share_of(Variable("t", (), LENGTH, 1.0, 4.0, logarithmic=True), 2.0)
     0.5
     """

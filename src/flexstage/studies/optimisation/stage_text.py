@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.mechanism.address import get
-from flexstage.mechanism.grammar import node_of
+from flexstage.mechanism.addresses.address import get
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, patch
 from flexstage.mechanism.store.file import parse_toml, read_text

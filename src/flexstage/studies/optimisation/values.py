@@ -8,14 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
+from flexstage.analysis.assessment.judge import bench_of
+from flexstage.analysis.assessment.measures import Extreme, Measure, frequency, platform_frequency
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.judge import bench_of
-from flexstage.analysis.measures import Extreme, Measure, frequency, platform_frequency
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.studies.optimisation.spectrum import Modes, Spectrum, spectra
+from flexstage.studies.optimisation.search.spectrum import Modes, Spectrum, spectra
 from flexstage.studies.sweeps.definition import Study
 
 _STEP = 1e-20

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from flexstage.analysis.requirements import Requirement, Sense, requirements
+from flexstage.analysis.assessment.requirements import Requirement, Sense, requirements
 from flexstage.studies.sweeps.definition import Asked, Study
 
 

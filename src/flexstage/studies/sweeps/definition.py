@@ -9,14 +9,14 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.judge import measure_all
-from flexstage.analysis.measures import MEASURES, Measure
-from flexstage.analysis.requirements import Requirement, Verdict
-from flexstage.base.digest import digest
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.measures import MEASURES, Measure
+from flexstage.analysis.assessment.requirements import Requirement, Verdict
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import Quantity
 from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.storage.digest import digest
+from flexstage.base.units.quantity import Quantity
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers

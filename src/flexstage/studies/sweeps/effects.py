@@ -9,6 +9,7 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.sweeps.interactions import (
     Interaction,
     paired_shares,
@@ -20,7 +21,6 @@ from flexstage.studies.sweeps.interactions import (
     variance,
 )
 from flexstage.studies.sweeps.plan import Plan, Sampling
-from flexstage.studies.sweeps.store import Results
 
 _BINS = 16
 _FEWEST = 8

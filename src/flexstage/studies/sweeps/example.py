@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from flexstage.analysis.requirements import measure
+from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.number import Table
-from flexstage.base.quantity import LENGTH
+from flexstage.base.units.quantity import LENGTH
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.plan import Plan, Sampling

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.analysis.measures import Measure
-from flexstage.analysis.requirements import Requirement, measure, requirement
-from flexstage.analysis.sensitivities import not_numbers
+from flexstage.analysis.assessment.measures import Measure
+from flexstage.analysis.assessment.requirements import Requirement, measure, requirement
+from flexstage.analysis.assessment.sensitivities import not_numbers
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Table
-from flexstage.base.quantity import RATIO, Quantity
+from flexstage.base.units.quantity import RATIO, Quantity
 from flexstage.cases.registry import Variant
-from flexstage.mechanism.address import quantity_of
+from flexstage.mechanism.addresses.address import quantity_of
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.file import read_text
 from flexstage.mechanism.store.lines import with_lines

@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexstage.analysis.stability import DOUBTFUL, stability
-from flexstage.analysis.standing import load_factors
+from flexstage.analysis.loaded.stability import DOUBTFUL, stability
+from flexstage.analysis.loaded.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array, stack
 from flexstage.mechanism.checks import require_valid

@@ -11,8 +11,8 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.studies.sweeps.definition import Asked, Study
 from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.execution.store import Failure, Results
 from flexstage.studies.sweeps.plan import Sampling
-from flexstage.studies.sweeps.store import Failure, Results
 from flexstage.studies.sweeps.variable import Variable
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.quantity import Quantity
+from flexstage.base.units.quantity import Quantity
 from flexstage.cases.parameters import Stated, parameter, with_parameters
 from flexstage.cases.registry import Variant, case, shipped_case
+from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import NumberNode
 from flexstage.mechanism.store import load
 from flexstage.studies.form import StudyFile, VariedTable
 
@@ -105,7 +105,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
 def one_quantity(where: str, found: list[Quantity]) -> Quantity:
     """The quantity that all have; raises `DesignError` where they have several.
 
-    >>> from flexstage.base.quantity import ANGLE, LENGTH
+    >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> one_quantity("variables.a.of", [LENGTH, LENGTH]).name
     'length'
     """

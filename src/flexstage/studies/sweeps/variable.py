@@ -8,16 +8,16 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.sensitivities import departure
+from flexstage.analysis.assessment.sensitivities import departure
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
-from flexstage.base.quantity import Quantity
 from flexstage.base.record import INNER, VIEW, Called
-from flexstage.base.unit import show
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import show
 from flexstage.cases.registry import Variant
-from flexstage.mechanism.address import get, set_value
-from flexstage.mechanism.grammar import node_of
-from flexstage.mechanism.locate import canonical
+from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.addresses.locate import canonical
+from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
 
 _STEP = 1e-20
@@ -62,7 +62,7 @@ class Variable:
         """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.
 
         >>> import numpy as np
-        >>> from flexstage.base.quantity import LENGTH
+        >>> from flexstage.base.units.quantity import LENGTH
         >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3, logarithmic=True).at(np.array([0.0, 0.5, 1.0])).round(9).tolist()
         [0.001, 0.002, 0.004]
         """
@@ -73,7 +73,7 @@ class Variable:
     def text(self, value: float) -> str:
         """A value as a study's file has it: with its unit, or in percent of what the design states.
 
-        >>> from flexstage.base.quantity import RATIO
+        >>> from flexstage.base.units.quantity import RATIO
         >>> Variable("t", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True).text(1.1)
         '+10 %'
         """
@@ -82,7 +82,7 @@ class Variable:
     def nominal(self, mechanism: Mechanism) -> float:
         """The value that stands for the design as it is: 1 for a relative variable, else what the first address has.
 
-        >>> from flexstage.base.quantity import LENGTH
+        >>> from flexstage.base.units.quantity import LENGTH
         >>> from flexstage.cases.double_triangle import double_triangle
         >>> Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 4e-3).nominal(double_triangle())
         0.00154...
@@ -100,7 +100,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
     order of the variables.
 
     >>> import numpy as np
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
     >>> apply(double_triangle(), [neck], np.array([[0.0015], [0.0016]])).parts["neck"].thickness.tolist()
@@ -113,7 +113,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
 def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
     """The same of values (...) by variable: those alone that are complex make the design complex.
 
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3)
     >>> apply_columns(double_triangle(), (neck,), (0.0015,)).parts["neck"].thickness
@@ -139,7 +139,7 @@ def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Me
 def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
     """Ranges that are empty or inverted, numbers that two variables move, parameters that move none.
 
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 2e-3, 1e-3)
     >>> [str(each) for each in variable_findings(double_triangle(), [neck])]

@@ -8,10 +8,10 @@ from typing import Annotated
 import numpy as np
 import scipy
 
-from flexstage.analysis.requirements import Sense
+from flexstage.analysis.assessment.requirements import Sense
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
-from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.distribution import Shape
 from flexstage.studies.tolerances.slopes import Slopes

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.unit import show
-from flexstage.mechanism.address import quantity_of
-from flexstage.mechanism.locate import locate
+from flexstage.base.units.unit import show
+from flexstage.mechanism.addresses.address import quantity_of
+from flexstage.mechanism.addresses.locate import locate
+from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.mechanism.node import NumberNode
 from flexstage.studies.tolerances.distribution import REACH
 from flexstage.studies.tolerances.scatter import Deviation, Target
 
@@ -22,7 +22,7 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
     One finding an entry of `[scatter]`, about the number that it takes farthest.
 
     >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> wide = Deviation("t", ("parts.leaf.thickness",), LENGTH, -1, 1, distribution=Distribution(Shape.NORMAL, 3e-4), scatter="t")
     >>> [each.what for each in bound_findings(parallelogram(), [Target("parts.leaf.thickness", 1e-3, ((0, 1.0),))], (wide,))]

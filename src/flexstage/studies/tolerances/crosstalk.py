@@ -8,11 +8,11 @@ from typing import cast
 
 import numpy as np
 
+from flexstage.analysis.assessment.measures import Measure, crosstalk
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.measures import Measure, crosstalk
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.quantity import Quantity
+from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.linear.static import static_gain
 from flexstage.parts.part import Restricted
@@ -53,7 +53,7 @@ def command(bench: Bench, point: str) -> Command:
     Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import bench_of
+    >>> from flexstage.analysis.assessment.judge import bench_of
     >>> command(bench_of(double_triangle()), "platform").gains.shape
     (6, 6)
     """
@@ -100,7 +100,7 @@ def pose_measures(asked: Command) -> Mapping[str, Measure]:
     """What `poses` gives, by name: `open.x.rz` is the motion along x per command about z.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.analysis.judge import bench_of
+    >>> from flexstage.analysis.assessment.judge import bench_of
     >>> list(pose_measures(command(bench_of(parallelogram()), "platform")))[:2]
     ['open.x.x', 'open.y.x']
     """
@@ -128,7 +128,7 @@ def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
     fewer than six motions: with its own parasitic motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> from flexstage.analysis.judge import bench_of
+    >>> from flexstage.analysis.assessment.judge import bench_of
     >>> bench = bench_of(double_triangle())
     >>> np.allclose(np.reshape(poses(bench, command(bench, "platform"))[:36], (6, 6)), np.eye(6))
     True

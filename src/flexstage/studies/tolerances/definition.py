@@ -9,10 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from flexstage.analysis.assessment.judge import bench_of, value_or_reason
+from flexstage.analysis.assessment.measures import Measure
+from flexstage.analysis.assessment.requirements import Requirement
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.judge import bench_of, value_or_reason
-from flexstage.analysis.measures import Measure
-from flexstage.analysis.requirements import Requirement
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.studies.sweeps.definition import Study
@@ -161,7 +161,7 @@ class Tolerance(Study):
 def line_name(line: Requirement) -> str:
     """The column of what a line of the specification is about.
 
-    >>> from flexstage.analysis.requirements import requirements
+    >>> from flexstage.analysis.assessment.requirements import requirements
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [line_name(line) for line in requirements(parallelogram())]
     ['stroke.x', 'frequency.platform.1', 'safety']

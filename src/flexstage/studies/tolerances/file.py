@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from flexstage.analysis.requirements import Requirement, requirements
+from flexstage.analysis.assessment.requirements import Requirement, requirements
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Table
-from flexstage.base.quantity import RATIO, Quantity
-from flexstage.base.unit import show
-from flexstage.mechanism.address import get, quantity_of
+from flexstage.base.units.quantity import RATIO, Quantity
+from flexstage.base.units.unit import show
+from flexstage.mechanism.addresses.address import get, quantity_of
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.file import read_text
 from flexstage.mechanism.store.lines import with_lines

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
-from flexstage.mechanism.address import get
-from flexstage.mechanism.expand import PlacedLink, copy_names, expand
-from flexstage.mechanism.locate import Place, locate, unit_of_copy
+from flexstage.mechanism.addresses.address import get
+from flexstage.mechanism.addresses.locate import Place, locate, unit_of_copy
+from flexstage.mechanism.assembly.expand import PlacedLink, copy_names, expand
+from flexstage.mechanism.assembly.misalignment import MISALIGNED
+from flexstage.mechanism.grammar.node import NumberNode, VectorNode
 from flexstage.mechanism.mechanism import Mechanism, posed
-from flexstage.mechanism.misalignment import MISALIGNED
-from flexstage.mechanism.node import NumberNode, VectorNode
 from flexstage.parts.compound import Compound
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck

@@ -8,9 +8,9 @@ from typing import Annotated
 
 from flexstage.base.arguments import check_arguments
 from flexstage.base.record import INNER, VIEW, Called
-from flexstage.base.store import temporary_folder
+from flexstage.base.storage.store import temporary_folder
+from flexstage.studies.sweeps.execution.run import DEFAULT, Progress, Run, Told, sweep
 from flexstage.studies.sweeps.result import StudyResult
-from flexstage.studies.sweeps.run import DEFAULT, Progress, Run, Told, sweep
 from flexstage.studies.tolerances.allowance import Allowance, allowance
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.scatter import Scatter

@@ -9,11 +9,11 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.sensitivities import departure
+from flexstage.analysis.assessment.sensitivities import departure
 from flexstage.base.number import Array
-from flexstage.base.quantity import Quantity
 from flexstage.base.record import INNER, VIEW, Called
-from flexstage.mechanism.address import get, set_value
+from flexstage.base.units.quantity import Quantity
+from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
 from flexstage.studies.sweeps.variable import Variable
@@ -102,7 +102,7 @@ def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, 
     instead: the fewer parts differ, the less there is to compute.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> from flexstage.base.quantity import LENGTH
+    >>> from flexstage.base.units.quantity import LENGTH
     >>> both = {"links.left.thickness": "parts.leaf.thickness", "links.right.thickness": "parts.leaf.thickness"}
     >>> [each.address for each in targets(parallelogram(), [Variable("t", tuple(both), LENGTH, -1e-5, 1e-5)], both)]
     ['parts.leaf.thickness']

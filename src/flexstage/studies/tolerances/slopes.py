@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexstage.analysis.assessment.judge import bench_of
+from flexstage.analysis.assessment.measures import Measure, frequency, platform_frequency
+from flexstage.analysis.assessment.sensitivities import project
 from flexstage.analysis.bench import Bench
-from flexstage.analysis.judge import bench_of
-from flexstage.analysis.measures import Measure, frequency, platform_frequency
-from flexstage.analysis.sensitivities import project
 from flexstage.base.number import Array
 from flexstage.models.linear.eigen import Eigen
 from flexstage.studies.tolerances.definition import Tolerance

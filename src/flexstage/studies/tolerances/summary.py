@@ -9,12 +9,12 @@ from typing import Annotated
 import numpy as np
 import scipy
 
-from flexstage.analysis.requirements import Requirement, Sense, Verdict
+from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.sweeps.definition import Asked
-from flexstage.studies.sweeps.store import Results
+from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.tolerances.crosstalk import HELD, OPEN
 from flexstage.studies.tolerances.definition import Tolerance
 from flexstage.studies.tolerances.slopes import Slopes
@@ -157,7 +157,7 @@ def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> from flexstage.studies.tolerances.slopes import slopes
-    >>> from flexstage.studies.sweeps.evaluate import piece
+    >>> from flexstage.studies.sweeps.execution.evaluate import piece
     >>> study = leaf_study()
     >>> found = piece(study, 0, study.plan.designs)
     >>> count = study.plan.designs

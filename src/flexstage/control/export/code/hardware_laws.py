@@ -19,7 +19,7 @@ from flexstage.control.export.code.product import Term, product
 from flexstage.control.export.code.text import number, table
 from flexstage.control.simulation.fused import parts
 from flexstage.control.simulation.machine import Machine
-from flexstage.control.system import System, static
+from flexstage.control.systems.system import System, static
 from flexstage.models.linear.model import Channel
 
 _SPARSE = 0.2

@@ -8,11 +8,11 @@ from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.control.export.code.program import State
 from flexstage.control.export.code.text import indent, table
-from flexstage.control.hysteresis.bouc_wen import BoucWen
-from flexstage.control.hysteresis.envelope import IDENTITY, Envelope
-from flexstage.control.hysteresis.inverse import inverse
-from flexstage.control.hysteresis.prandtl_ishlinskii import PrandtlIshlinskii
-from flexstage.control.hysteresis.protocol import Hysteresis
+from flexstage.control.hysteresis.models.bouc_wen import BoucWen
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope
+from flexstage.control.hysteresis.models.inverse import inverse
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
 def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:

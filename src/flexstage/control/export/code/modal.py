@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.control.system import System
+from flexstage.control.systems.system import System
 
 _WORST = 1e8
 

@@ -7,8 +7,8 @@ import uuid
 from collections.abc import Iterable
 from xml.etree import ElementTree
 
-from flexstage.base.dimension import dimension_of
 from flexstage.base.text import printable
+from flexstage.base.units.dimension import dimension_of
 from flexstage.control.export.code.program import Program
 from flexstage.models.linear.model import Channel
 

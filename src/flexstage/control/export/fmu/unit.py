@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 
 from flexstage.base.finding import refuse
-from flexstage.base.native import Recipe, compile_source
+from flexstage.base.processes.native import Recipe, compile_source
 from flexstage.control.export.code.program import FLAGS, Program, Signal
 from flexstage.control.export.fmu.description import description, guid
 

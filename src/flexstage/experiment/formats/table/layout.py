@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from flexstage.base.files import require_regular
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.experiment.options import number_names
-from flexstage.experiment.unit import plain_unit, unit_problem
+from flexstage.base.storage.files import require_regular
+from flexstage.experiment.records.options import number_names
+from flexstage.experiment.records.unit import plain_unit, unit_problem
 
 _HEAD = 1 << 18
 _QUOTED = 60

@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from flexstage.base.dimension import dimension_of
-from flexstage.base.files import Attribute
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.experiment.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.base.storage.files import Attribute
+from flexstage.base.units.dimension import dimension_of
 from flexstage.experiment.formats.arrays import Contents, HeldArray, complex_of, read_arrays
 from flexstage.experiment.formats.table.layout import Layout, read_layout
 from flexstage.experiment.formats.table.values import TableSamples, index_lines
-from flexstage.experiment.options import Allow, Arrays, Kind, Options, assign, matches, select_names
-from flexstage.experiment.record import Channel, Record, Responses, Role
-from flexstage.experiment.unit import same_dimension, unit_problem
+from flexstage.experiment.records.clock import TIME_SCALES, Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.records.options import Allow, Arrays, Kind, Options, assign, matches, select_names
+from flexstage.experiment.records.record import Channel, Record, Responses, Role
+from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage record; rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s; samples (?P<count>\d+)")

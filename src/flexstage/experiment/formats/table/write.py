@@ -13,10 +13,10 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.base.store import atomic_write
+from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.table.read import SAYING
-from flexstage.experiment.options import Arrays, matches
-from flexstage.experiment.record import Channel, Record, Responses
+from flexstage.experiment.records.options import Arrays, matches
+from flexstage.experiment.records.record import Channel, Record, Responses
 
 BLOCK = 16_384
 
@@ -29,7 +29,7 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from flexstage.experiment.record import in_memory
+    >>> from flexstage.experiment.records.record import in_memory
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_table(Path(folder) / "a.csv", in_memory([Channel("S1", "um")], 4.0, np.array([[0.1], [0.2]])))
     ...     (Path(folder) / "a.csv").read_text().splitlines()[-3:]

@@ -11,9 +11,9 @@ import re
 from dataclasses import dataclass
 
 from flexstage.base.text import printable
-from flexstage.experiment.clock import printed_uncertainty, round_nominal
-from flexstage.experiment.record import RATES, Role
-from flexstage.experiment.unit import plain_unit
+from flexstage.experiment.records.clock import printed_uncertainty, round_nominal
+from flexstage.experiment.records.record import RATES, Role
+from flexstage.experiment.records.unit import plain_unit
 
 TIME, RESPONSE, TRANSMISSIBILITY, COHERENCE = 1, 4, 5, 6
 KINDS = {

@@ -13,12 +13,12 @@ import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.experiment.clock import Clock, StatedClock, determine_clock, longest_stretch
 from flexstage.experiment.formats.arrays import SideBySide, complex_of
 from flexstage.experiment.formats.uff.function import COHERENCE, KINDS
 from flexstage.experiment.formats.uff.scan import DataSet, scan
-from flexstage.experiment.options import Allow, Kind, Options, assign, matches, number_names, select_names
-from flexstage.experiment.record import Channel, Record, Responses, Role, Samples
+from flexstage.experiment.records.clock import Clock, StatedClock, determine_clock, longest_stretch
+from flexstage.experiment.records.options import Allow, Kind, Options, assign, matches, number_names, select_names
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, Samples
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")

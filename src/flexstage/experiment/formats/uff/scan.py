@@ -15,7 +15,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 from flexstage.experiment.formats.uff.function import HEAD_LINES, Function, parse_head
 from flexstage.experiment.formats.uff.values import BinaryValues, Layout, PrintedValues
-from flexstage.experiment.record import InMemory, Samples
+from flexstage.experiment.records.record import InMemory, Samples
 
 _END = re.compile(rb"[ ]*\r?\n?[ ]{4}-1[ ]*(\r?\n|$)")
 _SLACK = 96

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.base.store import atomic_write
+from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.uff.function import (
     COHERENCE,
     COMPLEX_DOUBLE,
@@ -21,7 +21,7 @@ from flexstage.experiment.formats.uff.function import (
     count_function,
     head,
 )
-from flexstage.experiment.record import Channel, Record, Responses, Role
+from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 BLOCK = 65_536
 _END = f"{-1:6d}\n".encode()
@@ -38,8 +38,8 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses, *, binary:
 
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from flexstage.experiment.options import Options
-    >>> from flexstage.experiment.record import in_memory
+    >>> from flexstage.experiment.records.options import Options
+    >>> from flexstage.experiment.records.record import in_memory
     >>> from flexstage.experiment.formats.uff.read import read_uff
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_uff(Path(folder) / "a.uff", in_memory([Channel("S1", "um", Role.OUTPUT)], 3.0, np.array([[0.1], [0.2]])))

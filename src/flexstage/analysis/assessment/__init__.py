@@ -1,0 +1,1 @@
+"""Measures, requirements, error budgets and sensitivities."""

@@ -1,0 +1,163 @@
+"""What a change does: the key figures of a stage before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.analysis.complete import Analysis
+from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.linear_statics.lost_motion import LostMotion
+from flexstage.analysis.linear_statics.statics import Statics
+from flexstage.analysis.workspace.buckling import Buckling
+from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.analysis.workspace.stroke import SingleAxis
+from flexstage.analysis.workspace.workspace import Workspace
+from flexstage.base.units.quantity import SHARE
+from flexstage.mechanism.addresses.address import get, quantity_of
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """A key figure: its name, SI unit and value."""
+
+    name: str
+    unit: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Change:
+    """A key figure before and after; `None` where it exists on one side only."""
+
+    name: str
+    unit: str
+    old: float | None
+    new: float | None
+
+    @property
+    def relative(self) -> Annotated[float | None, SHARE]:
+        """New over old less one; None where that has no meaning."""
+        return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What setting values did: the description as `stated`, the `addresses` that were set, the key `figures` before and after."""
+
+    stated: Mechanism
+    addresses: tuple[str, ...]
+    figures: tuple[Change, ...]
+
+
+def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> tuple[Change, ...]:
+    """The values that were set, before and after; values that are no single numbers are left out.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.addresses.address import set_value
+    >>> stage = double_triangle()
+    >>> set_values(stage, set_value(stage, "parts.neck.thickness", 0.0014), ["parts.neck.thickness"])[0].new
+    0.0014
+    """
+    found = ((name, get(before, name), get(after, name)) for name in dict.fromkeys(addresses))
+    return tuple(
+        Change(name, quantity_of(after, name).si, old if isinstance(old, float) else None, new)
+        for name, old, new in found
+        if isinstance(new, float)
+    )
+
+
+def difference(before: Analysis, after: Analysis) -> tuple[Change, ...]:
+    """Every key figure of two analyses, old against new.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> one = analyse(double_triangle(), Model.MAPPED)
+    >>> {change.relative for change in difference(one, one) if change.old} == {0.0}
+    True
+    """
+    old, new = ({figure.name: figure for figure in key_figures(analysis)} for analysis in (before, after))
+    known = new | {name: figure for name, figure in old.items() if name not in new}
+    return tuple(Change(name, figure.unit, _value(old, name), _value(new, name)) for name, figure in known.items())
+
+
+def _value(figures: Mapping[str, KeyFigure], name: str) -> float | None:
+    return figures[name].value if name in figures else None
+
+
+def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
+    """What a designer looks at first: required values, frequencies of the platform, stiffness, losses, strokes, strength.
+
+    Names are those of requirements.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.analysis.complete import Model, analyse
+    >>> [figure.name for figure in key_figures(analyse(double_triangle(), Model.MAPPED))][8:10]
+    ['frequency.platform.2', 'frequency.platform.3']
+    """
+    found = (
+        *requirement_figures(analysis.verdicts),
+        *frequency_figures(analysis.modes),
+        *stiffness_figures(analysis.statics),
+        *loss_figures(analysis.lost_motion),
+        *_workspace_figures(analysis.workspace),
+    )
+    named = {figure.name: figure for figure in reversed(found)}
+    return tuple(named[name] for name in dict.fromkeys(figure.name for figure in found))
+
+
+def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
+    """What requirements ask about, as far as it is known."""
+    for verdict in verdicts:
+        if verdict.value is not None:
+            asked = verdict.requirement
+            name = asked.key if asked.point == PLATFORM else f"{asked.key} at {asked.point}"
+            yield KeyFigure(name, asked.quantity.si, float(verdict.value))
+
+
+def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
+    """The platform's frequencies."""
+    if found is None:
+        return
+    for number, index in enumerate(found.platform, start=1):
+        yield KeyFigure(f"frequency.platform.{number}", "Hz", float(found.frequencies[index]))
+
+
+def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
+    """The platform's stiffness along and about each axis, all other freedoms free."""
+    if found is None:
+        return
+    compliance = np.diag(found.compliance.values)
+    for name, value, top, bottom in zip(COMPONENTS, compliance, WRENCH_UNITS, TWIST_UNITS, strict=True):
+        if value > 0.0:
+            yield KeyFigure(f"stiffness.{name}", f"{top}/{bottom}", float(1.0 / value))
+
+
+def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
+    """What each actuator loses of its own motion."""
+    if found is None:
+        return
+    for name in found.loss.rows:
+        yield KeyFigure(f"loss.{name}", "1", float(found.loss.at(name, name)))
+
+
+def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
+    if reach is not None:
+        yield from reach_figures(reach.single if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
+
+
+def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:
+    """Strokes of the platform, and how far hinges and columns are from their limits."""
+    if strokes is not None:
+        for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
+            yield KeyFigure(f"stroke.{name}", TWIST_UNITS[COMPONENTS.index(name)], float(value))
+    if stress is not None and stress.links:
+        yield KeyFigure("safety", "1", float(stress.least))
+    if buckling is not None and buckling.links:
+        yield KeyFigure("buckling", "1", float(buckling.least))

@@ -1,0 +1,126 @@
+"""The requirements of a design file judged: each value is worked out only if a line asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from flexstage.analysis.assessment.measures import Measure, corner, stroke, value_or_bound
+from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
+from flexstage.analysis.bench import Bench
+from flexstage.analysis.workspace.stops import single_strokes
+from flexstage.base.finding import DesignError, LowerBoundError
+from flexstage.base.number import Array
+from flexstage.mechanism.mechanism import Mechanism
+
+
+def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
+    """Judge every `[require]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
+
+    Stiffness, frequencies, lost motion, strokes that make up for it, and drift are those of the loaded stage where its dead load is felt
+    (1 %).
+
+    What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
+    that cannot be read.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [bool(verdict.passed) for verdict in judge(double_triangle())]
+    [True, True, True, True, True, True, True, True]
+    """
+    lines = requirements(mechanism)
+    bench = bench or Bench(mechanism, _required_strokes(lines))
+    return tuple(_verdict(bench, line) for line in lines)
+
+
+def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
+    """Values (...) in SI of measures by the lumped model, for one design or a batch; where a stage has none, the reason in words.
+
+    What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[require]` lines.
+
+    >>> from flexstage.analysis.assessment.requirements import measure
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(measure_all(stage, (measure(stage, "frequency.platform.1", "here"),))[0]), 1)
+    106.0
+    """
+    bench = bench_of(mechanism)
+    return tuple(value_or_reason(bench, each) for each in measures)
+
+
+def bench_of(mechanism: Mechanism) -> Bench:
+    """A bench for one design or a batch; the strokes that measures of all strokes at once take are those of the `[require]` lines.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> bench_of(double_triangle()).command["x"]
+    5e-05
+    """
+    return Bench(mechanism, _required_strokes(requirements(mechanism)))
+
+
+def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
+    return {line.name: line.limit for line in lines if line.kind is stroke}
+
+
+def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
+    """The value (...) of one measure, or the reason in words.
+
+    >>> from flexstage.analysis.assessment.requirements import measure
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = double_triangle()
+    >>> round(float(value_or_reason(bench_of(stage), measure(stage, "mass", "here"))), 2)
+    14.0
+    """
+    try:
+        return value_or_bound(asked.kind.value, bench, asked)
+    except DesignError as error:
+        return str(error)
+
+
+def _verdict(bench: Bench, line: Requirement) -> Verdict:
+    felt = line.kind.softening > 0.0 or line.kind.felt
+    try:
+        drawn = Verdict(line, line.kind.value(bench.felt if felt else bench, line))
+    except LowerBoundError as error:
+        least = Verdict(line, np.asarray(error.bound))
+        decided = bool(least.passed) is (line.sense is Sense.AT_LEAST)
+        return least if decided else Verdict(line, None, str(error))
+    except DesignError as error:
+        return Verdict(line, None, str(error))
+    weighed = felt and bench.felt is not bench
+    doubt = ("" if weighed else _loaded_doubt(bench, drawn)) or _large_doubt(bench, drawn)
+    return Verdict(line, None, doubt) if doubt else drawn
+
+
+def _large_doubt(bench: Bench, drawn: Verdict) -> str:
+    """Why a line about motion that linear models say is met is not known: what it asks for is no small motion; empty where it is."""
+    line = drawn.requirement
+    if drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
+        return ""
+    if line.kind is stroke and line.sense is Sense.AT_LEAST:
+        asked: Mapping[str, float] = {line.name: line.limit}
+    elif line.kind is corner:
+        asked = bench.box()
+    elif line.kind.over_strokes and bench.kinematics.actuated:
+        single = single_strokes(bench.mechanism, bench.kinematics)
+        asked = dict(zip(single.coordinates, (float(each) for each in single.symmetric), strict=True))
+    else:
+        return ""
+    doubt = bench.small_motion.doubt(asked)
+    return f"withheld: {doubt}" if doubt else ""
+
+
+def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
+    """Why a line that the drawn stage meets may be missed by the loaded one: its weight softens it; empty where it is met either way."""
+    line = drawn.requirement
+    power = line.kind.softening
+    if not power or drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
+        return ""
+    factor = float(np.real(bench.stability.dead))
+    loaded = Verdict(line, drawn.value * (1.0 - 1.0 / factor) ** power)
+    if loaded.passed:
+        return ""
+    return (
+        f"withheld: it is {float(drawn.value):.4g} {line.quantity.si} as drawn, but weight softens the stage (load factor {factor:.3g}): "
+        f"loaded it may be {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
+    )

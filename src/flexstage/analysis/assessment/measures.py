@@ -1,0 +1,605 @@
+"""Measures, the numbers by which a stage is judged: a function each, which requirements, sweeps, optimisation and tolerances know."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexstage.analysis.bench import KEPT, Bench
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.workspace.blocking import platform_lines
+from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
+from flexstage.analysis.workspace.reach import bounds_along
+from flexstage.analysis.workspace.stops import with_stops
+from flexstage.analysis.workspace.stroke import utilisation
+from flexstage.base.finding import LowerBoundError, refuse, require
+from flexstage.base.lazy import Late
+from flexstage.base.number import Array, magnitude, stack
+from flexstage.base.register import Register
+from flexstage.base.units.quantity import (
+    ANGLE,
+    CURRENT,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    MOMENT,
+    POWER,
+    PRESSURE,
+    RATIO,
+    STIFFNESS,
+    TEMPERATURE,
+    VOLTAGE,
+    Quantity,
+)
+from flexstage.beams.mass import mass as link_mass
+from flexstage.mechanism.design import designs, step_size
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.parts.condensation import condense
+from flexstage.parts.voice_coil import VoiceCoil
+from flexstage.spatial.frame import COMPONENTS, transport
+
+if TYPE_CHECKING:
+    from flexstage.analysis.loaded import load_cases as cases
+    from flexstage.models.nonlinear import state
+    from flexstage.models.nonlinear.paths import critical
+else:
+    cases = Late("flexstage.analysis.loaded.load_cases")
+    critical = Late("flexstage.models.nonlinear.paths.critical")
+    state = Late("flexstage.models.nonlinear.state")
+
+ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
+TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")
+DRIFT = Quantity("drift", "m/K", "nm/K", "5 nm/K")
+TILT_DRIFT = Quantity("rotational drift", "rad/K", "nrad/K", "50 nrad/K")
+FINE = Quantity("displacement", DISPLACEMENT.si, "nm", "10 nm")
+FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
+
+
+class Extreme(Enum):
+    """Which of its pieces a measure is."""
+
+    LEAST = "least"
+    LARGEST = "largest"
+
+    def of(self, values: Array) -> Array:
+        """The measure (...) from its pieces (..., m)."""
+        return np.min(values, axis=-1) if self is Extreme.LEAST else np.max(values, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasureKind:
+    """A kind of measure: the `form` of its key, its `quantity`, that `about` an axis, and what works it out, in SI with all batch axes.
+
+    The first sentence of that function's docstring says what it means. `pointed`: it may be asked at a point. `extreme`: the function gives
+    pieces (..., m), of which the measure is the least or largest; an optimiser sees every actuator, hinge and stack then, not only the
+    worst one. `softening`: with which power of 1 - 1/factor it changes where the dead load softens it most. `over_strokes`: it is about all
+    strokes. `felt`: it rests on lost motion or drift, which the dead load changes. `analytic`: it may be differentiated by complex step.
+    `along`: it is about a path of the design, perhaps at a place on it.
+    """
+
+    form: str
+    quantity: Quantity
+    work: Callable[[Bench, Measure], Array]
+    about: Quantity | None = None
+    pointed: bool = False
+    extreme: Extreme | None = None
+    softening: float = 0.0
+    over_strokes: bool = False
+    felt: bool = False
+    analytic: bool = True
+    along: bool = False
+
+    @property
+    def meaning(self) -> str:
+        """What it is, in a few words."""
+        first = (inspect.getdoc(self.work) or "").partition(".\n")[0].rstrip(".")
+        return first[:1].lower() + first[1:]
+
+    def pieces(self, bench: Bench, asked: Measure) -> Array:
+        """Its pieces (..., m); of a smooth measure the one that it is."""
+        found = np.asarray(self.work(bench, asked))
+        return found[..., None] if self.extreme is None else found
+
+    def value(self, bench: Bench, asked: Measure) -> Array:
+        """The measure (...). Raises `DesignError` for what the stage does not have."""
+        found = np.asarray(self.work(bench, asked))
+        return found if self.extreme is None else self.extreme.of(found)
+
+    def __reduce__(self) -> tuple[Callable[[str], MeasureKind], tuple[str]]:
+        return measure_kind, (self.form,)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A number that a stage has: its `key`, the `kind` with its `name` (an axis, actuator, gauge, path, number), the point it is taken at.
+
+    `place` is the value of a path's drive that it is taken at; of the whole path the worst. `path` is that which it is the worst over.
+    """
+
+    key: str
+    kind: MeasureKind
+    name: str
+    quantity: Quantity
+    point: str = PLATFORM
+    place: float | None = None
+    path: str = ""
+
+
+@partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
+def stroke(bench: Bench, asked: Measure) -> Array:
+    """Stroke both ways along one axis, lost motion made up by command.
+
+    How far each actuator and stop lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
+    """
+    if bench.forced:
+        return bounds_along(bench.reach(asked.point), asked.name)
+    mapping, limits = bench.stopped(asked.point)
+    if asked.name not in mapping.columns:
+        raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
+    gain = mapping.values[..., mapping.columns.index(asked.name)]
+    able = np.abs(gain) > 1e-12 * np.max(np.abs(mapping.values), axis=(-2, -1), keepdims=False)[..., None]
+    safe = np.where(able, gain, 1.0)
+    ends = limits.low / safe, limits.high / safe
+    both = np.concatenate(np.broadcast_arrays(-np.minimum(*ends), np.maximum(*ends)), axis=-1)
+    return np.where(np.concatenate([able, able], axis=-1), both, np.inf)
+
+
+@partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
+def corner(bench: Bench, _: Measure) -> Array:
+    """Share of the actuators' strokes, and of the gaps of stops, that all required strokes at once ask for."""
+    return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
+
+
+@partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)
+def frequency(bench: Bench, asked: Measure) -> Array:
+    """N-th natural frequency, any body."""
+    return _nth(bench.modes.frequencies, asked)
+
+
+@partial(MeasureKind, "frequency.platform.<n>", FREQUENCY, softening=0.5)
+def platform_frequency(bench: Bench, asked: Measure) -> Array:
+    """N-th natural frequency of the platform."""
+    return _nth(bench.modes.platform_frequencies, asked)
+
+
+def _nth(frequencies: Array, asked: Measure) -> Array:
+    count = frequencies.shape[-1]
+    if int(asked.name) > count:
+        raise refuse(f"require.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
+    return frequencies[..., int(asked.name) - 1]
+
+
+@partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
+def safety(bench: Bench, _: Measure) -> Array:
+    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from no voltage."""
+    if bench.stress.unknown:
+        links = ", ".join(bench.stress.unknown[:3])
+        raise refuse(
+            "safety", f"the material of {links} states no limit of stress", 'Add for example yield_stress = "1360 MPa" to the material'
+        )
+    return bench.stress.safety
+
+
+@partial(MeasureKind, "buckling", RATIO, over_strokes=True)
+def buckling(bench: Bench, _: Measure) -> Array:
+    """Critical load over compression in the worst part at the worst corner of the strokes."""
+    return bench.buckling.least
+
+
+@partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
+def stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness of the platform against a load along one axis, the others giving way."""
+    index = COMPONENTS.index(asked.name)
+    return 1.0 / _compliance(bench, asked)[..., index, index]
+
+
+@partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
+def directed_stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness of the platform against a force along a direction, or with r a moment about it, all else giving way."""
+    along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
+    return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
+
+
+def direction_of(name: str, where: str = "direction") -> Array:
+    """The unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a moment about it. Raises `DesignError` at `where`.
+
+    >>> direction_of("r(0,3,4)").tolist()
+    [0.0, 0.6, 0.8]
+    """
+    try:
+        vector = np.array([float(each) for each in name.removeprefix("r").removeprefix("(").removesuffix(")").split(",")])
+    except ValueError:
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.all(np.isfinite(vector)) or not np.any(vector) or not name.endswith(")"):
+        raise refuse(where, f'"{name}" is no direction', "Write three numbers, not all 0, without spaces, for example (1,1,0)")
+    return vector / np.linalg.norm(vector)
+
+
+@partial(MeasureKind, "stiffness.least", STIFFNESS, pointed=True, softening=1.0)
+def least_stiffness(bench: Bench, asked: Measure) -> Array:
+    """Stiffness against a force in the direction that gives way most.
+
+    Real directions, so that derivatives by complex step are those of a simple eigenvalue.
+    """
+    block = _compliance(bench, asked)[..., :3, :3]
+    worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
+    return 1.0 / np.einsum("...i,...ij,...j->...", worst, block, worst)
+
+
+def _compliance(bench: Bench, asked: Measure) -> Array:
+    return statics(bench.model, load_point=asked.point, read_point=asked.point).compliance.values
+
+
+@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
+def deflection(bench: Bench, asked: Measure) -> Array:
+    """Motion under gravity and stated forces, strokes held."""
+    causes = bench.deflection(asked.point).by_cause
+    return magnitude(np.sum(causes.values[..., causes.rows.index(f"{asked.point}.{asked.name}"), :], axis=-1))
+
+
+@partial(MeasureKind, "force.<axis>", FORCE, about=MOMENT)
+def force(bench: Bench, asked: Measure) -> Array:
+    """Blocking force of the platform along one axis.
+
+    Where forces move it: how far they do, held for ever, times its stiffness there.
+    """
+    if bench.forced:
+        bounds = np.min(bounds_along(bench.reach(PLATFORM), asked.name), axis=-1)
+        return bounds * stiffness.work(bench, asked)
+    lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
+    if asked.name not in lines.coordinates:
+        raise refuse(f"force.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
+    return lines.blocking[..., lines.coordinates.index(asked.name)]
+
+
+@partial(MeasureKind, "current.<axis>", CURRENT, extreme=Extreme.LARGEST)
+def current(bench: Bench, asked: Measure) -> Array:
+    """Largest current of a coil that holds the required stroke along one axis."""
+    return _held(bench, asked)[0]
+
+
+@partial(MeasureKind, "voltage.<axis>", VOLTAGE, extreme=Extreme.LARGEST)
+def voltage(bench: Bench, asked: Measure) -> Array:
+    """Largest voltage of a coil at rest, R i, that holds the required stroke along one axis."""
+    currents, coils = _held(bench, asked)
+    return currents * _stated(coils, "resistance")
+
+
+@partial(MeasureKind, "thrust.<axis>", FORCE, extreme=Extreme.LARGEST)
+def thrust(bench: Bench, asked: Measure) -> Array:
+    """Largest force of a coil that holds the required stroke along one axis."""
+    currents, coils = _held(bench, asked)
+    return currents * _stated(coils, "force_constant")
+
+
+@partial(MeasureKind, "power.<axis>", POWER)
+def power(bench: Bench, asked: Measure) -> Array:
+    """Heat of all coils, i^2 R, that holding the required stroke along one axis takes."""
+    currents, coils = _held(bench, asked)
+    return np.sum(currents**2 * _stated(coils, "resistance"), axis=-1)
+
+
+@partial(MeasureKind, "heating.<axis>", TEMPERATURE, extreme=Extreme.LARGEST)
+def heating(bench: Bench, asked: Measure) -> Array:
+    """Largest temperature rise of a coil that holds the required stroke along one axis for ever."""
+    currents, coils = _held(bench, asked)
+    return currents**2 * _stated(coils, "resistance") * _stated(coils, "thermal_resistance")
+
+
+def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, VoiceCoil]]:
+    """The currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
+    found = bench.reach(PLATFORM)
+    coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), VoiceCoil)}
+    if not coils or asked.name not in found.coordinates:
+        raise refuse(asked.key, "no coil moves this stage along it", f"Its ideal motions are {', '.join(found.coordinates)}")
+    if asked.name not in bench.command:
+        advice = f'Add for example "stroke.{asked.name}" = "at least 50 um"'
+        raise refuse(asked.key, "no stroke along this axis is required, so there is none to hold", advice)
+    rows = [found.per_motion.rows.index(name) for name in coils]
+    return magnitude(found.per_motion.values[..., rows, found.coordinates.index(asked.name)] * bench.command[asked.name]), coils
+
+
+def _stated(coils: dict[str, VoiceCoil], field: str) -> Array:
+    """A number (..., c) of every coil, refused where one does not state it."""
+    values = {name: getattr(coil, field) for name, coil in coils.items()}
+    missing = [name for name, value in values.items() if value is None]
+    if missing:
+        raise refuse(missing[0], f"it states no {field.replace('_', ' ')}", f"Add {field} to its part")
+    return stack(list(values.values()))
+
+
+@partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, felt=True)
+def loss(bench: Bench, _: Measure) -> Array:
+    """Largest share of its stroke an actuator loses."""
+    return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
+
+
+@partial(MeasureKind, "loss.<actuator>", RATIO, felt=True)
+def own_loss(bench: Bench, asked: Measure) -> Array:
+    """Share of its stroke the actuator loses."""
+    return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
+
+
+@partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, felt=True)
+def crosstalk(bench: Bench, _: Measure) -> Array:
+    """Largest stroke one actuator appears to make when another does."""
+    values = bench.lost.loss.values
+    others = values[..., ~np.eye(values.shape[-1], dtype=bool)]
+    return magnitude(others) if others.size else np.zeros((*values.shape[:-2], 1))
+
+
+@partial(MeasureKind, "map_error.<axis>", FINE, about=FINE_ROTATION, analytic=False)
+def map_error(bench: Bench, asked: Measure) -> Array:
+    """Largest error of the linear map over the workspace."""
+    return bench.map_error[..., COMPONENTS.index(asked.name)]
+
+
+@partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
+def drift(bench: Bench, asked: Measure) -> Array:
+    """Motion per kelvin of uniform temperature, strokes held, the ground of the material of its links."""
+    return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))
+
+
+@partial(MeasureKind, "mass", MASS)
+def mass(bench: Bench, _: Measure) -> Array:
+    """Mass of the platform without payload."""
+    own = bench.assembly.bodies[PLATFORM].mass
+    if own is None:
+        raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
+    return np.asarray(own.mass)
+
+
+@partial(MeasureKind, "mass.total", MASS)
+def total_mass(bench: Bench, _: Measure) -> Array:
+    """Mass of all bodies, links and stacks without payload.
+
+    Links by their integrals over the profile: a rigid motion along has the mass of both ends and what is between them.
+    """
+    bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
+    ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
+    links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
+    elements = [np.asarray(condense(item.part).mass) for item in bench.assembly.superelements.values()]
+    return sum([*bodies, *links, *elements], np.asarray(0.0))
+
+
+@partial(MeasureKind, "envelope.<dimension>", LENGTH)
+def size(bench: Bench, asked: Measure) -> Array:
+    """Edge of the bounding box."""
+    return bench.size[..., COMPONENTS.index(asked.name)]
+
+
+@partial(MeasureKind, "height", LENGTH)
+def height(bench: Bench, _: Measure) -> Array:
+    """Edge of the bounding box along z."""
+    return bench.size[..., 2]
+
+
+@partial(MeasureKind, "opening", LENGTH, analytic=False)
+def opening(bench: Bench, _: Measure) -> Array:
+    """How far anything stands into the clear opening."""
+    if bench.mechanism.opening is None:
+        raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
+    depths = [item.depth for item in bench.clearance.intrusions]
+    return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
+
+
+@partial(MeasureKind, "resolution.<axis>", FINE, about=FINE_ROTATION, pointed=True)
+def resolution(bench: Bench, asked: Measure) -> Array:
+    """Pose error of one resolution step of every gauge, worst signs."""
+    seen = pose_resolution(bench.mechanism, bench.kinematics)
+    inverse = transport(bench.arm(asked.point)) @ seen.inverse.values
+    return (magnitude(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(asked.name), 0]
+
+
+@partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
+def gauge_range(bench: Bench, _: Measure) -> Array:
+    """Share of half the gauges' range that all required strokes at once ask for, worst gauge."""
+    return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
+
+
+@partial(MeasureKind, "gauge.range.<gauge>", RATIO)
+def own_gauge_range(bench: Bench, asked: Measure) -> Array:
+    """Share of half the gauge's range that all required strokes at once ask for."""
+    return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
+
+
+@partial(MeasureKind, "load", RATIO, extreme=Extreme.LARGEST, over_strokes=True)
+def load(bench: Bench, _: Measure) -> Array:
+    """Share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner."""
+    share, limits = bench.load_share, bench.limits.from_zero
+    use = share.use(limits)
+    if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
+        raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
+    if use.ndim == 1:
+        require(each for each in share.tension_findings(limits) if "neither" in each.what)
+    return use
+
+
+@partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
+def own_load(bench: Bench, asked: Measure) -> Array:
+    """Largest compression of the stack at the worst corner of the strokes, dead load included."""
+    share = bench.load_share
+    return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
+
+
+Work = Callable[[Bench, Measure], float]
+
+
+def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None] | None = None) -> Callable[[Bench, Measure], Array]:
+    """The same of batches and of complex numbers: design by design, derivatives by central differences along the imaginary parts.
+
+    What `together` works out of many designs at once their benches have beforehand.
+    """
+
+    @wraps(work)
+    def works(bench: Bench, asked: Measure) -> Array:
+        stage = bench.mechanism
+        count, step = designs(stage), step_size(stage)
+        if count is None and not step:
+            return np.asarray(work(bench, asked))
+        found: list[complex] = []
+        shares = _shares(step)
+        several = KEPT // len(shares)
+        for first in range(0, count or 1, several):
+            places = range(first, min(first + several, count or 1))
+            benches = [[bench.one(place, share) for share in shares] for place in places]
+            if together is not None:
+                together([each for group in benches for each in group], asked)
+            found += [_value_and_slope([value_or_bound(work, each, asked) for each in group], step) for group in benches]
+        return np.array(found)
+
+    return works
+
+
+def value_or_bound(work: Callable[[Bench, Measure], Any], bench: Bench, asked: Measure) -> Any:
+    """The value of a measure, or its lower bound if no more is known."""
+    try:
+        return work(bench, asked)
+    except LowerBoundError as error:
+        return np.asarray(error.bound)
+
+
+def _shares(step: float) -> tuple[float, ...]:
+    """Which shares of imaginary parts are added to a design."""
+    return (0.0, step, -step) if step else (0.0,)
+
+
+def _value_and_slope(values: list[float], step: float) -> complex:
+    return values[0] if len(values) == 1 else values[0] + 1j * (values[1] - values[2]) / (2.0 * step)
+
+
+def _go_along(benches: Sequence[Bench], asked: Measure) -> None:
+    Bench.all_along(benches, asked.name, asked.place)
+
+
+def _column(bench: Bench, asked: Measure, name: str) -> Array:
+    """A column of a stroke: at the place that is asked for, or all of it. Refused where no equilibrium was found."""
+    found = bench.along(asked.name, asked.place)
+    if name not in found.columns:
+        raise refuse(asked.key, f"{found.drive} is no coordinate, so nothing holds it", "Drive a coordinate, for example platform.y")
+    values = found.column(name)
+    if np.any(np.isnan(values)):
+        where = found.column(found.drive)[np.isnan(values)][0]
+        raise refuse(asked.key, f"at {found.drive} = {where:.4g} the stage has no equilibrium, or a free one that is not stable", _LESS)
+    return values
+
+
+_LESS = "Ask for less stroke, or ask flexstage buckle what gives way"
+
+
+def _worst_along(name: str, column: str, quantity: Quantity, meaning: str, about: Quantity | None = None) -> MeasureKind:
+    """What a column of a stroke has of the worst, over all of a path or at one place on it: of stiffness and frequency the least."""
+    worst: Callable[[Array], Any] = np.min if name in _LEAST else _largest
+
+    @partial(_each_design, together=_go_along)
+    def work(bench: Bench, asked: Measure) -> float:
+        return float(worst(_column(bench, asked, column)))
+
+    work.__doc__ = meaning
+    return MeasureKind(f"<path>.{name}", quantity, work, about=about, along=True)
+
+
+def _largest(values: Array) -> Any:
+    return np.max(np.abs(values))
+
+
+_LEAST = {"stiffness", "frequency"}
+_MOVED = "Motion of the platform along that axis as it goes along a path, from where it rests; over all of it the largest."
+_FORCED = "Force that holds the drive of a path there, at large displacements; over all of it the largest."
+path_force = _worst_along("force", "force", FORCE, _FORCED, MOMENT)
+_STIFF = "Stiffness against the drive of a path, at large displacements; over all of it the least."
+path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
+path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
+path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
+path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, free under the force there.")
+
+
+@partial(MeasureKind, "buckling.factor", RATIO)
+@_each_design
+def buckling_factor(bench: Bench, _: Measure) -> float:
+    """How many times its own weight and payloads the stage bears, at large displacements."""
+    return _least_factor(bench, [cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0})])
+
+
+@partial(MeasureKind, "<path>.buckling", RATIO, along=True)
+@_each_design
+def path_buckling(bench: Bench, asked: Measure) -> float:
+    """How many times its weight, and what loads it, the stage bears at the ends of a path, at large displacements; the least."""
+    places = None if asked.place is None else {"there": asked.place}
+    return _least_factor(bench, cases.path_cases(bench.mechanism, asked.name, places))
+
+
+def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
+    """The least factor of load cases, infinite where nothing buckles. Raises `LowerBoundError` where the least is a lower bound."""
+    least, bounded = np.inf, None
+    for case in load_cases:
+        try:
+            factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
+        except critical.NothingGivesWayError:
+            continue
+        except LowerBoundError as found:
+            factor, error = found.bound, found
+        if factor < least:
+            least, bounded = factor, error
+    if bounded is not None:
+        raise bounded
+    return float(least)
+
+
+def over(kind: MeasureKind) -> MeasureKind:
+    """The worst along a path of what small motions have: a frequency, a stiffness. Refused for what needs more than a model of those.
+
+    >>> over(frequency).form
+    'frequency.<n> over <path>'
+    """
+    if kind.softening <= 0.0:
+        raise refuse(kind.form, "it is not known over a path", "Ask for a frequency or a stiffness over it")
+
+    @_each_design
+    def least(bench: Bench, asked: Measure) -> float:
+        along = bench.over(asked.path)
+        if kind.quantity is FREQUENCY:
+            _require_frequencies(along.modes.frequencies[..., 0], asked.path)
+        return float(np.min(kind.value(along, asked)))
+
+    least.__doc__ = (inspect.getdoc(kind.work) or "").partition(".\n")[0].rstrip(".") + ", the least over a path."
+    return replace(kind, form=f"{kind.form}{_OVER}", work=least, softening=0.0, extreme=None)
+
+
+def _require_frequencies(lowest: Array, path: str) -> None:
+    loose = int(np.sum(np.isnan(lowest)))
+    if loose:
+        what = f"at {loose} of its {lowest.size} points the free stage is not stable, and has no frequencies"
+        raise refuse(f"paths.{path}", what, f"Ask flexstage stroke --path {path} where; lighten what it holds, or lock what leaves")
+
+
+_OVER = " over <path>"
+_PATH_MOTIONS = tuple(
+    _worst_along(f"motion.{axis}", f"{PLATFORM}.{axis}", ROTATION if axis.startswith("r") else DISPLACEMENT, _MOVED) for axis in COMPONENTS
+)
+MEASURES: Register[MeasureKind] = Register(
+    "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
+)
+"""Measures by the form of their keys, ours in the order they stand above: `[require]` lines and studies call them by it."""
+
+
+def measure_kind(form: str) -> MeasureKind:
+    """The kind of measure of that form. Raises `DesignError` where no installed package offers it.
+
+    >>> measure_kind("mass").meaning
+    'mass of the platform without payload'
+    """
+    found = MEASURES.get(form.removesuffix(_OVER))
+    if found is not None and form.endswith(_OVER):
+        return over(found)
+    if found is None:
+        raise refuse(form, "no installed package offers this measure", "Install the one that does")
+    return found

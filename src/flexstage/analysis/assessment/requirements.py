@@ -1,0 +1,236 @@
+"""The `[require]` lines of a design file about measures, and the verdict on a value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from enum import Enum
+
+import numpy as np
+
+from flexstage.analysis.assessment.measures import (
+    MEASURES,
+    Measure,
+    MeasureKind,
+    buckling,
+    buckling_factor,
+    direction_of,
+    measure_kind,
+    over,
+    path_buckling,
+    safety,
+)
+from flexstage.analysis.loaded.course import drive_quantity
+from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import ANGLE, Quantity
+from flexstage.base.units.unit import parse
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.spatial.frame import COMPONENTS
+
+_LINE = re.compile(r"\s*(?P<sense>at least|at most)\s+(?P<value>.+?)(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_MEASURE = re.compile(r"\s*(?P<key>[^\s]+)(?:\s+over\s+(?P<path>[^\s]+))?(?:\s+at\s+(?P<point>[^\s].*?))?\s*")
+_COUNT = re.compile(r"[1-9]\d{0,2}")
+_SLACK = 1e-9
+
+
+class Sense(Enum):
+    """Which side of the limit is good."""
+
+    AT_LEAST = "at least"
+    AT_MOST = "at most"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Requirement(Measure):
+    """One line: a measure, on which side of the limit [SI] it is to be, and the line's own words."""
+
+    text: str
+    sense: Sense
+    limit: float
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """A requirement against the design's `value` (...) in SI; `None` with the `reason` where it could not be found out."""
+
+    requirement: Requirement
+    value: Array | None
+    reason: str = ""
+
+    @property
+    def margin(self) -> Array:
+        """Distance to the limit on the good side over the limit (...): 0.1 is 10 % to spare, negative fails; NaN without a value.
+
+        For a limit of zero the distance itself, in SI.
+        """
+        if self.value is None:
+            return np.asarray(np.nan)
+        spare = self.value - self.requirement.limit
+        scale = abs(self.requirement.limit) or 1.0
+        return (spare if self.requirement.sense is Sense.AT_LEAST else -spare) / scale
+
+    @property
+    def passed(self) -> Array:
+        """Whether the requirement is met (...); rounding to a billionth counts as met, a missing value as not."""
+        return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
+
+
+def asked_factor(mechanism: Mechanism) -> float:
+    """The factor that a design asks for: the largest of its lines `buckling.factor` and `buckling`, else of `safety`; 1 where it has none.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> asked_factor(parallelogram())
+    2.0
+    """
+    lines = [line for line in requirements(mechanism) if line.sense is Sense.AT_LEAST]
+    own = [line.limit for line in lines if line.kind in (buckling_factor, buckling, path_buckling)]
+    return max(own or [line.limit for line in lines if line.kind is safety], default=1.0)
+
+
+def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
+    """Every key that may be required of this stage (frequencies up to the sixth; higher numbers are read too).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
+    ['loss', 'loss.B1', 'loss.B2']
+    """
+    names = _names(mechanism)
+    return tuple(key for form in MEASURES for key in _keys_of_form(form, names))
+
+
+def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
+    """Read all `[require]` lines of a description.
+
+    A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown
+    key (and the nearest ones), unreadable line, wrong unit and unknown point.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> read = requirements(double_triangle())[0]
+    >>> read.kind.form, read.name, read.sense.value, read.limit
+    ('stroke.<axis>', 'x', 'at least', 5e-05)
+    """
+    found: list[Requirement] = []
+    findings: list[Finding] = []
+    for key, text in mechanism.requirements.items():
+        try:
+            found.append(_read(mechanism, f"require.{key}", key, text))
+        except DesignError as error:
+            findings += error.findings
+    if findings:
+        raise DesignError(findings)
+    return tuple(found)
+
+
+def _names(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
+    """What may stand in the place of each placeholder."""
+    assembly = expand(mechanism)
+    return {
+        "path": tuple(mechanism.paths),
+        "axis": COMPONENTS,
+        "dimension": COMPONENTS[:3],
+        "direction": ("(1,1,0)",),
+        "n": tuple(str(number) for number in range(1, 7)),
+        "actuator": tuple(assembly.actuators),
+        "gauge": tuple(assembly.gauges),
+    }
+
+
+def _keys_of_form(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[str]:
+    match = re.search(r"<(\w+)>", form)
+    if match is None:
+        yield form
+        return
+    for name in names[match[1]]:
+        yield form.replace(match[0], name)
+
+
+def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requirement:
+    """Read one line: `key` is a measure, `text` its limit as in `[require]`. Raises `DesignError` at `where`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> requirement(double_triangle(), "mass", "at most 12 kg", "limits.mass").limit
+    12.0
+    """
+    return _read(mechanism, where, key, text)
+
+
+def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
+    match = _LINE.fullmatch(text)
+    if match is None:
+        raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
+    asked = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
+    limit = parse(match["value"], asked.quantity, where=where)
+    stated = {each.name: getattr(asked, each.name) for each in fields(asked) if each.name != "key"}
+    return Requirement(key, **stated, text=text, sense=Sense(match["sense"]), limit=limit)
+
+
+def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
+    """Read the name of a measure: a key as in `[require]`, for some `at` a named point. Raises `DesignError` at `where`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")
+    >>> read.kind.form, read.name, read.quantity.shown
+    ('stroke.<axis>', 'x', 'um')
+    """
+    return _measure(mechanism, text, where)
+
+
+def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
+    match = _MEASURE.fullmatch(text)
+    if match is None:
+        raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
+    kind, name = _kind(match["key"], _names(mechanism), where)
+    if kind.along:
+        return _along(mechanism, (match["key"], kind, name), match["point"], where)
+    point, quantity = _point_and_quantity(where, kind, name, match["point"], (PLATFORM, *expand(mechanism).points))
+    if match["path"] is None:
+        return Measure(match["key"], kind, name, quantity, point)
+    if match["path"] not in mechanism.paths:
+        raise refuse(where, f'there is no path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
+    return Measure(f"{match['key']} over {match['path']}", over(kind), name, quantity, point, path=match["path"])
+
+
+def _along(mechanism: Mechanism, asked: tuple[str, MeasureKind, str], at: str | None, where: str) -> Measure:
+    """A measure along a path, perhaps at a value of its drive."""
+    key, kind, name = asked
+    drive = drive_quantity(expand(mechanism), mechanism.paths[name].drive, f"paths.{name}.drive")
+    place = None if at is None else parse(at, drive, where=where)
+    quantity = kind.about if kind.about is not None and drive is ANGLE else kind.quantity
+    return Measure(key if at is None else f"{key} at {at}", kind, name, quantity, place=place)
+
+
+def _accepts_name(placeholder: str, name: str, where: str) -> bool:
+    """Whether a name that is in no list may stand in the place: a number, or a direction."""
+    if placeholder == "direction" and name.removeprefix("r").startswith("("):
+        direction_of(name, where)
+        return True
+    return placeholder == "n" and _COUNT.fullmatch(name) is not None
+
+
+def _point_and_quantity(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
+    """The point a measure is taken at, and its quantity: that about an axis for rotations."""
+    if point and not kind.pointed:
+        raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
+    point = point or PLATFORM
+    if point not in points:
+        raise refuse(where, f"found at {point}, and no point has this name", suggest_nearest(point, points))
+    return point, kind.about if kind.about is not None and name.startswith("r") else kind.quantity
+
+
+def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[MeasureKind, str]:
+    """The kind of measure that a key asks for, and the name in it."""
+    for form in MEASURES:
+        stem, _, rest = form.partition("<")
+        placeholder, _, tail = rest.partition(">")
+        name = key.removeprefix(stem).removesuffix(tail)
+        if key == stem and not placeholder:
+            return measure_kind(form), ""
+        fits = placeholder and key.startswith(stem) and key.endswith(tail)
+        if fits and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
+            return measure_kind(form), name
+    known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
+    advice = f"{suggest_nearest(key, known)}. A measure that another package offers is known where that package is installed"
+    raise refuse(where, f'there is no measure called "{key}"', advice)

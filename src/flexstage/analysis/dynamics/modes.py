@@ -1,0 +1,386 @@
+"""Modes: frequencies, shapes, names, and which of them are the platform's."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, argsort_descending, first_design, index_of_largest
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.models.batch.choice import Choice, choose, compliance_root, participation, platform_rows
+from flexstage.models.linear.eigen import ALL_MODES, Eigen, lowest_modes, sign_weights
+from flexstage.models.linear.model import LinearModel
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_PLATFORM = "platform"
+_IN_PLANE = [0, 1, 5]
+_NAMES = ("x", "y", "z", "tilt", "tilt", "yaw")
+_LOCAL_WINDOW = 1.5
+_REPEATED = 1e-6
+_ROUNDING = 1e3 * float(np.finfo(float).eps)
+_EQUAL = 1e-6
+_LISTED = 24
+_NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One mode: its share of kinetic energy in the platform, and whether it is the `platform`'s own or a `local` one among these.
+
+    `compliance_share` is its share of the platform's static compliance along its own motion of the platform, `energy_share` the share of
+    kinetic energy of every body and link from one per cent, largest first.
+    """
+
+    number: int
+    frequency: Annotated[float, FREQUENCY]
+    name: str
+    platform_share: float
+    compliance_share: float
+    in_plane: bool
+    platform: bool
+    local: bool
+    energy_share: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Modes(InNotebook):
+    """Undamped modes of a stage, ascending.
+
+    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
+    kinetic energy of the platform body over the total, `compliance_share` (..., k) that of the platform's static compliance; `bodies` names
+    the rows of `energies` (..., b, k), the share of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
+    `names`, `in_plane` and `platform` (indices of the chosen modes) are those of the first design. A mode in which several bodies
+    have equal shares is named after all of them, and so is each of the modes that repeat. `limit` only says how many are listed.
+    Of a large stage only the lowest modes are worked out, `partial`; the platform's are those among them.
+    """
+
+    frequencies: Array
+    shapes: Array
+    platform_shapes: Array
+    share: Array
+    compliance_share: Array
+    chosen: Array
+    bodies: Annotated[tuple[str, ...], INNER]
+    energies: Array
+    names: Annotated[tuple[str, ...], INNER]
+    in_plane: Annotated[tuple[bool, ...], INNER]
+    platform: tuple[int, ...]
+    limit: Annotated[float, FREQUENCY]
+    coordinates: Annotated[tuple[str, ...], INNER]
+    provenance: str
+    partial: Annotated[bool, INNER] = False
+
+    @property
+    def modes(self) -> Annotated[tuple[Mode, ...], VIEW]:
+        """The listed modes one by one, ascending, of the first design."""
+        return tuple(self._mode(index) for index in range(self.listed))
+
+    def _mode(self, index: int) -> Mode:
+        told = (self.frequencies, self.share, self.compliance_share)
+        frequency, share, compliance = (float(first_design(each, 1)[index]) for each in told)
+        energies = first_design(self.energies, 2)[:, index]
+        bodies = {self.bodies[place]: float(energies[place]) for place in argsort_descending(energies, 1e-6) if energies[place] >= 0.01}
+        platform, local = index in self.platform, index in self.local
+        return Mode(index + 1, frequency, self.names[index], share, compliance, self.in_plane[index], platform, local, bodies)
+
+    @property
+    def listed(self) -> Annotated[int, VIEW]:
+        """How many modes are listed: those below the limit, at least 24, and up to the last one of the platform or beside its own."""
+        below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
+        last = max((*self.local, *self.platform), default=-1) + 1
+        return min(len(self.names), max(below, last, _LISTED))
+
+    @property
+    def computed(self) -> Annotated[int, VIEW]:
+        """How many modes were worked out: all, but of a large stage."""
+        return len(self.names)
+
+    def dominant_bodies(self, index: int) -> tuple[str, float]:
+        """The body or link with the most kinetic energy in a mode of the first design, or all that have as much, and their share."""
+        shares = first_design(self.energies, 2)[:, index]
+        most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
+        return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
+
+    @property
+    def twists(self) -> Annotated[Matrix, VIEW]:
+        """The platform's twist in each listed mode, mass-normalised."""
+        columns = tuple(str(number + 1) for number in range(self.listed))
+        units = tuple((f"{unit}/kg^0.5",) * self.listed for unit in TWIST_UNITS)
+        return Matrix(self.platform_shapes[..., : self.listed], COMPONENTS, columns, units)
+
+    @property
+    def platform_frequencies(self) -> Array:
+        """Platform frequencies (..., 6) [Hz], ascending, design by design; NaN where a design has fewer than others."""
+        ordered = np.sort(np.where(self.chosen, self.frequencies, np.nan), axis=-1)
+        return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
+
+    @property
+    def highest(self) -> float:
+        """The highest platform frequency of the first design below the limit, or its first one [Hz]."""
+        frequencies = first_design(self.platform_frequencies, 1)
+        return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
+
+    @property
+    def local(self) -> Annotated[tuple[int, ...], VIEW]:
+        """Modes that are not the platform's, below 1.5 times its highest one."""
+        if not self.platform:
+            return ()
+        highest = first_design(self.platform_frequencies, 1)[-1]
+        frequencies = first_design(self.frequencies, 1)
+        return tuple(
+            index for index in range(len(self.names)) if index not in self.platform and frequencies[index] < _LOCAL_WINDOW * highest
+        )
+
+
+@check_arguments
+def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
+    """Modes of the undamped model (Eq. 28 of Shin & Moon).
+
+    The platform's modes are those at which one more direction of the platform has a tenth of its static compliance
+    (`models.batch.choice`). Modes closer than `cluster` (relative) are one cluster, within which the basis is turned so that shapes follow
+    the platform's axes, and those that leave the platform at rest the coordinates that move most. Modes below `limit` [Hz] are listed.
+    Small motions. Of a large stage (`LinearModel.is_sparse`, above 900 freedoms) only some 30 modes, the lowest, are worked out.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> modes(mapped(double_triangle())).names[:4]
+    ('tilt', 'tilt', 'z', 'yaw')
+    """
+    platform = platform_rows(model)
+    solved = lowest_modes(model)
+    partial = model.is_sparse and len(model.coordinates) > ALL_MODES
+    groups = repeated_groups(first_design(solved.values, 1), cluster)
+    solved, moving = _align(platform, solved, groups, sign_weights(model.coordinates))
+    frequencies = np.sqrt(solved.values) / (2.0 * np.pi)
+    bodies, energies, components = _energies(model, solved)
+    share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
+    platform_shapes = platform @ solved.shapes
+    parts = participation(compliance_root(model, platform), platform_shapes, solved.values)
+    flat = (solved.values.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
+    chosen = choose(*flat, Choice(cluster=cluster)).mask.reshape(frequencies.shape)
+    own = first_design(chosen, 1)
+    together = _together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True)), own)
+    names, in_plane = _name_modes(bodies, *together, own)
+    return Modes(
+        frequencies=frequencies,
+        shapes=solved.shapes,
+        platform_shapes=platform_shapes,
+        share=share,
+        compliance_share=np.sum(parts**2, axis=-2),
+        chosen=chosen,
+        bodies=bodies,
+        energies=energies,
+        names=names,
+        in_plane=in_plane,
+        platform=tuple(np.flatnonzero(own).tolist()),
+        limit=limit,
+        coordinates=model.coordinates,
+        provenance=model.provenance + (f", the lowest {len(names)} modes of {len(model.coordinates):,} freedoms" if partial else ""),
+        partial=partial,
+    )
+
+
+def clusters(values: Array, gap: float) -> list[list[int]]:
+    """Group ascending values whose relative gap to the next is below `gap`.
+
+    >>> clusters(np.array([1.0, 1.0 + 1e-9, 2.0]), 1e-6)
+    [[0, 1], [2]]
+    """
+    groups: list[list[int]] = []
+    for index, value in enumerate(values):
+        if groups and value - values[groups[-1][-1]] <= gap * value:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    return groups
+
+
+def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
+    """Groups of ascending eigenvalues omega^2 whose frequencies agree within `gap`, or as well as rounding lets one tell.
+
+    Solved by 1/lambda, an eigenvalue is known to eps times its ratio to the least one, times what rounding grows by.
+
+    >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
+    [[0, 1], [2]]
+    """
+    groups: list[list[int]] = []
+    for index, value in enumerate(values):
+        slack = (2.0 * gap + _ROUNDING * value / values[0]) * value
+        if groups and value - values[groups[-1][-1]] <= slack:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+    return groups
+
+
+def average(values: Array, groups: list[list[int]]) -> Array:
+    """Every value (k,) as the mean of its group's.
+
+    >>> average(np.array([1.0, 3.0, 5.0]), [[0, 1], [2]]).tolist()
+    [2.0, 2.0, 5.0]
+    """
+    return np.concatenate([np.full(len(group), np.mean(values[group])) for group in groups])
+
+
+def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
+    """Turn the basis of repeated modes so that their platform shapes separate along the axes; and how many of each group move the platform.
+
+    Of each group (of the first design) as many shapes as it has motions of the platform come first, along x, y, ...; the others leave the
+    platform at rest and follow the coordinates that move most.
+    """
+    shapes, moving = np.array(solved.shapes), list[int]()
+    own = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
+    alone = np.max(first_design(own * (platform @ shapes), 2) ** 2, axis=0) > _EQUAL**2 * np.max(
+        first_design(weights[:, None] * shapes, 2) ** 2, axis=0
+    )
+    for group in groups:
+        if len(group) == 1:
+            moving.append(int(alone[group[0]]))
+            continue
+        seen, every = own * (platform @ shapes[..., group]), weights[:, None] * shapes[..., group]
+        size = float(np.max(np.sum(first_design(every, 2) ** 2, axis=1)))
+        leading = np.sort(_leading(first_design(seen, 2), _EQUAL**2 * size, np.eye(len(group))))
+        moving.append(len(leading))
+        rows = seen[..., leading, :]
+        if len(leading) < len(group):
+            rest = np.linalg.qr(first_design(rows, 2).T, mode="complete")[0][:, len(leading) :] if len(leading) else np.eye(len(group))
+            rows = np.concatenate([rows, every[..., _leading(first_design(every, 2), 0.0, rest), :]], axis=-2)
+        turn, upper = np.linalg.qr(np.swapaxes(rows, -1, -2))
+        shapes[..., group] = shapes[..., group] @ turn * np.where(np.diagonal(upper, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)[..., None, :]
+    return Eigen(solved.values, shapes), moving
+
+
+def _leading(rows: Array, least: float, basis: Array) -> Array:
+    """Numbers of the rows (n, k) that span them within `basis` (k, m): each the longest one left, while its square is above `least`."""
+    left, found = rows @ basis, list[int]()
+    while len(found) < basis.shape[1]:
+        squares = np.sum(left**2, axis=1)
+        row = int(np.argmax(squares >= (1.0 - _EQUAL) * np.max(squares)))
+        if squares[row] <= least:
+            break
+        found.append(row)
+        left = left - np.outer(left @ left[row], left[row]) / squares[row]
+    return np.array(found, dtype=int)
+
+
+def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array, Array]:
+    """Names of bodies and links, their energy shares (..., b, k), and by component (b, 6, k) for the first design."""
+    rows, components = [], []
+    for item in model.inertia.values():
+        seen = item.operator @ solved.shapes
+        products = seen * (item.law @ seen)
+        rows.append(np.sum(products, axis=-2))
+        components.append(_by_component(first_design(products, 2)))
+    values = np.stack(np.broadcast_arrays(*rows), axis=-2)
+    shares = values / np.sum(values, axis=-2, keepdims=True)
+    return tuple(model.inertia), np.where(np.abs(shares) > np.finfo(float).eps, shares, 0.0), np.stack(components)
+
+
+def _by_component(products: Array) -> Array:
+    """Sums (6, k) over the twists in the rows; energy within an elastic body belongs to no component."""
+    rows, count = products.shape
+    return products.reshape(-1, 6, count).sum(axis=0) if rows in {6, 12} else np.zeros((6, count))
+
+
+def _together(
+    bodies: tuple[str, ...], energies: Array, components: Array, groups: list[tuple[list[int], int]], chosen: Array
+) -> tuple[Array, Array]:
+    """Energy shares (b, k) and their components (b, 6, k) as means over modes that repeat, which no choice of their basis changes.
+
+    Of each group, so many of its first modes move the platform: where they are the platform's own, their components stay apart.
+    """
+    energies, components = energies.copy(), components.copy()
+    for group, count in (each for each in groups if len(each[0]) > 1):
+        moving = group[:count]
+        main = _main(bodies, np.mean(energies[:, moving], axis=1, keepdims=True), np.any(chosen[moving]))[0] if count else -1
+        own = main >= 0 and bodies[main] == _PLATFORM
+        if own:
+            energies[:, moving] = np.mean(energies[:, moving], axis=1, keepdims=True)
+        rest = group[count:] if own else group
+        if rest:
+            energies[:, rest] = np.mean(energies[:, rest], axis=1, keepdims=True)
+            components[..., rest] = np.mean(components[..., rest], axis=-1, keepdims=True)
+    return energies, components
+
+
+def _main(bodies: tuple[str, ...], energies: Array, chosen: Array | np.bool_) -> Array:
+    """Which body modes (k) are named after: the platform in its `chosen` ones, and where it has half of the largest share (b, k)."""
+    main = index_of_largest(energies.T, _EQUAL)
+    if _PLATFORM not in bodies:
+        return main
+    platform = bodies.index(_PLATFORM)
+    least = np.where(chosen, 0.0, 0.5 * np.max(energies, axis=0) - _EQUAL)
+    return np.where((energies[platform] > 0.0) & (energies[platform] >= least), platform, main)
+
+
+def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array, chosen: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
+    """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
+    main = _main(bodies, energies, chosen)
+    parts = components[main, :, np.arange(len(main))]
+    in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > (0.5 + _EQUAL) * np.sum(parts, axis=1)
+    names = (
+        _NAMES[component] if bodies[body] == _PLATFORM else f"{_set(_equal(bodies, shares))} local"
+        for body, component, shares in zip(
+            main, index_of_largest(parts, _EQUAL * np.max(parts, axis=1, keepdims=True)), energies.T, strict=True
+        )
+    )
+    return tuple(names), tuple(in_plane.tolist())
+
+
+def _equal(bodies: tuple[str, ...], shares: Array) -> list[str]:
+    """The bodies with the largest share, in their order."""
+    return [bodies[place] for place in np.flatnonzero(shares >= np.max(shares) - _EQUAL) if bodies[place] != _PLATFORM]
+
+
+def _set(names: list[str]) -> str:
+    """Names in one text, copies in a row as the description writes them: `B1-B3/tip`."""
+    parts = [_NUMBERED.fullmatch(name) for name in names]
+    copies: dict[tuple[str, ...], list[int]] = {}
+    for name, found in zip(names, parts, strict=True):
+        copies.setdefault((name,) if found is None else (found[1], found[3]), []).append(0 if found is None else int(found[2]))
+    return ", ".join(text for key, numbers in copies.items() for text in _range(key, numbers))
+
+
+def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
+    if len(key) == 1:
+        return list(key)
+    head, tail = key
+    if len(numbers) > 1 and sorted(numbers) == list(range(min(numbers), max(numbers) + 1)):
+        return [f"{head}{min(numbers)}-{head}{max(numbers)}{tail}"]
+    return [f"{head}{number}{tail}" for number in numbers]
+
+
+def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:
+    """Modal assurance criterion |a^T W b|^2 / (a^T W a)(b^T W b) of shapes (n, k) and (n, m); W (n, n) defaults to the unit matrix.
+
+    Allemang & Brown 1982. Shapes that mix translations and rotations need a weight (the inertia matrix).
+
+    >>> modal_assurance(np.eye(2), np.array([[1.0], [1.0]])).values.round(12).ravel().tolist()
+    [0.5, 0.5]
+    """
+    metric = np.eye(first.shape[-2]) if weight is None else weight
+    cross = np.abs(np.conj(np.swapaxes(first, -1, -2)) @ metric @ second) ** 2
+    own = [np.real(np.sum(np.conj(shape) * (metric @ shape), axis=-2)) for shape in (first, second)]
+    values = cross / (own[0][..., :, None] * own[1][..., None, :])
+    rows, columns = (tuple(str(index + 1) for index in range(shape.shape[-1])) for shape in (first, second))
+    return Matrix(values, rows, columns, "1")
+
+
+def subspace_angle(first: Array, second: Array, weight: Array | None = None) -> float:
+    """Largest principal angle [rad] between the spaces of shapes (n, k) and (n, m): how far repeated modes agree as subspaces.
+
+    >>> round(subspace_angle(np.eye(3)[:, :2], np.eye(3)[:, :2] @ np.array([[1.0, 1.0], [1.0, -1.0]])), 7)
+    0.0
+    """
+    half = np.eye(first.shape[-2]) if weight is None else np.linalg.cholesky(weight).T
+    left, right = (np.linalg.qr(half @ shape)[0] for shape in (first, second))
+    distance = right - left @ (left.conj().T @ right)
+    return float(np.arcsin(np.clip(np.linalg.norm(distance, 2), 0.0, 1.0)))

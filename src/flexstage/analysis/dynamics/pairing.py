@@ -1,0 +1,123 @@
+"""Pairing of two models' modes by their shapes at all motions that both models give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from flexstage.analysis.dynamics.modes import Modes, clusters
+from flexstage.base.number import Array, first_design
+from flexstage.models.linear.model import LinearModel
+
+RELIABLE = 0.8
+"""The modal assurance below which two modes are not the same one."""
+
+_CLOSE = 0.01
+_LENGTH = 0.1
+_MOTIONS = ("m", "rad")
+_UNSEEN = 1e-9
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The mode of another model that a mode is paired with: its index, its frequency [Hz], the share 0 to 1 of the motion they share."""
+
+    index: int
+    frequency: float
+    assurance: float
+
+    @property
+    def reliable(self) -> bool:
+        """Whether they are alike enough to be compared as one mode."""
+        return self.assurance >= RELIABLE
+
+
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """The modes of a model, and the model that they are of."""
+
+    modes: Modes
+    model: LinearModel
+
+
+def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
+    """For each platform mode, by index, the mode of another model with the most similar motion of all bodies, points and gauges.
+
+    Modal assurance (Allemang and Brown 1982) in kinetic energy: the outputs that are motions and that both models have, turns times the
+    platform's radius of gyration, give the coordinates of the model that has fewer of them (least squares), and its inertia weighs these.
+    The share is of each mode's whole kinetic energy: what moves inside bodies and links where no output sees it is not alike. A partner
+    may be any mode of the other, local ones too. Modes closer than 1 % are compared as a subspace: within it every basis is as good, and
+    the lower goes to the lower. A pair below `RELIABLE` is the best there is, and no match.
+
+    >>> from flexstage.analysis.dynamics.modes import modes
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(double_triangle())
+    >>> found = Moving(modes(model), model)
+    >>> pairs = pair_modes(found, found)
+    >>> all(index == pair.index for index, pair in pairs.items()), round(min(pair.assurance for pair in pairs.values()), 9)
+    (True, 1.0)
+    """
+    first, second = _alike(own, other)
+    frequencies, others = (first_design(each.modes.frequencies, 1) for each in (own, other))
+    highest = max((frequencies[index] for index in own.modes.platform), default=0.0) * (1.0 + _CLOSE)
+    near = np.flatnonzero(frequencies <= highest)
+    rows, columns = scipy.optimize.linear_sum_assignment(-((first[:, near].T @ second) ** 2))
+    partner = dict(zip(near[rows].tolist(), columns.tolist(), strict=True))
+    found: dict[int, Pair] = {}
+    for group in clusters(frequencies[near], _CLOSE):
+        members = sorted(partner[index] for index in group if index in partner)
+        shared = _shared_energy(first[:, group], second[:, sorted(_with_close(members, others))])
+        found |= {
+            index: Pair(member, float(others[member]), float(share)) for index, member, share in zip(group, members, shared, strict=False)
+        }
+    return {index: found[index] for index in own.modes.platform if index in found}
+
+
+def _with_close(members: Iterable[int], frequencies: Array) -> set[int]:
+    """Modes together with those that are less than 1 % from them."""
+    return {int(index) for member in members for index in np.flatnonzero(np.abs(frequencies / frequencies[member] - 1.0) <= _CLOSE)}
+
+
+def _shared_energy(own: Array, other: Array) -> Array:
+    """How much of the kinetic energy of modes (r, n) one motion within those (r, k) of another model shares.
+
+    Mode by mode the energy is 1, what no output sees included; where the models' masses differ, no more than 1 is counted.
+    """
+    most = max(1.0, float(np.linalg.norm(other, 2))) if other.size else 1.0
+    return np.sum((other.T @ own) ** 2, axis=0) / (most**2 * np.maximum(np.sum(own**2, axis=0), 1.0))
+
+
+def _alike(own: Moving, other: Moving) -> tuple[Array, Array]:
+    """Both models' modes (r, n) in the coordinates of the smaller model, so that the sum of squares is twice the kinetic energy seen."""
+    names = {channel.name for channel in other.model.outputs}
+    common = tuple(channel.name for channel in own.model.outputs if channel.name in names and channel.unit in _MOTIONS)
+    small = min(own, other, key=lambda each: len(each.model.coordinates)).model
+    units = {channel.name: channel.unit for channel in small.outputs}
+    weight = np.array([[gyration(small) if units[name] == "rad" else 1.0] for name in common])
+    back = np.linalg.pinv(weight * _rows(small, common), rcond=_UNSEEN)
+    half = _root(first_design(small.inertia_matrix, 2)) @ back
+    first, second = (half @ (weight * (_rows(each.model, common) @ first_design(each.modes.shapes, 2))) for each in (own, other))
+    return first, second
+
+
+def _rows(model: LinearModel, names: tuple[str, ...]) -> Array:
+    return first_design(model.output, 2)[model.output_index(names)]
+
+
+def _root(inertia: Array) -> Array:
+    """A square root of the inertia, coordinates without mass included."""
+    values, vectors = np.linalg.eigh(inertia)
+    return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+
+
+def gyration(model: LinearModel) -> float:
+    """The platform's radius of gyration [m], what makes lengths of angles; 0.1 m where the model has no rigid platform."""
+    item = model.inertia.get("platform")
+    if item is None or item.law.shape[-2:] != (6, 6):
+        return _LENGTH
+    law = np.diag(first_design(item.law, 2))
+    return float(np.sqrt(np.mean(law[3:]) / np.mean(law[:3]))) or _LENGTH

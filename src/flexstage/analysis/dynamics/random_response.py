@@ -1,0 +1,186 @@
+"""Random response: spectral densities of inputs to spectral densities and rms values of outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.dynamics.modes import average, repeated_groups
+from flexstage.base.arguments import CheckedFields, check_arguments
+from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW, Axes, Called
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.mechanism.mechanism import Damping
+from flexstage.models.linear.damping import damping_law, modal_ratios
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import transfer
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import ports
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_OFFSETS = np.array([-81.0, -27.0, -9.0, -3.0, -1.0, 0.0, 1.0, 3.0, 9.0, 27.0, 81.0])
+_PANELS_PER_DECADE = 6
+
+
+class Rate(Enum):
+    """What a spectrum is the density of: the input itself, its first or its second rate (floor velocity, floor acceleration)."""
+
+    VALUE = 0
+    VELOCITY = 1
+    ACCELERATION = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum(CheckedFields):
+    """A one-sided power spectral density of an input.
+
+    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz; between
+    the points straight in log-log, zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    """
+
+    density: float | Array
+    frequencies: Array | None = None
+    rate: Rate = Rate.VALUE
+
+    def at(self, frequencies: Array) -> Array:
+        """Density of the input itself at frequencies (f,) > 0 in Hz.
+
+        >>> Spectrum(np.array([1.0, 100.0]), np.array([1.0, 10.0])).at(np.array([10.0**0.5, 20.0])).round(9).tolist()
+        [10.0, 0.0]
+        """
+        scale = (2.0 * np.pi * frequencies) ** (-2 * self.rate.value)
+        if self.frequencies is None:
+            return np.asarray(self.density) * scale
+        inside = (frequencies >= self.frequencies[0]) & (frequencies <= self.frequencies[-1])
+        table = np.interp(np.log(frequencies), np.log(self.frequencies), np.log(self.density))
+        return np.where(inside, np.exp(table), 0.0) * scale
+
+
+@dataclass(frozen=True, eq=False)
+class RandomResponse(InNotebook):
+    """One-sided densities (..., f, p) of outputs [unit^2/Hz] and their rms values (..., p) [unit] over the band, with each input's share.
+
+    `shares` (..., p, m) are the mean squares from each input (inputs are uncorrelated, so they add up to rms^2). `method` states how the
+    integral was taken.
+    """
+
+    frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    density: Annotated[Array, VIEW, Axes("frequencies", "responding")]
+    rms: Annotated[Array, VIEW, Axes("responding")]
+    shares: Annotated[Array, VIEW, Called("mean_square"), Axes("responding", "disturbing")]
+    band: Annotated[tuple[float, float], FREQUENCY]
+    method: str
+    provenance: Annotated[str, INNER]
+
+    @property
+    def responding(self) -> Annotated[tuple[str, ...], VIEW, Called("outputs")]:
+        """Names of the outputs."""
+        return tuple(channel.name for channel in self.outputs)
+
+    @property
+    def disturbing(self) -> Annotated[tuple[str, ...], VIEW, Called("inputs")]:
+        """Names of the inputs."""
+        return tuple(channel.name for channel in self.inputs)
+
+    @property
+    def units(self) -> Annotated[tuple[str, ...], VIEW, Axes("responding")]:
+        """Unit of each output's rms value; its mean squares are in its square, its density in that per hertz."""
+        return tuple(channel.unit for channel in self.outputs)
+
+
+@check_arguments
+def random_response(
+    model: LinearModel,
+    outputs: str | Iterable[str],
+    spectra: Mapping[str, Spectrum],
+    band: tuple[float, float],
+    *,
+    damping: Damping | None = None,
+) -> RandomResponse:
+    """Densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2), inputs uncorrelated.
+
+    `spectra` maps input names (as for `response`; groups not allowed, `ground.z` is floor motion) to one-sided densities; `band` (low,
+    high) in Hz, low > 0. Integrated by Gauss's rule, 8 nodes a panel; panels end at multiples of each resonance's half width, at the
+    tables' points and six a decade, so that the rule resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
+    `DesignError` for unknown names, an empty band, or densities that are not positive.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> floor = {"ground.x": Spectrum(1e-18, rate=Rate.VALUE)}  # 1 nm per root hertz
+    >>> found = random_response(lumped(parallelogram()), ["platform.x"], floor, (1.0, 101.0))
+    >>> round(float(found.rms[0]) * 1e9, 1)  # far below the resonance the platform follows: 1 nm (100 Hz)^(1/2)
+    10.0
+    """
+    require(spectrum_findings(spectra, band))
+    law = damping_law(model, damping)
+    chosen = ports(model, outputs, tuple(spectra))
+    grid, weights = quadrature(_panels(model, law, spectra, band))
+    gains = np.abs(transfer(model, chosen, grid, law)) ** 2
+    each = gains * np.stack([spectrum.at(grid) for spectrum in spectra.values()], axis=-1)[:, None, :]
+    shares = np.einsum("f,...fpm->...pm", weights, each)
+    method = f"Gauss-Legendre, 8 nodes on each of {len(grid) // 8} panels"
+    rms = np.sqrt(np.sum(shares, axis=-1))
+    return RandomResponse(grid, chosen.outputs, chosen.inputs, np.sum(each, axis=-1), rms, shares, band, method, model.provenance)
+
+
+def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> list[Finding]:
+    """What is wrong with spectra and the band to integrate them over.
+
+    >>> [finding.where for finding in spectrum_findings({"ground.z": Spectrum(-1.0)}, (10.0, 1.0))]
+    ['band', 'ground.z']
+    """
+    low, high = band
+    found = [] if 0.0 < low < high < np.inf else [Finding("band", f"{low:g} Hz to {high:g} Hz is no band", "Give 0 < low < high in Hz")]
+    if not spectra:
+        found.append(Finding("spectra", "no input has a spectrum", "Give at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
+    for name, spectrum in spectra.items():
+        found += _table_findings(name, np.asarray(spectrum.density), spectrum.frequencies)
+    return found
+
+
+def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
+    wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
+    found = [Finding(name, "its density is negative or not finite, or zero in a table", "Mend the entries")] if wrong else []
+    if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
+        found.append(Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Mend the table"))
+    return found
+
+
+def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:
+    """Ends of the panels (k,) in Hz, for all designs of a batch."""
+    solved = eigen(model)
+    natural = np.sqrt(solved.values) / (2.0 * np.pi)
+    rows = (part.reshape(-1, natural.shape[-1]) for part in np.broadcast_arrays(natural, modal_ratios(model, solved, law)))
+    around = np.concatenate([_around(*each) for each in zip(*rows, strict=True)])
+    low, high = band
+    coarse = np.geomspace(low, high, 2 + int(_PANELS_PER_DECADE * np.log10(high / low)))
+    knots = [np.asarray(item.frequencies) for item in spectra.values() if item.frequencies is not None]
+    ends = np.concatenate([coarse, around[np.isfinite(around)].ravel(), *knots])
+    return np.unique(np.concatenate([[low, high], ends[(ends > low) & (ends < high)]]))
+
+
+def _around(natural: Array, ratios: Array) -> Array:
+    """Ends of panels around the resonances of one design; modes that repeat are one, at their mean."""
+    groups = repeated_groups(natural**2)
+    width = np.maximum(average(ratios, groups), 1e-9)
+    return (average(natural, groups)[:, None] * (1.0 + width[:, None] * _OFFSETS)).ravel()
+
+
+def quadrature(ends: Array) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss's rule, 8 nodes on every panel between `ends` (k,).
+
+    >>> nodes, weights = quadrature(np.array([0.0, 1.0, 3.0]))
+    >>> round(float(weights @ nodes**2), 12), round(3.0**3 / 3.0, 12)
+    (9.0, 9.0)
+    """
+    half = 0.5 * np.diff(ends)[:, None]
+    middle = 0.5 * (ends[1:] + ends[:-1])[:, None]
+    return (middle + half * _NODES).ravel(), (half * _WEIGHTS).ravel()

@@ -1,0 +1,100 @@
+"""Frequency responses of a stage: any named input to any named output, and the transmissibility of its ground."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from flexstage.analysis.dynamics.modes import average, repeated_groups
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, distinct_values, first_design
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
+from flexstage.models.linear.damping import damping_law, modal_ratios
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.frequency import Response, transfer
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.port import ports
+
+_MODES_SHOWN = 12
+_ANGLES = np.linspace(-1.45, 1.45, 25)
+
+
+@check_arguments
+def response(
+    model: LinearModel,
+    outputs: str | Iterable[str],
+    inputs: str | Iterable[str],
+    frequencies: Array | None = None,
+    *,
+    damping: Damping | None = None,
+) -> Response:
+    """Frequency response H (..., f, p, m) of named outputs over named inputs.
+
+    Names are channels (`platform.x`, gauge `S1`, stroke `B1`, `chuck.fz`), wrench components on any body (`B4/lever.fz`), the ground's
+    motion (`ground.x` ... `ground.rz`, absolute displacement) or groups (`platform`, `ground`: six components). `frequencies` (f,) in Hz;
+    absent: `default_frequencies`. `damping` replaces the law the design states. Raises `DesignError` for unknown names and where no
+    damping is stated. Structural damping costs one solve a frequency, the other laws one eigenvalue problem in all.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> found = response(lumped(parallelogram()), ["S"], ["B"], np.array([0.0, 100.0]))
+    >>> found.values.shape, found.units
+    ((2, 1, 1), (('1',),))
+    """
+    law = damping_law(model, damping)
+    chosen = ports(model, outputs, inputs)
+    grid = default_frequencies(model, damping=law) if frequencies is None else _check(frequencies)
+    return Response(grid, chosen.outputs, chosen.inputs, transfer(model, chosen, grid, law), model.provenance)
+
+
+@check_arguments
+def transmissibility(
+    model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
+) -> Response:
+    """Absolute motion of outputs over absolute motion of the ground, both at the platform's reference point: (..., f, p, 6).
+
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b: damping acts on motion relative to the ground, and T of the platform's twist
+    tends to the unit matrix at low frequency. Gauges and stress resultants feel relative motion only and tend to zero.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> found = transmissibility(lumped(parallelogram()), frequencies=np.array([0.01]))
+    >>> bool(np.allclose(found.values[0], np.eye(6), atol=1e-6))
+    True
+    """
+    return response(model, outputs, (GROUND,), frequencies, damping=damping)
+
+
+def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
+    """A frequency grid (f,) in Hz: 40 points a decade, and 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
+
+    `band` absent: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch; of modes that
+    repeat, the mean.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> grid = default_frequencies(lumped(parallelogram()), (10.0, 1000.0))
+    >>> float(grid[0]), float(grid[-1])
+    (10.0, 1000.0)
+    """
+    solved = eigen(model)
+    natural = np.sqrt(first_design(solved.values, 1)) / (2.0 * np.pi)
+    if not natural.size:
+        raise refuse("stage", "the model has no mass, so it has no resonances to choose frequencies by", "Pass the frequencies")
+    ratios = modal_ratios(model, solved, damping_law(model, damping))
+    groups = repeated_groups(first_design(solved.values, 1))
+    natural, width = average(natural, groups), np.maximum(average(first_design(ratios, 1), groups), 1e-6)
+    low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
+    around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
+    coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
+    inner = np.concatenate([natural, around])
+    return distinct_values(np.concatenate([coarse, inner[(inner > low) & (inner < high * (1.0 - 1e-9))]]))
+
+
+def _check(frequencies: Array) -> Array:
+    grid = np.asarray(frequencies, dtype=float)
+    if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
+        raise refuse("frequencies", f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}", "Mend the list")
+    return grid

@@ -1,0 +1,1 @@
+"""Static analyses: stiffness, lost motion, drift, mass, single units."""

@@ -1,0 +1,248 @@
+"""Drift: what uniform and linear changes of temperature move, per kelvin.
+
+Every body and part would grow freely with the field T(r); a linear field leaves a free body unstressed, with the displacement
+u = alpha [T r + (g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. What does not fit is imposed on the links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.lost_motion import LOADED
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, Vector, stack
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import LENGTH
+from flexstage.beams.compliance import law
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.expansion import Expansion, Ground, expansion
+from flexstage.mechanism.assembly.incidence import deformation, layout
+from flexstage.mechanism.assembly.sight import Sight
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.models.linear.model import Contribution, LinearModel
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Restricted
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, cross_matrix, spatial_rotation, transport
+
+FIELDS = ("uniform", "gradient.x", "gradient.y", "gradient.z")
+_FIELD_UNITS = ("K", "K/m", "K/m", "K/m")
+_FITS = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Drift(InNotebook):
+    """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
+
+    `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the
+    material the ground was taken to be of (`None`: it does not grow) and from where that is known, `datum` (..., 3) [m] the point of the
+    ground that stays and where gradients are zero, `taken` each body's material. `bodies` are the twists (..., 6, 4) of all bodies at
+    their references.
+    """
+
+    motion: Matrix
+    gauges: Matrix
+    forces: Matrix
+    ground: Ground
+    datum: Annotated[Array, LENGTH]
+    taken: Mapping[str, str]
+    provenance: str
+    bodies: Annotated[Mapping[str, Array], INNER] = field(default_factory=dict[str, Array])
+
+    def of(self, point: str = PLATFORM) -> Matrix:
+        """The six rows of one point."""
+        return self.motion.part(tuple(f"{point}.{name}" for name in COMPONENTS), FIELDS)
+
+
+_ABOUT = cross_matrix(np.eye(3))
+"""By axis, what makes the cross product of its unit vector with another one."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Thermal:
+    """Expansion of everything in the four fields, counted from a datum."""
+
+    assembly: Assembly
+    expansion: Expansion
+    datum: Array
+
+    def growth(self, body: str, point: Array) -> Array:
+        """Growth twist (..., 6, 4) of a body at a point, from its reference, in stage axes."""
+        reference = self.datum if body == GROUND else self.assembly.bodies[body].reference
+        return np.asarray(self.expansion.bodies[body])[..., None, None] * _growth(point - reference, reference - self.datum)
+
+    def misfit(self, link: PlacedLink) -> Array:
+        """Deformation (..., 6, 4) of a link, in its frame, if no body moved."""
+        first, second = (self.growth(body, link.frame.position) + self._half(link, end) for end, body in enumerate(link.joins))
+        return np.swapaxes(spatial_rotation(link.frame.rotation), -1, -2) @ (second - first)
+
+    def _half(self, link: PlacedLink, end: int) -> Array:
+        """What the part's half next to a body grows more than that body would: seen at the part's centre from that end."""
+        if link.name not in self.expansion.parts:
+            return np.zeros((6, 4))
+        own, length = self.expansion.parts[link.name]
+        more = own - self.expansion.bodies[link.joins[end]]
+        arm = (0.5 if end == 0 else -0.5) * np.asarray(length)[..., None] * link.frame.rotation[..., :, 0]
+        return np.asarray(more)[..., None, None] * _growth(arm, link.frame.position - arm - self.datum)
+
+
+@check_arguments
+def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
+    """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
+
+    `ground` names the ground's material (absent: as `ground_of` finds it in the description; `none`: it does not grow). Motions are counted
+    from the ground's `datum`. A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states
+    no expansion, where the ground's material is not known, where locked freedoms cannot follow the growth, and for a model whose stiffness
+    is not that of links: mapped, or about a state with the flexures' inner modes. About a state link by link
+    (`linearise(state, inner=False)`) growth is that of the drawn stage, and what it meets the stiffness of the loaded one.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = double_triangle()
+    >>> drifted = drift(stage, lumped(stage), ground="steel")
+    >>> bool(abs(drifted.motion.at("platform.x", "uniform")) < 1e-15)
+    True
+    """
+    thermal = _Thermal(expand(mechanism), expansion(mechanism, ground), stack(datum))
+    misfits = {name: thermal.misfit(link) for name, link in thermal.assembly.links.items()}
+    fitted = _fit_misfits(thermal.assembly, misfits)
+    strains = {name: misfits[name] + fitted.strains.get(name, 0.0) for name in misfits}
+    if LOADED in model.stiffness:
+        strains[LOADED] = _stacked(fitted, model.stiffness[LOADED])
+    if other := _unlinked(model, strains):
+        what = f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none"
+        raise refuse("drift", what, "Take the lumped model")
+    whole = {name: _without_modes(strains[name], part.law.shape[-1] - strains[name].shape[-2]) for name, part in model.stiffness.items()}
+    motion = model.follow(whole)
+    twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
+    parts = {name: part for name, part in model.stiffness.items() if name in misfits}
+    forces = {name: (part.law @ (part.operator @ motion + whole[name]))[..., :6, :] for name, part in parts.items()}
+    return Drift(
+        motion=_motions(thermal, twists),
+        gauges=_gauges(thermal, twists),
+        forces=_label(forces, FORCES, WRENCH_UNITS),
+        ground=thermal.expansion.ground,
+        datum=thermal.datum,
+        taken=thermal.expansion.taken,
+        provenance=f"{model.provenance}, ground {thermal.expansion.taken[GROUND]}",
+        bodies=twists,
+    )
+
+
+def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
+    """What has a stiffness and is no link; about a state, links whose deformation is not that of their two ends alone."""
+    about = LOADED in model.stiffness
+    return [
+        name for name, part in model.stiffness.items() if name not in strains or (about and part.law.shape[-1] != strains[name].shape[-2])
+    ]
+
+
+def _stacked(fitted: _Fitted, part: Contribution) -> Array:
+    """The motions of all bodies that follow the growth (n, 4), as the load turns with them."""
+    twists = list(fitted.twists.values())
+    return np.concatenate(_broadcast(twists), axis=-2) if twists else np.zeros((part.law.shape[-1], 4))
+
+
+def _without_modes(strain: Array, inner: int) -> Array:
+    """The misfit (..., 6, k) of a link of that many inner modes, which do not grow."""
+    return np.concatenate([strain, np.zeros((*strain.shape[:-2], inner, strain.shape[-1]))], axis=-2) if inner else strain
+
+
+def _growth(arm: Array, origin: Array) -> Array:
+    """Free growth (..., 6, 4) over `arm` from a point at `origin` from the datum, for a unit coefficient and the four fields."""
+    arm, origin = np.broadcast_arrays(arm, origin)
+    square = np.sum(arm * arm, axis=-1)
+    columns = [np.concatenate([arm, np.zeros_like(arm)], axis=-1)]
+    for axis in range(3):
+        slope = np.eye(3)[axis]
+        shift = (origin[..., axis, None] + arm[..., axis, None]) * arm - 0.5 * square[..., None] * slope
+        columns.append(np.concatenate([shift, (_ABOUT[axis] @ arm[..., None])[..., 0]], axis=-1))
+    return np.stack(columns, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Body motions that let locked freedoms follow the growth, and the link deformations they cause."""
+
+    twists: Mapping[str, Array]
+    strains: Mapping[str, Array]
+
+
+def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
+    """Locked freedoms leave no room for misfits: find body motions of least norm that close them."""
+    bound = {
+        name: law(link.part, link.material).locked for name, link in assembly.links.items() if isinstance(link.part, (Joint, Restricted))
+    }
+    if not any(bound.values()):
+        return _Fitted({}, {})
+    order = layout(assembly)
+    operators = {name: deformation(assembly, order, link) for name, link in assembly.links.items()}
+    picked = {name: [freedom.index for freedom in locked] for name, locked in bound.items() if locked}
+    rows = np.concatenate(_broadcast([operators[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    gaps = np.concatenate(_broadcast([misfits[name][..., index, :] for name, index in picked.items()]), axis=-2)
+    motion = -np.linalg.pinv(rows, rcond=1e-10) @ gaps
+    left = np.max(np.abs(rows @ motion + gaps))
+    if left > _FITS * np.max(np.abs(gaps)):
+        raise refuse(
+            "drift",
+            f"locked freedoms cannot follow the growth: {float(left):.3g} m per K is left between them",
+            "Give the restricted parts elasticity in the directions that grow",
+        )
+    return _Fitted(
+        {body: motion[..., order.columns(body), :] for body in order.bodies}, {name: item @ motion for name, item in operators.items()}
+    )
+
+
+def _twists(assembly: Assembly, model: LinearModel, motion: Array) -> dict[str, Array]:
+    """The twist (..., 6, 4) of every body."""
+    places = {body: model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)) for body in assembly.bodies}
+    if model.is_sparse:
+        outputs = model.output @ motion
+        return {body: outputs[rows] for body, rows in places.items()}
+    return {body: model.output[..., rows, :] @ motion for body, rows in places.items()}
+
+
+def _motions(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
+    found = {PLATFORM: twists[PLATFORM]}
+    for name, (body, point) in thermal.assembly.points.items():
+        carry = transport(point - thermal.assembly.bodies[body].reference)
+        found[name] = carry @ twists[body] + thermal.growth(body, point)
+    return _label(found, COMPONENTS, TWIST_UNITS)
+
+
+def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
+    gauges = thermal.assembly.gauges
+    rows = [sum(_reading(thermal, twists, sight) for sight in gauge.sights) for gauge in gauges.values()]
+    values = np.stack(np.broadcast_arrays(*rows), axis=-2) if rows else np.zeros((0, 4))
+    return Matrix(values, tuple(gauges), FIELDS, ratio_units(tuple(gauge.unit for gauge in gauges.values()), _FIELD_UNITS))
+
+
+def _reading(thermal: _Thermal, twists: Mapping[str, Array], sight: Sight) -> Array:
+    """What a sight adds to a reading (..., 4): material of the body against material of the base."""
+    ends = [_material_motion(thermal, twists, body, at.position) for body, at in ((sight.body, sight.frame), (sight.base, sight.foot))]
+    rows = slice(0, 3) if sight.component < 3 else slice(3, 6)
+    direction = np.asarray(sight.weight)[..., None] * sight.frame.rotation[..., :, sight.component % 3]
+    return (direction[..., None, :] @ (ends[0] - ends[1])[..., rows, :])[..., 0, :]
+
+
+def _material_motion(thermal: _Thermal, twists: Mapping[str, Array], body: str, point: Array) -> Array:
+    """Motion (..., 6, 4) of a body's material at a point."""
+    grown = thermal.growth(body, point)
+    return grown if body == GROUND else transport(point - thermal.assembly.bodies[body].reference) @ twists[body] + grown
+
+
+def _label(blocks: Mapping[str, Array], components: tuple[str, ...], units: tuple[str, ...]) -> Matrix:
+    rows = tuple(f"{name}.{component}" for name in blocks for component in components)
+    values = np.concatenate(_broadcast(list(blocks.values())), axis=-2)
+    return Matrix(values, rows, FIELDS, ratio_units(units * len(blocks), _FIELD_UNITS))
+
+
+def _broadcast(arrays: list[Array]) -> list[Array]:
+    batch = np.broadcast_shapes(*(array.shape[:-2] for array in arrays))
+    return [np.broadcast_to(array, (*batch, *array.shape[-2:])) for array in arrays]

@@ -1,0 +1,71 @@
+"""A stage as an actuator of another one: what stands between its ground and its platform, statically condensed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, Number, stack
+from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import lumped
+from flexstage.parts.actuator import ChargedActuator, StrokeActuator
+from flexstage.parts.amplified import Amplified
+from flexstage.spatial.frame import COMPONENTS
+
+
+@check_arguments
+def amplified(mechanism: Mechanism) -> Amplified:
+    """The stage as one part: its ground is the first face, its platform the second.
+
+    Of the lumped model: compliance of the platform at its reference point with the stroke held, and its motion at the full stroke. The
+    part's centre is that reference point, its axes those of the stage, so a link of it stands with `along` the stage's x and `bends` its z.
+    Volts, bias and capacitance are those of the one actuator inside; of the mass of all bodies and links half counts at each face. Exact in
+    statics, without inner modes: valid well below the first of them with both faces held. Loads and preload of the stack inside are not
+    passed on. Raises `DesignError` for a stage with none or several actuators.
+
+    >>> from flexstage.cases.bridge import bridge
+    >>> part = amplified(bridge())
+    >>> part.deformation[1] < 0.0, part.capacitance == bridge().parts["stack"].capacitance
+    (True, True)
+    """
+    assembly, model = expand(mechanism), lumped(mechanism)
+    own = assembly.actuator(next(iter(assembly.actuators))) if len(assembly.actuators) == 1 else None
+    if not isinstance(own, StrokeActuator):
+        found = ", ".join(assembly.actuators) or "none"
+        raise refuse("actuators", f"the stage has {found}; one that strokes is expected", "Take a stage of one stack")
+    twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
+    moved = static_gain(model, twist, model.strokes).values[..., 0] * np.asarray(own.stroke)[..., None]
+    charged = own if isinstance(own, ChargedActuator) else None
+    return Amplified(
+        stroke=_number(np.sqrt(np.sum(moved[..., :3] ** 2, axis=-1))),
+        deformation=tuple(_number(moved[..., index]) for index in range(6)),  # type: ignore[arg-type]
+        compliance=_rows(statics(model).compliance.values),
+        mass=_number(_whole_mass(assembly)),
+        voltage_low=None if charged is None else charged.voltage_low,
+        voltage_high=None if charged is None else charged.voltage_high,
+        bias=None if charged is None else charged.bias,
+        capacitance=None if charged is None else charged.capacitance,
+        source=f"{mechanism.name}, {model.provenance}",
+    )
+
+
+def _whole_mass(assembly: Assembly) -> Array:
+    bodies = [np.asarray(body.mass.mass) for body in assembly.bodies.values() if body.mass is not None]
+    ends = [mass(link.part, link.material) for link in assembly.links.values()]
+    links = [each[..., 0, 0] + each[..., 0, 6] + each[..., 6, 0] + each[..., 6, 6] for each in ends]
+    return sum([*bodies, *links], np.asarray(0.0))
+
+
+def _number(value: Array) -> Number:
+    return value if value.ndim else value.item()
+
+
+def _rows(matrix: Array) -> tuple[tuple[Number, ...], ...]:
+    """A symmetric matrix as rows of numbers, made exactly so."""
+    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    return tuple(tuple(_number(stack(even[..., row, column])) for column in range(6)) for row in range(6))

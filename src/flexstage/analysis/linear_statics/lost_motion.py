@@ -1,0 +1,188 @@
+"""Lost motion: what elasticity takes from the ideal motion, its budget by part, and the gains that correct it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.labelled import NOISE, Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, Number
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import LENGTH, RATIO
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
+from flexstage.parts.freedom import ALL
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
+INTERNAL = "internal stress"
+LOADED = "geometric"
+"""What the load takes as it turns with the stage and bends it, in the budget of a loaded or displaced stage."""
+
+
+class Shares(dict[str, Array]):
+    """Shares (...) of one whole by name."""
+
+    def __str__(self) -> str:
+        """The first design's shares, largest first, four digits; what rounding left (below 1e-9 of the largest) is not shown.
+
+        >>> print(Shares({"foot.rz": np.array(0.01), "pzt.x": np.array(1e-17), "pivot.rz": np.array(0.25)}))
+        pivot.rz  0.25
+        foot.rz   0.01
+        """
+        first = {name: float(np.ravel(np.real(share))[0]) for name, share in self.items()}
+        ranked = sorted(first, key=lambda name: -abs(first[name]))
+        shown = [name for name in ranked if abs(first[name]) > NOISE * abs(first[ranked[0]])]
+        width = max(map(len, shown), default=0)
+        return "\n".join(f"{name:{width}}  {first[name]:.4g}" for name in shown)
+
+
+@dataclass(frozen=True, eq=False)
+class ActuatorLoss:
+    """An actuator's own `gain` (1 is ideal) and `loss`; `budget` its shares by link and axis, which add up to it, and by link alone."""
+
+    gain: Annotated[Array, RATIO]
+    loss: Annotated[Array, RATIO]
+    budget: Annotated[Mapping[str, Array], RATIO]
+
+    @property
+    def budget_by_link(self) -> Annotated[Mapping[str, Array], RATIO]:
+        """Shares of the loss by link."""
+        links: dict[str, Any] = {}
+        for key, share in self.budget.items():
+            link = key.rpartition(".")[0] or key
+            links[link] = links.get(link, 0.0) + share
+        return links
+
+
+@dataclass(frozen=True, eq=False)
+class LostMotion(InNotebook):
+    """Lost motion of a stage with n strokes and f ideal motions.
+
+    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -
+    transfer; `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (they
+    add up to it); `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
+    """
+
+    gain: Matrix
+    transfer: Matrix
+    loss: Matrix
+    parasitic: Matrix
+    budget: Annotated[Mapping[str, Matrix], INNER]
+    correction: Matrix
+    energy: Matrix
+    length: Annotated[Number, LENGTH]
+    provenance: str
+
+    @property
+    def actuators(self) -> Annotated[Mapping[str, ActuatorLoss], VIEW]:
+        """What each actuator loses itself."""
+        return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
+
+    def of(self, actuator: str) -> Shares:
+        """Budget of an actuator's own loss by part: shares that add up to the loss."""
+        index = self.loss.rows.index(actuator)
+        return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
+
+
+@check_arguments
+def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
+    """Compare an elastic model with the ideal kinematics of the same stage.
+
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i with
+    all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij = sum_e f_e^(i)
+    . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small
+    motions. Of a model about a displaced state the ideal motion is still that of the drawn position; its budget, which needs a model link
+    by link (`linearise(state, inner=False)`), has one more share, `geometric`: the load's turning and what it bends. Raises `DesignError`
+    where the strokes do not determine the platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> round(float(lost_motion(ideal(double_triangle()), lumped(double_triangle())).loss.at("B4", "B4")), 3)
+    0.034
+    """
+    names, mapping = kinematics.actuators, kinematics.mapping.values
+    gain = static_gain(model, _PLATFORM_TWIST, names)
+    sense = mapping @ kinematics.projection
+    transfer = sense @ gain.values
+    loss = np.eye(len(names)) - transfer
+    ideal_part = kinematics.motion @ (kinematics.projection @ gain.values)
+    correction = np.linalg.solve(transfer, mapping) if kinematics.mobility == len(names) else _least(transfer, kinematics)
+    return LostMotion(
+        gain=gain,
+        transfer=Matrix(transfer, names, names, "1"),
+        loss=Matrix(loss, names, names, "1"),
+        parasitic=Matrix(gain.values - ideal_part, _PLATFORM_TWIST, names, gain.unit),
+        budget=_budget(kinematics, model, sense, loss),
+        correction=Matrix(correction, names, kinematics.coordinates, _stroke_units(kinematics)),
+        energy=_energy(kinematics, model),
+        length=kinematics.length,
+        provenance=f"{kinematics.provenance}; {model.provenance}",
+    )
+
+
+def _least(transfer: Array, kinematics: Kinematics) -> Array:
+    """Correction for redundant strokes: the commands of R_a's range whose elastic motion is the wanted one."""
+    inner = kinematics.inverse @ transfer @ kinematics.actuation
+    return kinematics.actuation @ np.linalg.inv(inner)
+
+
+def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
+    units = tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates)
+    return ratio_units(("m",) * len(kinematics.actuators), units)
+
+
+def _budget(kinematics: Kinematics, model: LinearModel, sense: Array, loss: Array) -> dict[str, Matrix]:
+    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none where flexures have inner modes."""
+    names = kinematics.actuators
+    rows = model.output_index(_PLATFORM_TWIST)
+    loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
+    strains = part_deformation(model, displacement(model, loads))
+    if any(strain.shape[-2] != kinematics.strains[link].shape[-2] for link, strain in strains.items() if link in kinematics.strains):
+        return {}
+    inverse = kinematics.inverse
+    shares: dict[str, Array] = {}
+    for link, strain in strains.items():
+        if link in kinematics.strains:
+            force = model.stiffness[link].law @ strain
+            ideal = kinematics.strains[link] @ inverse
+            shares |= {f"{link}.{freedom.value}": _product(force, ideal, freedom.index) for freedom in kinematics.free.get(link, ALL)}
+    if kinematics.mobility < len(names):
+        shares[INTERNAL] = _internal(kinematics, model, sense, strains)
+    if LOADED in strains:
+        shares[LOADED] = loss - sum(shares.values())
+    return {name: Matrix(share, names, names, "1") for name, share in shares.items()}
+
+
+def _product(force: Array, motion: Array, axis: int) -> Array:
+    return force[..., axis, :, None] * motion[..., axis, None, :]
+
+
+def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains: Mapping[str, Array]) -> Array:
+    """What redundant strokes lose because single strokes are no ideal motion: the misfit and the work of the other actuators."""
+    names = kinematics.actuators
+    feasible = kinematics.actuation @ kinematics.inverse
+    columns = model.input_index(names)
+    work = sense @ model.feedthrough[..., model.output_index(_PLATFORM_TWIST), :][..., columns]
+    for link, imposed in model.imposed.items():
+        force = model.stiffness[link].law @ strains[link]
+        work = work + np.swapaxes(force, -1, -2) @ imposed[..., columns]
+    return np.eye(len(names)) - feasible + work @ (feasible - np.eye(len(names)))
+
+
+def _energy(kinematics: Kinematics, model: LinearModel) -> Matrix:
+    """Strain energy in each part when one actuator strokes by a unit and nothing else acts [J/m^2]."""
+    columns = model.input_index(kinematics.actuators)
+    motion = input_motion(model, columns)
+    selector = np.zeros((len(model.inputs), len(columns)))
+    selector[columns, range(len(columns))] = 1.0
+    strains = part_deformation(model, motion, selector)
+    rows = [0.5 * np.sum(strain * (model.stiffness[name].law @ strain), axis=-2) for name, strain in strains.items()]
+    return Matrix(np.stack(np.broadcast_arrays(*rows), axis=-2), tuple(strains), kinematics.actuators, "J/m^2")

@@ -1,0 +1,99 @@
+"""Mass of the platform as it is seen at a point: the rigid body alone, and the whole stage statically condensed to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.assembly.moving_mass import moving_inertia
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.channels import twist_places
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
+from flexstage.spatial.frame import COMPONENTS, FORCES, transport
+
+_UNITS = (("kg",) * 3 + ("kg m",) * 3,) * 3 + (("kg m",) * 3 + ("kg m^2",) * 3,) * 3
+_MASSLESS = "the body of this point states no mass"
+
+
+@dataclass(frozen=True, eq=False)
+class MassMatrix(InNotebook):
+    """Mass at a point, with which a twist rate v there has the kinetic energy v^T M v / 2, about the axes of the stage.
+
+    `rigid` (..., 6, 6) is the `body` of the point with its payloads, alone. `reduced` (..., 6, 6) is the whole stage as felt there: all
+    other masses follow as they do when the point is moved slowly, strokes held (static condensation, Guyan, AIAA J. 3, 380, 1965). With
+    the stiffness at the same point it gives natural frequencies that are never below those of the whole model, and close to them as long
+    as nothing else resonates near. `reasons` say why a mass is not known, where it is not.
+    """
+
+    point: str
+    body: str
+    rigid: Matrix | None
+    reduced: Matrix | None
+    provenance: str
+    reasons: Mapping[str, str] = field(default_factory=dict)
+
+
+@check_arguments
+def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
+    """Mass (..., 6, 6) of the platform, or of another body, at its reference point or a named point [kg, kg m, kg m^2].
+
+    M_rigid = X^T M X with X the transport of twists from the point to the body's reference; M_reduced = S^T M S with the static shapes
+    S = K^-1 C^T (C K^-1 C^T)^-1 of the whole model under unit twists of the point, strokes held. Small motions, idle motions left out.
+    `reduced` is None where the model leaves the point fewer than six freedoms or its body an idle motion, `rigid` where the body states
+    no mass.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("double-triangle")
+    >>> found = fs.mass_matrix(stage, fs.lumped(stage))
+    >>> [round(float(matrix.at("platform.fx", "platform.x")), 3) for matrix in (found.rigid, found.reduced)]
+    [13.997, 14.441]
+    """
+    assembly = expand(mechanism)
+    places = twist_places(assembly)
+    if point not in places:
+        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, places))
+    place = places[point]
+    placed = assembly.bodies.get(place.body)
+    own = None if placed is None else moving_inertia(mechanism, placed)
+    rigid = None if own is None or placed is None else _congruent(own, transport(placed.reference - place.point))
+    reasons = {} if rigid is not None else {"rigid": _MASSLESS}
+    try:
+        shapes = _static_shapes(model, point)
+        followed = np.swapaxes(shapes, -1, -2)
+        reduced = _symmetric(followed @ model.momenta(shapes) if model.is_sparse else followed @ model.inertia_matrix @ shapes)
+    except DesignError as error:
+        reduced, reasons = None, {**reasons, "reduced": str(error)}
+    return MassMatrix(point, place.body, _label(rigid, point), _label(reduced, point), model.provenance, reasons)
+
+
+def _static_shapes(model: LinearModel, point: str) -> Array:
+    """Coordinates (..., n, 6) per unit twist of a point that moves slowly. Refused where the model locks it or leaves it an idle motion."""
+    found = statics(model, load_point=point, read_point=point)
+    require(Finding(point, reason, "Use the lumped model") for name, reason in found.reasons.items() if name == "stiffness")
+    rows = model.output[..., model.output_index(found.compliance.rows), :]
+    return displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+
+
+def _congruent(matrix: Array, motions: Array) -> Array:
+    return _symmetric(np.swapaxes(motions, -1, -2) @ matrix @ motions)
+
+
+def _symmetric(found: Array) -> Array:
+    return 0.5 * (found + np.swapaxes(found, -1, -2))
+
+
+def _label(values: Array | None, point: str) -> Matrix | None:
+    if values is None:
+        return None
+    rows, columns = (tuple(f"{point}.{name}" for name in names) for names in (FORCES, COMPONENTS))
+    return Matrix(values, rows, columns, _UNITS)

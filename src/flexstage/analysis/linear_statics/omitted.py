@@ -1,0 +1,105 @@
+"""What a simpler theory omits: the cost of every freedom of a part that it locks or frees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+from flexstage.base.units.quantity import RATIO
+from flexstage.mechanism.assembly.likeness import drawn_units
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.restrict import Freedoms, restrict
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import Masses, lumped, variants
+from flexstage.parts.freedom import ALL, Freedom
+from flexstage.parts.given import Joint
+
+Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
+
+
+@dataclass(frozen=True)
+class Omitted:
+    """A response in the simple and in the full theory, and what each omitted freedom costs.
+
+    `changes` says how each freedom (`lever_notch.x`) changes the simple response when it alone gets its elasticity back.
+    `interaction` = full - simple - sum of changes: what only the freedoms' combinations explain.
+    """
+
+    output: str
+    input: str
+    simple: float
+    full: float
+    changes: Mapping[str, float]
+
+    @property
+    def interaction(self) -> Annotated[float, RATIO]:
+        """The part of the difference that single freedoms do not explain."""
+        return self.full - self.simple - sum(self.changes.values())
+
+    @property
+    def unexplained(self) -> Annotated[float, RATIO]:
+        """The interaction relative to the full response."""
+        return abs(self.interaction / self.full)
+
+
+def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
+    """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
+
+    Each freedom that `simple` locks or frees (by part, or by link: `vertical/pivot`) is given its elasticity back alone, the others staying
+    as they are. One design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.cases.double_triangle import EQUATION_3
+    >>> from flexstage.mechanism.restrict import isolate
+    >>> unit = isolate(double_triangle(), "B4", guide=(0.0, 0.0, 1.0))
+    >>> omitted(unit, EQUATION_3, ("platform.z", "B4")).unexplained < 1e-3
+    True
+    """
+    parts = {name for unit in drawn_units(mechanism).values() for link in unit.links.values() for name in (link.part,)}
+    known = {
+        name: freedoms
+        for name, freedoms in simple.items()
+        if "/" in name or (name in parts and not isinstance(mechanism.parts[name], Joint))
+    }
+    simplified = restrict(mechanism, known)
+    given = [(name, freedom) for name in known for freedom in ALL if freedom not in known[name][0]]
+    kept = [{}, *({_part(simplified, name): _with(known[name], freedom)} for name, freedom in given)]
+    base, *gains = (_gain(model, channel) for model in variants(simplified, kept, Masses.PLATFORM))
+    changes = {f"{name}.{freedom.value}": gain - base for (name, freedom), gain in zip(given, gains, strict=True)}
+    return Omitted(*channel, base, _gain(lumped(mechanism, Masses.PLATFORM), channel), changes)
+
+
+def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
+    """What Eq. 3 of Shin & Moon knows of a lever unit, by link: the axial springs, and the rotation of the pivot between lever and ground.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]
+    ['rz']
+    """
+    links = drawn_units(mechanism)[name].links
+    joined = [body for link in links.values() for body in link.bodies]
+    known: dict[str, tuple[Freedoms, Freedoms]] = {}
+    for key, link in links.items():
+        part = mechanism.parts[link.part]
+        intended = link.free if link.free is not None else part.intended
+        turns = GROUND in link.bodies and any(joined.count(body) > 2 for body in link.bodies if body not in (GROUND, PLATFORM))
+        if not isinstance(part, Joint):
+            known[f"{name}/{key}"] = (intended, ()) if turns else ((Freedom.X,), intended)
+    return known
+
+
+def _part(simplified: Mechanism, name: str) -> str:
+    """The restricted part of a part's name or a link's address."""
+    unit, _, link = name.rpartition("/")
+    return drawn_units(simplified)[unit].links[link].part if "/" in name else name
+
+
+def _with(kept: tuple[Freedoms, Freedoms], freedom: Freedom) -> tuple[Freedoms, Freedoms]:
+    elastic, free = kept
+    return (*elastic, freedom), tuple(item for item in free if item is not freedom)
+
+
+def _gain(model: LinearModel, channel: tuple[str, str]) -> float:
+    return float(static_gain(model, channel[:1], channel[1:]).values[0, 0])

@@ -1,0 +1,207 @@
+"""Statics of the platform: compliance and stiffness, directional stiffness, centre of stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, Number, first_design
+from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, STIFFNESS
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
+from flexstage.models.linear.undetermined import require_unmoved
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_SINGULAR = 1e-11
+_ALIKE = 1e-9
+_LOCKED = "this model locks freedoms of the platform: its stiffness is infinite along them"
+
+
+@dataclass(frozen=True, eq=False)
+class DirectionalStiffness:
+    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad].
+
+    The angle is counted from x towards y, in [0, pi); NaN where all directions are alike to 1e-9.
+    """
+
+    tensor: Matrix
+    principal: Annotated[Array, STIFFNESS]
+    angle: Annotated[Array, ANGLE]
+
+    def along(self, angle: Number) -> Array:
+        """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        compliance = np.linalg.inv(self.tensor.values)
+        return 1.0 / np.einsum("...i,...ij,...j->...", direction, compliance, direction)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics(InNotebook):
+    """Static behaviour of the platform at a point.
+
+    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
+    with all other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
+    relative to the load point [m].
+    """
+
+    WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
+    load_point: str
+    read_point: str
+    compliance: Matrix
+    stiffness: Matrix
+    held: DirectionalStiffness
+    free: DirectionalStiffness
+    centre: Annotated[Array, LENGTH]
+    provenance: str
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why there is no stiffness, where there is none."""
+        locked = (("stiffness", "held", "centre"), self.stiffness), (("free",), self.free.tensor)
+        return {name: _LOCKED for names, matrix in locked if np.isnan(matrix.values).any() for name in names}
+
+
+@check_arguments
+def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
+    """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
+
+    C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
+    model of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.mapped import mapped
+    >>> (statics(mapped(double_triangle())).held.principal / 1e6).round(3).tolist()  # Eq. 2: 1.5 x 10.30 N/um
+    [15.45, 15.45]
+    """
+    read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
+    load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
+    wrench = tuple(f"{load_point}.{name}" for name in FORCES)
+    require_unmoved(model, wrench)
+    force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
+    values = model.seen(model.output_index(read), displacement(model, force))
+    inverse = _inverse(values)
+    return Statics(
+        load_point,
+        read_point,
+        Matrix(values, read, wrench, ratio_units(TWIST_UNITS, WRENCH_UNITS)),
+        Matrix(inverse, wrench, read, ratio_units(WRENCH_UNITS, TWIST_UNITS)),
+        held=directional(inverse[..., :2, :2]),
+        free=directional(_inverse(values[..., :2, :2])),
+        centre=centre_of_stiffness(inverse),
+        provenance=model.provenance,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FreedomStiffness(InNotebook):
+    """Stiffness along and about each axis at a point [N/m, N m/rad], strokes held: with the other freedoms free, and with them held.
+
+    `motions` are the coordinates of the ideal motions that the stage leaves its platform, `constraints` what its links hold. Free is what
+    a push test at the point measures; it includes that an ideal motion moves the point along another axis too.
+    """
+
+    point: str
+    motions: Matrix
+    constraints: Matrix
+    provenance: str
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why entries are null, where there are any."""
+        return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
+
+
+@check_arguments
+def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
+    """Stiffness by freedom of a stage that leaves its platform fewer than six ideal motions: those left, then those that links hold.
+
+    The statics are those at a point of the platform. 1 / C_ii with the other freedoms free, K_ii with them held; NaN where the model locks
+    a freedom. None for six ideal motions, of which links hold none, and where the statics are read at another point than is loaded.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> fs.freedom_stiffness(fs.statics(fs.lumped(stage)), fs.ideal(stage)).motions.rows
+    ('x',)
+    """
+    if kinematics.mobility == len(COMPONENTS) or found.load_point != found.read_point:
+        return None
+    values = np.stack([_pushed(found), np.diagonal(found.stiffness.values, axis1=-2, axis2=-1)], axis=-1)
+    rest = tuple(name for name in COMPONENTS if name not in kinematics.coordinates)
+    kinds = (kinematics.coordinates, rest)
+    motions, constraints = (by_freedom(values[..., [COMPONENTS.index(name) for name in names], :], names) for names in kinds)
+    return FreedomStiffness(found.read_point, motions, constraints, found.provenance)
+
+
+def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
+    """Stiffness (..., n, 2) of named freedoms as a table: with the others free, and with them held.
+
+    >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
+    (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))
+    """
+    units = tuple((STIFFNESS.si if name in COMPONENTS[:3] else ROTATIONAL_STIFFNESS.si,) * 2 for name in names)
+    return Matrix(values, names, ("free", "held"), units)
+
+
+def _pushed(found: Statics) -> Array:
+    """1 / C_ii (..., 6), NaN along what a model with locked freedoms locks."""
+    along = np.diagonal(found.compliance.values, axis1=-2, axis2=-1)
+    if not np.isnan(found.stiffness.values).any():
+        return 1.0 / along
+    sizes = np.abs(np.real(along)).reshape(*along.shape[:-1], 2, 3)
+    moved = (sizes > _SINGULAR * np.max(sizes, axis=-1, keepdims=True)).reshape(along.shape)
+    return np.where(moved, 1.0 / np.where(moved, along, 1.0), np.nan)
+
+
+def _inverse(compliance: Array) -> Array:
+    """The stiffness, NaN where a compliance of lower rank has none."""
+    first = np.real(first_design(compliance, 2))
+    diagonal = np.diag(first)
+    scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    if np.linalg.matrix_rank(first / scale / scale[:, None], tol=_SINGULAR) < len(first):
+        return np.full(compliance.shape, np.nan)
+    return np.linalg.inv(compliance)
+
+
+def directional(tensor: Array) -> DirectionalStiffness:
+    """Principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
+
+    >>> directional(np.diag([1.0, 4.0])).principal.tolist()
+    [4.0, 1.0]
+    """
+    symmetric = 0.5 * (tensor + np.swapaxes(tensor, -1, -2))
+    failed = np.any(np.isnan(symmetric), axis=(-2, -1), keepdims=True)
+    values, vectors = np.linalg.eigh(np.where(failed, 0.0, np.real(symmetric)))
+    values, vectors = np.where(failed[..., 0], np.nan, values), np.where(failed, np.nan, vectors)
+    stiffest = vectors[..., :, 1]
+    angle = np.mod(np.arctan2(stiffest[..., 1], stiffest[..., 0]), np.pi)
+    angle = np.where(angle > np.pi - _ALIKE, 0.0, angle)
+    angle = np.where(values[..., 1] - values[..., 0] > _ALIKE * np.abs(values[..., 1]), angle, np.nan)
+    return DirectionalStiffness(Matrix(symmetric, ("x", "y"), ("x", "y"), "N/m"), values[..., ::-1], angle)
+
+
+def centre_of_stiffness(stiffness: Array) -> Array:
+    """Point (..., 3) relative to the reference at which forces and rotations uncouple best: the antisymmetric part of K_tt^-1 K_tr.
+
+    With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric remainder zero at the centre of stiffness).
+
+    >>> from flexstage.spatial.frame import transport
+    >>> carry = transport(np.array([0.0, 0.0, -0.025]))
+    >>> centre_of_stiffness(carry.T @ np.eye(6) @ carry).round(12).tolist()
+    [0.0, 0.0, -0.025]
+    """
+    coupling = -np.linalg.solve(stiffness[..., :3, :3], stiffness[..., :3, 3:])
+    return 0.5 * np.stack(
+        [
+            coupling[..., 2, 1] - coupling[..., 1, 2],
+            coupling[..., 0, 2] - coupling[..., 2, 0],
+            coupling[..., 1, 0] - coupling[..., 0, 1],
+        ],
+        axis=-1,
+    )

@@ -1,0 +1,63 @@
+"""One unit alone and its output: what is said of it by whichever model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.labelled import Matrix
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import RATIO, STIFFNESS
+
+
+@dataclass(frozen=True, eq=False)
+class UnitOutput:
+    """The output of one unit alone, in its own frame.
+
+    `unit` is its name and `copy` the placed one that was taken; `direction` (3,) is that of its output; `stiffness` 6x6 at the output,
+    strokes held. With the output guided along the direction: `gain` output per stroke, and `ideal_gain` without elasticity.
+    """
+
+    unit: str
+    copy: str
+    direction: Annotated[Array, RATIO]
+    stiffness: Matrix
+    gain: float
+    ideal_gain: float
+
+    @cached_property
+    def axial(self) -> Annotated[float, STIFFNESS]:
+        """Stiffness along the direction, all else held [N/m]: n^T K n.
+
+        >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
+        >>> stiffness = Matrix(values, tuple("abcdef"), tuple("abcdef"), "N/m")
+        >>> unit = UnitOutput("drive", "B1", np.array([1.0, 0.0, 0.0]), stiffness, 0.9, 1.0)
+        >>> unit.axial, unit.lateral
+        (10.0, (2.0, 3.0))
+        """
+        return float(self.direction @ self._translations @ self.direction)
+
+    @cached_property
+    def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
+        """Stiffness across the direction, all else held [N/m], softest and stiffest: eigenvalues of K in the plane across."""
+        across = np.linalg.svd(self.direction[None, :])[2][1:]
+        softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
+        return float(softest), float(stiffest)
+
+    @property
+    def _translations(self) -> Array:
+        return self.stiffness.values[:3, :3]
+
+    @property
+    def figures(self) -> Mapping[str, float]:
+        """What models are compared by, SI."""
+        return {
+            "axial stiffness": self.axial,
+            "softest lateral stiffness": self.lateral[0],
+            "stiffest lateral stiffness": self.lateral[1],
+            "gain": self.gain,
+        }

@@ -1,0 +1,145 @@
+"""Each distinct unit alone: its stiffness at the output, its gain and loss, and what simpler theories omit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.analysis.linear_statics.omitted import Omitted, lever_theory, omitted
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.linear_statics.unit_output import UnitOutput
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array, Vector
+from flexstage.base.units.quantity import COMPLIANCE, STIFFNESS
+from flexstage.mechanism.assembly.expand import copies, expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.static import static_gain
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import LeverStiffness, computed_stiffness, lever_stiffness
+
+_DISPLACEMENTS = ("platform.x", "platform.y", "platform.z")
+_FORCES = ("platform.fx", "platform.fy", "platform.fz")
+
+
+@dataclass(frozen=True, eq=False)
+class UnitResult(UnitOutput):
+    """One unit alone by the lumped model.
+
+    With its output guided along the direction: `loss` and `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for
+    the mapped model (`None` where that model refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
+    leaves out of its gain, freedom by freedom.
+    """
+
+    loss: float
+    load_compliance: Annotated[float, COMPLIANCE]
+    series: Annotated[float | None, STIFFNESS]
+    lever: LeverStiffness | None
+    omitted: Omitted | None
+
+
+def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
+    """Analyse the first copy of every placed unit that drives its output by exactly one actuator, alone. One design.
+
+    A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out. `omissions`: also work out what the
+    theory of levers omits, most of the work.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
+    10.3
+    """
+    return {
+        unit: unit_alone(mechanism, copy, unit, direction, omissions=omissions)
+        for unit, (copy, direction) in driven_units(mechanism).items()
+    }
+
+
+def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
+    """The first copy of every unit that drives its output by exactly one actuator, alone, and the direction (3,) of the output, by unit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> {unit: copy for unit, (copy, _) in driven_units(double_triangle()).items()}
+    {'horizontal': 'B1', 'vertical': 'B4'}
+    """
+    actuators = expand(mechanism).strokes
+    mapping = ideal(mechanism).mapping
+    first: dict[str, tuple[str, Array]] = {}
+    for copy, unit, frame in copies(mechanism):
+        if copy in actuators and unit not in first:
+            row = mapping.values[mapping.rows.index(copy)]
+            pushed = np.zeros(3)
+            for value, name in zip(row, mapping.columns, strict=True):
+                if name in ("x", "y", "z"):
+                    pushed["xyz".index(name)] = value
+            reach = np.linalg.norm(pushed)
+            if not 0.0 < reach < np.inf:
+                continue  # it turns the platform, and pushes it nowhere
+            direction = frame.rotation.T @ pushed / reach
+            if ideal(isolate(mechanism, copy, guide=as_vector(direction))).actuated:
+                first[unit] = copy, direction
+    return first
+
+
+def as_vector(direction: Array) -> Vector:
+    """A direction (3,) as descriptions hold it.
+
+    >>> as_vector(np.array([0.0, 0.0, 1.0]))
+    (0.0, 0.0, 1.0)
+    """
+    return (float(direction[0]), float(direction[1]), float(direction[2]))
+
+
+def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
+    """Analyse one copy of a unit alone, whose output moves along a direction (3,), with what the theory of levers omits. One design.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)
+    2.9
+    """
+    guided = isolate(mechanism, copy, guide=as_vector(direction))
+    model, kinematics = lumped(guided), ideal(guided)
+    gain = direction @ static_gain(model, _DISPLACEMENTS, (copy,)).values[:, 0]
+    load = direction @ static_gain(model, _DISPLACEMENTS, _FORCES).values @ direction
+    ideal_gain = direction @ kinematics.jacobian.values[:3, 0]
+    lever = _lever(mechanism, copy)
+    output = _DISPLACEMENTS[int(np.argmax(np.abs(direction)))]
+    return UnitResult(
+        unit=unit,
+        copy=copy,
+        direction=direction,
+        stiffness=statics(lumped(isolate(mechanism, copy))).stiffness,
+        gain=float(gain),
+        ideal_gain=float(ideal_gain),
+        loss=float(lost_motion(kinematics, model).loss.values[0, 0]),
+        load_compliance=float(load),
+        series=_series(mechanism, copy),
+        lever=lever,
+        omitted=None if lever is None or not omissions else _omitted(guided, unit, output, copy),
+    )
+
+
+@lru_cache(maxsize=8)
+def _omitted(guided: Mechanism, unit: str, output: str, actuator: str) -> Omitted:
+    """Most of the work on a unit, kept: designs that differ elsewhere have the same one."""
+    return omitted(guided, lever_theory(guided, unit), (output, actuator))
+
+
+def _series(mechanism: Mechanism, copy: str) -> float | None:
+    assembly = expand(mechanism)
+    try:
+        return float(computed_stiffness(assembly, assembly.actuators[copy]))
+    except DesignError:
+        return None
+
+
+def _lever(mechanism: Mechanism, copy: str) -> LeverStiffness | None:
+    assembly = expand(mechanism)
+    try:
+        return lever_stiffness(assembly, assembly.actuators[copy])
+    except DesignError:
+        return None

@@ -1,0 +1,1 @@
+"""Stages under load and away from the drawn position: stability, strokes, load cases."""

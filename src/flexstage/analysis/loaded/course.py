@@ -1,0 +1,192 @@
+"""The paths that a design states, in numbers: from where the stage rests, along a drive, under what stays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.lazy import Late
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import ANGLE, LENGTH, Quantity
+from flexstage.base.units.unit import parse, quantity_of_unit
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.mechanism import Mechanism, StrokePath
+from flexstage.models.linear.channels import input_channels, wrench_places
+from flexstage.models.nonlinear.state import Status
+from flexstage.spatial.frame import COMPONENTS, FORCES
+
+if TYPE_CHECKING:
+    from flexstage.analysis.loaded import stance
+    from flexstage.analysis.loaded import stroke as strokes
+    from flexstage.models.nonlinear import equilibrium
+    from flexstage.models.nonlinear import stage as nonlinear
+    from flexstage.models.nonlinear.paths import path as paths
+else:
+    stance = Late("flexstage.analysis.loaded.stance")
+    strokes = Late("flexstage.analysis.loaded.stroke")
+    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
+    paths = Late("flexstage.models.nonlinear.paths.path")
+    nonlinear = Late("flexstage.models.nonlinear.stage")
+
+_SWITCH = {"on": 1.0, "off": 0.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A path in numbers: `drive` goes over `values` (k,) [SI] from where the stage rests under `loads` and its `weight` (0: without it).
+
+    `locked` coordinates stay where it rests.
+    """
+
+    drive: str
+    values: Array
+    loads: dict[str, float]
+    locked: tuple[str, ...]
+    weight: float
+
+    def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
+        """Where the stage rests. Raises `DesignError` where it does not."""
+        return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
+
+    def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None = None) -> paths.Path:
+        """Equilibria along it, or at other values of its drive."""
+        wanted, hold = self._wanted(model, rest, values)
+        found = paths.path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        _require_continuation(found.state)
+        return found
+
+    def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
+        """Values of the drive, counted from where it is drawn, and what stays locked where."""
+        wanted = self.values if values is None else values
+        driven = self.drive in {channel.name for channel in model.inputs}
+        start = 0.0 if driven else float(stance.coordinate(rest, self.drive))
+        return start + wanted, {name: float(stance.coordinate(rest, name)) for name in self.locked}
+
+    def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
+        """The points of its stroke, of which single columns may be asked."""
+        (found,) = self.points_of_designs((model,), values)
+        return found
+
+    def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
+        """The same of several designs of one structure, in one run."""
+        rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
+        asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
+        wanted, hold = [each for each, _ in asked], [each for _, each in asked]
+        found = paths.equilibria_of_designs(models, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
+        states = []
+        for state, rest, locked, each in zip(found, rests, hold, wanted, strict=True):
+            begin, start = paths.begin_along(rest, self.drive, self.loads, locked, self.weight)
+            states.append(paths.continue_along(begin, state, each - start))
+        for each in states:
+            _require_continuation(each)
+        return [strokes.Points(self.drive, each, state, self.locked, rest) for each, state, rest in zip(wanted, states, rests, strict=True)]
+
+    def stroke(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Stroke:
+        """What the stage does along it, counted from where it rests."""
+        rest = self.rest(model)
+        return strokes.stroke(self.path(model, rest, values), rest)
+
+
+def _resting(found: equilibrium.State) -> equilibrium.State:
+    equilibrium.require_equilibrium(found)
+    return found
+
+
+def _require_continuation(found: equilibrium.State) -> None:
+    """Refuse states of which the first that does not continue the stage at rest says why."""
+    beyond = np.flatnonzero(found.status > Status.SINGULAR)
+    if beyond.size:
+        equilibrium.require_equilibrium(found.case(int(beyond[0])))
+
+
+def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
+    """What a drive is measured in. Raises `DesignError` at `where` for what is neither a coordinate nor a load of the stage.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> drive_quantity(expand(parallelogram()), "platform.rz", "here").noun
+    'an angle'
+    """
+    units = {channel.name: channel.unit for channel in input_channels(assembly)}
+    if drive in units:
+        return quantity_of_unit(units[drive])
+    owner, _, component = drive.rpartition(".")
+    places = [*assembly.bodies, *wrench_places(assembly)]
+    if owner not in places or component not in COMPONENTS:
+        known = [*units, *(f"{place}.{each}" for place in places for each in COMPONENTS)]
+        raise refuse(where, f'"{drive}" is neither a coordinate nor a load of this stage', suggest_nearest(drive, known))
+    return ANGLE if component.startswith("r") else LENGTH
+
+
+def course(mechanism: Mechanism, name: str) -> Course:
+    """Read a path of `[paths]`. Raises `DesignError` with all that is wrong with it.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("parallelogram")
+    >>> from dataclasses import replace
+    >>> stage = replace(stage, paths={"out": fs.StrokePath("platform.x", ("0 mm", "0.1 mm"), points=3)})
+    >>> course(stage, "out").values.tolist()
+    [0.0, 5e-05, 0.0001]
+    """
+    stated, where = mechanism.paths[name], f"paths.{name}"
+    assembly = expand(mechanism)
+    require(_findings(stated, where))
+    quantity = drive_quantity(assembly, stated.drive, f"{where}.drive")
+    low, high = (parse(text, quantity, where=f"{where}.to") for text in stated.to)
+    if low == high:
+        raise refuse(f"{where}.to", f"it goes from {stated.to[0]} to {stated.to[1]}: a drive that does nothing", "Name two places")
+    loads, locked, weight = dict[str, float](), list[str](), 1.0
+    for key, text in stated.hold.items():
+        at = f"{where}.hold.{key}"
+        if key == "gravity":
+            weight = _SWITCH[text]
+        elif text.strip() == "0":
+            drive_quantity(assembly, key, at)
+            locked.append(key)
+        else:
+            load = _load(assembly, key, at)
+            loads[load] = parse(text, drive_quantity(assembly, load, at), where=at)
+    require(_contradictions(stated, loads, locked, where))
+    return Course(stated.drive, np.linspace(low, high, stated.points), loads, tuple(locked), weight)
+
+
+def _load(assembly: Assembly, key: str, where: str) -> str:
+    """The load that a coordinate names, or a load by its own name."""
+    owner, _, component = key.rpartition(".")
+    if component in COMPONENTS:
+        return f"{owner}.{FORCES[COMPONENTS.index(component)]}"
+    drive_quantity(assembly, key, where)
+    return key
+
+
+def _findings(stated: StrokePath, where: str) -> Iterator[Finding]:
+    if stated.points < 2:
+        yield Finding(f"{where}.points", f"{stated.points} points are no path", "Give two or more")
+    switch = stated.hold.get("gravity")
+    if switch is not None and switch not in _SWITCH:
+        yield Finding(f"{where}.hold.gravity", f'found "{switch}"', 'Write "on" or "off"')
+
+
+def _contradictions(stated: StrokePath, loads: dict[str, float], locked: list[str], where: str) -> Iterator[Finding]:
+    owner, _, component = stated.drive.rpartition(".")
+    own = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else stated.drive
+    if own in loads:
+        yield Finding(f"{where}.hold", f"{own} stays, and it is what drives {stated.drive}", "Leave out one of the two")
+    if stated.drive in locked:
+        yield Finding(f"{where}.hold.{stated.drive}", "what is driven cannot stay locked", "Leave it out")
+
+
+def path_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """What is wrong with the paths of a design.
+
+    >>> list(path_findings(Mechanism("stage")))
+    []
+    """
+    for name in mechanism.paths:
+        try:
+            course(mechanism, name)
+        except DesignError as error:
+            yield from error.findings

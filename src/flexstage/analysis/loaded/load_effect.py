@@ -1,0 +1,181 @@
+"""The loaded stage: by how much weight, payloads, preloads, forces and bent flexures change it, and small motions about it where felt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.loaded.stability import Stability, is_large, prestress
+from flexstage.analysis.loaded.standing import standing, under_load
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.lazy import Late
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import RATIO
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.model import LinearModel
+from flexstage.parts.part import Part
+from flexstage.spatial.frame import COMPONENTS
+
+if TYPE_CHECKING:
+    from flexstage.models.nonlinear import equilibrium, linearise
+    from flexstage.models.nonlinear import stage as nonlinear
+    from flexstage.models.nonlinear.paths import critical
+else:
+    critical = Late("flexstage.models.nonlinear.paths.critical")
+    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
+    linearise = Late("flexstage.models.nonlinear.linearise")
+    nonlinear = Late("flexstage.models.nonlinear.stage")
+
+_BENT = "what bends flexures that are not straight when free"
+_WARM = "its temperatures"
+FELT = 0.01
+"""Change of a stiffness or a frequency from which results are those of the loaded stage."""
+_MODES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class LoadEffect:
+    """By how much its dead load (weight, payloads, preloads, stated forces; what is bent or warm) changes a stage.
+
+    `change` is the largest relative change of the platform's stiffness along an axis or of one of the first frequencies, and `figure` which
+    it is; where `figure` is empty it is a bound of any stiffness, from linearised buckling. `model` is small motions about the loaded state
+    where the change is felt (1 % or more), else None; `links` the same link by link, for lost motion and drift, and `state` that state.
+    `why` says why it could not be worked out.
+    """
+
+    change: Annotated[float, RATIO]
+    figure: str
+    why: str
+    model: Annotated[LinearModel | None, INNER]
+    state: Annotated[equilibrium.State | None, INNER] = None
+    cause: str = "weight, payloads and forces"
+
+    @cached_property
+    def links(self) -> LinearModel | None:
+        """Small motions about the loaded state link by link: flexures follow their ends as at rest."""
+        return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
+
+    @property
+    def text(self) -> str:
+        """What is said of it, empty of stages without dead load.
+
+        >>> LoadEffect(0.004, "frequency 1", "", None).text
+        'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are of the unloaded stage.'
+        """
+        cause, size = f"{self.cause[0].upper()}{self.cause[1:]}", f"{100.0 * abs(self.change):.2g} %"
+        if self.model is not None:
+            return (
+                f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses, lost motion, drift, "
+                "error budget, loops and their requirements are those of the loaded stage, at large displacements; all else is as drawn."
+            )
+        if self.why and not self.change:
+            return f"By how much {self.cause} change the stage is not known, as {self.why}; results are of the unloaded stage."
+        if self.why:
+            return f"{cause} may change a stiffness by up to {size}; results are of the unloaded stage, as {self.why}."
+        if self.figure:
+            what = f"{cause} change stiffness and frequencies by up to {size} ({self.figure})"
+            return f"{what}: results are of the unloaded stage."
+        if not self.change:
+            return ""
+        return (
+            f"{cause} change no stiffness by more than {size}, no frequency by more than "
+            f"{50.0 * abs(self.change):.2g} %: results are of the unloaded stage."
+        )
+
+
+@lru_cache(maxsize=2)
+def load_effect(mechanism: Mechanism) -> LoadEffect | None:
+    """How a stage changes under its dead load; `None` of a batch of designs and of stages whose load factor is not known.
+
+    Linearised buckling bounds the change of every stiffness by 1 / load factor. Only where that is 1 % or more the change is worked out, in
+    the drawn position first, and where it is felt at large displacements. Flexures that are not straight when free have no such bound: they
+    are taken at large displacements at once. Raises `DesignError` where the stage has no elastic model.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> load_effect(parallelogram()).model is None
+    True
+    """
+    found = under_load(mechanism)
+    if found is None or np.ndim(found.dead) or np.iscomplexobj(found.dead) or found.refusals:
+        return None
+    causes = [*([_BENT] if any(map(_is_bent, mechanism.parts.values())) else []), *([_WARM] if _is_warm(mechanism) else [])]
+    bound, bent = _bound(found), bool(causes)
+    cause = f"weight, payloads, forces and {' and '.join(causes)}" if bent else LoadEffect.cause
+    if bound < FELT and not bent:
+        return LoadEffect(bound, "", "", None)
+    still = standing(mechanism)
+    if is_large(mechanism, still):
+        return LoadEffect(bound, "", f"its {len(still.coordinates):,} freedoms are too many for that of the loaded one", None, cause=cause)
+    near = _compare(still, prestress(mechanism, still))
+    if abs(near.change) < FELT and not bent:
+        return near
+    try:
+        return replace(_felt(mechanism), cause=cause)
+    except DesignError as error:
+        return LoadEffect(bound, "", "; ".join(str(each).rstrip(".") for each in error.findings), None, cause=cause)
+
+
+def felt_links(mechanism: Mechanism) -> LinearModel:
+    """The lumped model link by link; where the dead load is felt, small motions about the loaded stage.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> "geometric" in felt_links(parallelogram()).stiffness
+    False
+    """
+    drawn = standing(mechanism)
+    found = None if drawn.designs else load_effect(mechanism)
+    return drawn if found is None or found.links is None else found.links
+
+
+def _bound(found: Stability) -> float:
+    return max(1.0 / float(found.dead), float(found.stiffens))
+
+
+def _is_bent(part: Part) -> bool:
+    """Whether a part is not straight when it is free."""
+    return bool(getattr(part, "is_bent", False))
+
+
+def _is_warm(mechanism: Mechanism) -> bool:
+    return any(np.any(np.real(each) != 0.0) for each in mechanism.temperatures.values())
+
+
+def _straight(mechanism: Mechanism) -> Mechanism:
+    """The stage as it was made, with all its flexures straight when free."""
+    parts = {name: getattr(part, "straight", part) for name, part in mechanism.parts.items()}
+    changed = any(map(_is_bent, mechanism.parts.values())) or _is_warm(mechanism)
+    return replace(mechanism, parts=parts, temperatures={}) if changed else mechanism
+
+
+def _felt(mechanism: Mechanism) -> LoadEffect:
+    state = equilibrium.equilibrium(nonlinear.nonlinear(mechanism))
+    unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
+    equilibrium.require_equilibrium(state)
+    if int(critical.unstable_motions(state)):
+        raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
+    found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
+    return replace(found, state=state if found.model is not None else None)
+
+
+def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
+    """The largest change from the unloaded model to the loaded one."""
+    before, after = dict(_figures(still)), dict(_figures(about))
+    changes = {name: after[name] / before[name] - 1.0 for name in before if name in after and before[name] > 0.0}
+    largest = max(changes, key=lambda name: round(abs(changes[name]), 9))
+    change = changes[largest]
+    return LoadEffect(change, largest, "", about if abs(change) >= FELT else None)
+
+
+def _figures(model: LinearModel) -> Iterator[tuple[str, float]]:
+    """Stiffness along the platform's axes, everything else giving way, and the first frequencies."""
+    compliance: Array = np.diagonal(statics(model).compliance.values)
+    yield from ((f"the stiffness along {name}", 1.0 / float(each)) for name, each in zip(COMPONENTS, compliance, strict=True) if each > 0.0)
+    frequencies = np.sqrt(eigen(model).values[:_MODES]) / (2.0 * np.pi)
+    yield from ((f"frequency {place}", float(each)) for place, each in enumerate(frequencies, start=1))

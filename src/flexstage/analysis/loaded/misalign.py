@@ -1,0 +1,248 @@
+"""Over-constrained stages made with a misalignment: the internal loads that it leaves, and the one at which the stage gives way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.loaded.strained import strain_cautions
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.mechanism.assembly.expand import Assembly, copies, expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.linear.eigen import eigenvalues
+from flexstage.models.nonlinear.elements.seat import SEAT, seat
+from flexstage.models.nonlinear.elements.strain import Strains, strains
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.paths.critical import NothingGivesWayError, critical, unstable_motions
+from flexstage.models.nonlinear.paths.path import continue_along
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.models.nonlinear.state import Effort
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_MOST = 0.1
+"""The largest misalignment looked at [rad, or over the flexures' length]."""
+_FREQUENCIES = 3
+_HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
+
+
+@dataclass(frozen=True, eq=False)
+class Misaligned(InNotebook):
+    """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
+
+    `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
+    of a flexure, in how many ways the stage leaves (0: it stays); `state` is where it stands then. `loads` are the wrenches in all flexures
+    at the last size, on each end in the frame of its start. `critical` is the size at which the first stiffness vanishes [rad, m], NaN
+    where none does. `followed` is the size up to which the stage is known to be stable: `critical`, 0.1 rad or 0.1 of the longest flexure,
+    or where the path ends. Stable states beyond `critical` do not continue the stage without a misalignment: they have no numbers.
+    """
+
+    copy: str
+    axis: str
+    along: Matrix
+    loads: Matrix
+    critical: float
+    followed: float
+    strained: Annotated[Strains, INNER]
+    state: Annotated[State, INNER]
+    provenance: str
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory at these sizes."""
+        return tuple(strain_cautions(self.strained))
+
+
+@dataclass(frozen=True, eq=False)
+class Misalignments(InNotebook):
+    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where no stiffness vanishes.
+
+    `followed` is that up to which the stage is known to be stable, as in `Misaligned`. `load` is what forces the copy to `size` [rad, m],
+    `stress` the largest of a flexure then [Pa]; null where no equilibrium was found. `worst` is the copy and axis of the least `followed`,
+    or where all bear as much of the largest stress, from none to there, or to `size`; None where no copy joins the ground.
+    """
+
+    critical: Matrix
+    followed: Matrix
+    size: float
+    load: Matrix
+    stress: Matrix
+    worst: Misaligned | None
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory in the worst of them."""
+        return () if self.worst is None else self.worst.cautions
+
+
+@check_arguments
+def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
+    """Force a copy of a unit, or a single link, into a misaligned seat on the ground, at large displacements and under its weight.
+
+    The seat, on which the copy's links join the ground, is moved by `size` [m, rad] along or about an axis of the copy's own frame, about
+    its origin (of a link: its middle), in `points` from none. What is not over-constrained follows freely. Raises `DesignError` for names
+    that the stage does not have, and for what does not join the ground.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
+    >>> found.along.columns[:2]
+    ('ry', 'load')
+    """
+    forced = _forced(mechanism, copy, axis)
+    state = forced.at(size * np.linspace(0.0, 1.0, points))
+    critical, followed = forced.limits(float(np.sign(size)) or 1.0)
+    strained = strains(state)
+    along = _along(forced, state, strained, size * np.linspace(0.0, 1.0, points))
+    names = tuple(name for group in forced.model.flexures for name in group.names)
+    loads = np.array([state.wrench(name)[-1] for name in names]).reshape(-1, 6)
+    return Misaligned(
+        copy=copy,
+        axis=axis,
+        along=along,
+        loads=Matrix(loads, names, FORCES, (WRENCH_UNITS,) * len(names)),
+        critical=critical,
+        followed=followed,
+        strained=strained,
+        state=state,
+        provenance=f"{copy} misaligned in the {forced.model.provenance}",
+    )
+
+
+def critical_misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:]) -> tuple[Matrix, Matrix]:
+    """Critical misalignments of every copy (or link) that joins the ground, by axis, and those up to which the stage is stable.
+
+    The first are NaN where no stiffness vanishes on the way.
+    """
+    rows = seated(mechanism)
+    values = [[_forced(mechanism, copy, axis).limits(1.0) for axis in axes] for copy in rows]
+    units = (tuple(TWIST_UNITS[COMPONENTS.index(axis)] for axis in axes),) * len(rows)
+    critical, followed = np.moveaxis(np.array(values).reshape(len(rows), len(axes), 2), -1, 0)
+    return Matrix(critical, rows, axes, units), Matrix(followed, rows, axes, units)
+
+
+def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
+    """What every copy (or link) that joins the ground bears, misaligned alone along or about `axes` of its own frame.
+
+    Axes are rotations or translations, not both, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = misalignments(parallelogram(), ("ry",))
+    >>> found.load.rows, found.worst.axis
+    (('B', 'left', 'right'), 'ry')
+    """
+    critical, followed = critical_misalignments(mechanism, axes)
+    there = [[_at_size(_forced(mechanism, copy, axis), size) for axis in axes] for copy in critical.rows]
+    values = np.array(there).reshape(len(critical.rows), len(axes), 2)
+    units = tuple(WRENCH_UNITS[COMPONENTS.index(axis)] for axis in axes)
+    load = Matrix(values[..., 0], critical.rows, axes, (units,) * len(critical.rows))
+    stress = Matrix(values[..., 1], critical.rows, axes, (("Pa",) * len(axes),) * len(critical.rows))
+    return Misalignments(critical, followed, size, load, stress, _worst(mechanism, (critical, followed), stress, size))
+
+
+def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
+    """The load that forces a copy to a size, and the largest stress then."""
+    state = forced.at(np.array([size]))
+    stress = np.max(strains(state).stress, axis=-1, initial=0.0)
+    return float((state.reactions @ forced.direction)[0]), float(stress[0]) if bool(state.converged[0]) else np.nan
+
+
+def _worst(mechanism: Mechanism, limits: tuple[Matrix, Matrix], stress: Matrix, size: float) -> Misaligned | None:
+    critical, followed = limits
+    if not followed.values.size:
+        return None
+    ranked = bool(np.isfinite(critical.values).any() or np.ptp(followed.values) > 0.0)
+    ranks = followed.values if ranked else -np.nan_to_num(stress.values)
+    row, column = np.unravel_index(int(np.argmin(ranks)), ranks.shape)
+    to = float(followed.values[row, column]) if ranked else size
+    return misalign(mechanism, followed.rows[row], followed.columns[column], to)
+
+
+def seated(mechanism: Mechanism) -> tuple[str, ...]:
+    """Copies of units, and single links, that join the ground.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> seated(parallelogram())
+    ('B', 'left', 'right')
+    """
+    assembly = expand(mechanism)
+    known = [name for name, _, _ in copies(mechanism)]
+    found = [name for name in known if any(GROUND in assembly.links[link].joins for link in _links_of(assembly, name))]
+    return (*found, *(name for name, link in assembly.links.items() if GROUND in link.joins and name.partition("/")[0] not in known))
+
+
+@dataclass(frozen=True, eq=False)
+class _Forced:
+    """A stage on a seat that is held, `direction` (6,) its motion per size along or about an axis of the copy."""
+
+    model: Nonlinear
+    direction: Array
+    axis: str
+
+    def hold(self, size: Array | float) -> dict[str, Array]:
+        """Values of the seat's coordinates at sizes of the misalignment."""
+        return {name: size * part for name, part in zip(_HELD, self.direction, strict=True)}
+
+    def at(self, sizes: Array) -> State:
+        """Equilibria at sizes (k,), those that continue the stage without a misalignment."""
+        begin = equilibrium(self.model, hold=self.hold(np.array(0.0)))
+        require_equilibrium(begin)
+        found = equilibrium(self.model, hold=self.hold(sizes), effort=Effort(arcs=0))
+        return continue_along(begin, found, sizes)
+
+    def limits(self, sign: float) -> tuple[float, float]:
+        """The critical size to one side, NaN without one, and that up to which the stage is known to be stable."""
+        most = _MOST * (self.model.size if np.any(self.direction[:3]) else 1.0)
+        gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
+        try:
+            found = sign * critical(self.model, gain, hold=none, most=most).factor
+        except NothingGivesWayError:
+            return np.nan, sign * most
+        except LowerBoundError as error:
+            return np.nan, sign * error.bound
+        return found, found
+
+
+def _forced(mechanism: Mechanism, copy: str, axis: str) -> _Forced:
+    if axis not in COMPONENTS:
+        raise refuse(axis, "it is no axis", suggest_nearest(axis, COMPONENTS))
+    assembly = expand(mechanism)
+    frames = {name: frame for name, _, frame in copies(mechanism)}
+    links = _links_of(assembly, copy) if copy in frames else [copy]
+    if copy not in frames and copy not in assembly.links:
+        raise refuse(copy, "it is neither a copy of a unit nor a link", suggest_nearest(copy, seated(mechanism)))
+    frame = frames.get(copy) or assembly.links[copy].frame
+    place = COMPONENTS.index(axis)
+    along = np.asarray(frame.rotation)[:, place % 3]
+    direction = np.concatenate([along, np.zeros(3)] if place < 3 else [np.zeros(3), along])
+    return _Forced(seat(nonlinear(mechanism), links, np.asarray(frame.position)), direction, axis)
+
+
+def _links_of(assembly: Assembly, copy: str) -> list[str]:
+    return [name for name in assembly.links if name.partition("/")[0] == copy]
+
+
+def _along(forced: _Forced, state: State, strained: Strains, sizes: Array) -> Matrix:
+    columns = dict(_columns(forced, state, strained, sizes))
+    units = tuple(unit for _, unit in columns.values())
+    values = np.stack([each for each, _ in columns.values()], axis=-1)
+    return Matrix(values, tuple(str(number + 1) for number in range(len(sizes))), tuple(columns), (units,) * len(sizes))
+
+
+def _columns(forced: _Forced, state: State, strained: Strains, sizes: Array) -> Iterator[tuple[str, tuple[Array, str]]]:
+    place = COMPONENTS.index(forced.axis)
+    yield forced.axis, (sizes, TWIST_UNITS[place])
+    yield "load", (state.reactions @ forced.direction, WRENCH_UNITS[place])
+    frequencies = np.sqrt(eigenvalues(linearise(state, locked=_HELD))) / (2.0 * np.pi)
+    yield from ((f"f{place + 1}", (frequencies[..., place], "Hz")) for place in range(min(_FREQUENCIES, frequencies.shape[-1])))
+    yield "stress", (np.max(strained.stress, axis=-1, initial=0.0), "Pa")
+    yield "strain", (np.max(strained.largest, axis=-1, initial=0.0), "1")
+    motions = unstable_motions(state)
+    yield "unstable", (np.where(motions < 0, np.nan, motions), "1")

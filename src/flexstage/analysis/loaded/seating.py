@@ -1,0 +1,116 @@
+"""Seating: whether balls stay in their seats under weight, payloads and forces, strokes at rest: lift-off, slip and the onset of yield."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, first_design
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement
+from flexstage.models.linear.undetermined import require_known
+from flexstage.parts.contact import Contact, Hertz, contact_stiffness, hertz
+from flexstage.parts.material import Material
+from flexstage.spatial.frame import FORCES
+
+_ONSET = 1.6
+"""Greatest pressure over the yield stress at which a sphere begins to yield below its surface (Johnson 1985, chapter 6, nu = 0.3)."""
+_RANK = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Seating:
+    """What the contacts of a ball carry, on their worst wall.
+
+    `left` (...) is the least normal force over that of the preload: at zero the ball lifts off. `slip` is the tangential force over what
+    friction holds, NaN where no friction is stated. `pressure` [Pa] is the greatest, `crush` its share of the onset of yield in the softer
+    of both materials, NaN where neither states a yield stress.
+    """
+
+    left: Array
+    slip: Array
+    pressure: Array
+    crush: Array
+
+
+def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
+    """The seating of each contact, by link, under the stage's dead load.
+
+    The wrench of a link tells the motion of its ball up to motions that no contact feels, and so the force of each contact: with stiffness
+    linear about the preload. Gross sliding is judged: that all of the tangential force exceeds friction times what presses.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> seating(double_triangle(), lumped(double_triangle()))
+    {}
+    """
+    links = {name: link for name, link in expand(mechanism).links.items() if isinstance(link.part, Contact)}
+    if not links:
+        return {}
+    rows = tuple(f"{name}.{component}" for name in links for component in FORCES)
+    require_known(model, rows)
+    load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
+    motion = displacement(model, load[..., None])
+    forces = np.real(model.seen(model.output_index(rows), motion)[..., 0])
+    wrenches = forces.reshape(*forces.shape[:-1], len(links), 6)
+    found: dict[str, Seating] = {}
+    for index, (name, link) in enumerate(links.items()):
+        assert isinstance(link.part, Contact)  # noqa: S101  as asked above
+        assert link.material is not None  # noqa: S101  a contact has one
+        found[name] = seated(link.part, link.material, wrenches[..., index, :])
+    return found
+
+
+def seated(part: Contact, material: Material, wrench: Array) -> Seating:
+    """The seating of a ball whose link passes a wrench (..., 6) besides its preload, about its centre, on the ball."""
+    contacts = hertz(part, material)
+    pressed, shifted = _contact_forces(part, material, contacts, wrench)
+    left = np.min(pressed / np.real(contacts.force)[..., None], axis=-1)
+    largest = np.maximum(np.max(pressed, axis=-1), 0.0)
+    grip = np.real(np.asarray(np.nan if part.friction is None else part.friction))[..., None] * np.maximum(pressed, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slip = np.max(np.where(shifted > 0.0, shifted / grip, 0.0 * grip), axis=-1)
+    pressure = 1.5 * np.cbrt(np.real(contacts.force) ** 2 * largest) / (np.pi * np.real(contacts.spot) ** 2)
+    return Seating(left, slip, pressure, pressure / (_ONSET * _softer(material)))
+
+
+def _contact_forces(part: Contact, material: Material, contacts: Hertz, wrench: Array) -> tuple[Array, Array]:
+    """Normal force (..., c), positive where it presses, and size of the tangential force of each contact."""
+    scale = np.stack(np.broadcast_arrays(*(3 * [1.0]), *(3 * [1.0 / np.real(np.asarray(part.radius))])), axis=-1)
+    scaled = scale[..., :, None] * np.real(contact_stiffness(part, material)) * scale[..., None, :]
+    moved = scale * (np.linalg.pinv(scaled, rcond=_RANK, hermitian=True) @ (scale * wrench)[..., None])[..., 0]
+    forces = (np.real(contacts.matrix) @ (np.real(contacts.motion) @ moved[..., None, :, None]))[..., 0]
+    normals = np.real(contacts.normals)
+    pull = np.sum(forces * normals, axis=-1)
+    return np.real(contacts.force)[..., None] - pull, np.linalg.norm(forces - pull[..., None] * normals, axis=-1)
+
+
+def _softer(material: Material) -> Array:
+    """The lower yield stress of a pair; NaN where neither states one."""
+    stated = [np.real(each.yield_stress) for each in (material, getattr(material, "counter", material)) if each.yield_stress is not None]
+    return np.asarray(np.nan) if not stated else np.minimum(stated[0], stated[-1])
+
+
+def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
+    """Balls that lift off, slip or yield, on the first design."""
+    for name, each in found.items():
+        left, slip, pressure, crush = (float(first_design(value, 0)) for value in (each.left, each.slip, each.pressure, each.crush))
+        if left <= 0.0:
+            what = f"weight, payloads and forces lift the ball off its seat: they take {1.0 - left:.3g} times what its preload presses with"
+            yield Finding(name, what, "Preload it more, or check that what presses it is described: a spring, a magnet, weight")
+        elif slip > 1.0:
+            what = f"weight, payloads and forces make it slip: they push it along its seat with {slip:.3g} times what friction holds"
+            yield Finding(name, what, "Preload it more; its stiffness is that of a ball that sticks")
+        if crush > 1.0:
+            what = (
+                f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times that at which the softer material begins to yield"
+            )
+            yield Finding(
+                name, f"{what} ({_ONSET:g} times its yield stress)", "Take a larger ball or a harder material, or preload it less"
+            )

@@ -1,0 +1,627 @@
+"""Stability of a whole stage: by how much its loads could grow before the drawn position gives way.
+
+Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage: of every
+part under the wrench it carries (`beams.geometric`), and of every rigid body, whose forces act at points that turn with it. With F at r
+from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Annotated, TypeAlias, TypeVar, cast
+
+import numpy as np
+import scipy
+
+from flexstage.analysis.workspace.load import dead_loads
+from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import Array, first_design, stack
+from flexstage.base.sparse import Rows, Sparse, below, few
+from flexstage.base.units.quantity import LENGTH, RATIO
+from flexstage.beams.compliance import locked_freedoms as locked_by
+from flexstage.beams.geometric import ENDS, Geometric, geometric
+from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.assembly.moving_mass import carried_masses
+from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.models.linear.large import Quadratic, Solver, least_ratios
+from flexstage.models.linear.model import Contribution, LinearModel
+from flexstage.models.linear.static import displacement, input_motion
+from flexstage.parts.material import Material
+from flexstage.parts.part import Part, push_of
+from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
+
+DOUBTFUL = 20.0
+"""Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
+
+_Of = TypeVar("_Of")
+_KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
+_NONE = 1e-9
+"""A share of the stiffness that counts as no softening: rounding."""
+LARGE = 900
+"""Freedoms above which matrices are kept without their zeros."""
+_DENSE = 6000
+"""Freedoms above which no loaded state is worked out."""
+_SHAPES = 6
+"""Shapes looked at of a large stage: of more that repeat, not all bodies are named."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """What multiplies all loads where the stage gives way (...): `dead` that of weight, payloads and forces, strokes at rest.
+
+    `worst` (...) that of the dead load with the worst `strokes` (..., m) [m]; infinite where nothing softens. `stiffens` (...) is by how
+    much the dead load stiffens at most, as a share of the stiffness. `moving` names the bodies that move most as the dead load gives way.
+    """
+
+    dead: Annotated[Array, RATIO]
+    worst: Annotated[Array, RATIO]
+    strokes: Annotated[Array, LENGTH]
+    stiffens: Annotated[Array, RATIO]
+    moving: tuple[str, ...]
+    provenance: str
+
+    @property
+    def refusals(self) -> tuple[Finding, ...]:
+        """What keeps elastic results from being given: a drawn position that its own dead load does not let stand."""
+        least = float(np.min(np.real(self.dead)))
+        if least >= 1.0:
+            return ()
+        what = (
+            f"the drawn position does not hold: weight, payloads and forces are {1.0 / least:.3g} times what it can bear "
+            f"(load factor {least:.3g}), {give_way(' and '.join(self.moving))}"
+        )
+        return (Finding("stage", what, "Lighten the load, make the parts it presses on stiffer, or turn them so that it hangs"),)
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """Where stiffness and frequencies of the loaded stage are others than those of the drawn one."""
+        return tuple(self._doubts())
+
+    def _doubts(self) -> Iterator[Finding]:
+        dead, worst, stiffer = (float(each) for each in (np.min(np.real(self.dead)), np.min(np.real(self.worst)), np.max(self.stiffens)))
+        if 1.0 <= dead < DOUBTFUL:
+            what = (
+                f"weight, payloads and forces soften it: load factor {dead:.3g}, where {give_way(' and '.join(self.moving))}. In that "
+                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
+            )
+            advice = "Count on the lower values in results of the unloaded stage; stiffen what the load presses on, or let it hang"
+            yield Finding("stage", what, advice)
+        if worst < DOUBTFUL and worst < 0.99 * dead:
+            what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
+            if worst >= 1.0:
+                what += f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, a frequency {_lower(worst):.2g} % lower"
+            yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
+        if stiffer > 1.0 / DOUBTFUL:
+            what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
+            yield Finding("stage", what, "Count on higher frequencies in that motion in results of the unloaded stage")
+
+
+def give_way(bodies: str) -> str:
+    """That bodies give way, one or several.
+
+    >>> give_way("table"), give_way("table and frame")
+    ('table gives way', 'table and frame give way')
+    """
+    return f"{bodies} {'give' if ' and ' in bodies else 'gives'} way"
+
+
+def _lower(factor: float) -> float:
+    """By how many per cent a frequency is lower at a load factor."""
+    return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
+
+
+@lru_cache(maxsize=2)
+def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
+    """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
+
+    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them. Raises `DesignError`
+    where the stage has superelements: what forces add to their stiffness is not known.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = double_triangle()
+    >>> bool(stability(stage, lumped(stage)).dead > 100.0)
+    True
+    """
+    require(_unknown_softening(expand(mechanism)))
+    if _pieces(mechanism, model).is_large:
+        return _of_large(mechanism, _pieces(mechanism, model), limits)
+    pieces, dead = _loaded(mechanism, model)
+    unit = [pieces.softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
+    corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
+    matrices = (pieces.stiffness, dead, *unit)
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in (*matrices, corners)))
+    flat = [np.broadcast_to(each, (*batch, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in matrices]
+    corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
+    each_corners = corners.reshape(len(flat[0]), *corners.shape[-2:])
+    rows = [_single(flat[0][place], flat[1][place], [each[place] for each in flat[2:]], own) for place, own in enumerate(each_corners)]
+    stepped = any(np.iscomplexobj(each) for each in flat)
+    dead_factors, worst = (np.array(each).reshape(batch) for each in ([row.dead for row in rows], [row.worst for row in rows]))
+    return Stability(
+        dead=dead_factors if stepped else np.real(dead_factors),
+        worst=worst if stepped else np.real(worst),
+        strokes=np.array([row.strokes for row in rows]).reshape(*batch, corners.shape[-1]),
+        stiffens=np.array([row.stiffens for row in rows]).reshape(batch),
+        moving=pieces.moving(rows[0].shapes),
+        provenance=f"linearised buckling of the {model.provenance}",
+    )
+
+
+@lru_cache(maxsize=2)
+def _loaded(mechanism: Mechanism, model: LinearModel) -> tuple[_Pieces, Array]:
+    """The stage in pieces, and what its dead load adds to its stiffness: the same with and without strokes."""
+    pieces = _pieces(mechanism, model)
+    return pieces, pieces.softening(*_dead(mechanism, pieces))
+
+
+@lru_cache(maxsize=2)
+def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
+    return _Pieces.of(mechanism, model)
+
+
+def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
+    """Whether a stage has too many freedoms for the dense matrices of its loaded state.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> is_large(parallelogram(), lumped(parallelogram()))
+    False
+    """
+    return _pieces(mechanism, model).size > _DENSE
+
+
+def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
+    """The lumped model with what its dead load adds to its stiffness, `geometric`, in the drawn position; one design.
+
+    Inner bending of parts follows without mass.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> "geometric" in prestress(parallelogram(), lumped(parallelogram())).stiffness
+    True
+    """
+    require(_unknown_softening(expand(mechanism)))
+    pieces = _Pieces.of(mechanism, model)
+    added, own = pieces.softening(*_dead(mechanism, pieces)), pieces.stiffness
+    count = len(model.coordinates)
+    across = added[:count, count:]
+    inner = np.linalg.solve(own[count:, count:] + added[count:, count:], across.T)
+    felt = Contribution(np.eye(count), added[:count, :count] - across @ inner)
+    return replace(model, stiffness={**model.stiffness, "geometric": felt})
+
+
+def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
+    for name in assembly.superelements:
+        what = "it is known by its matrices alone: what the forces in it add to its stiffness, and so whether it buckles, is not known"
+        yield Finding(name, what, "Judge it in the code that its matrices come from")
+
+
+_Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]
+"""Loads by body: pairs of a wrench (..., 6) in the stage's axes and the point (..., 3) it acts at."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """The stage in the model's coordinates and the inner bending of its parts: twists of bodies, laws of links."""
+
+    assembly: Assembly
+    model: LinearModel
+    twists: Mapping[str, Array]
+    parts: Mapping[str, Geometric]
+
+    @staticmethod
+    def of(mechanism: Mechanism, model: LinearModel) -> _Pieces:
+        assembly = expand(_with_drawn_parts(mechanism))
+        rows = _few_rows if model.is_sparse else _rows
+        twists = {name: rows(model, name, COMPONENTS) for name in assembly.bodies}
+        parts = dict(zip(assembly.links, _by_part(assembly.links.values(), geometric), strict=True))
+        return _Pieces(assembly, model, {GROUND: np.zeros((6, len(model.coordinates))), **twists}, parts)
+
+    @cached_property
+    def is_large(self) -> bool:
+        """Whether there are so many freedoms that the matrices of a single design are kept without their zeros."""
+        if self.size <= LARGE or self.model.designs or any(part.per_force.ndim > 3 for part in self.parts.values()):
+            return False
+        return self.model.is_sparse or not np.iscomplexobj(self.model.stiffness_matrix)
+
+    @cached_property
+    def size(self) -> int:
+        return len(self.model.coordinates) + sum(part.inner.shape[-1] for part in self.parts.values())
+
+    @property
+    def stiffness(self) -> Array:
+        """K (..., n + k, n + k): the model's, and the inner bending of every part beside it."""
+        own = self.model.stiffness_matrix
+        inner = [part.inner for part in self.parts.values()]
+        batch = np.broadcast_shapes(own.shape[:-2], *(each.shape[:-1] for each in inner))
+        result = np.zeros((*batch, self.size, self.size), dtype=np.result_type(own, *inner))
+        count = len(self.model.coordinates)
+        result[..., :count, :count] = own
+        place = count
+        for each in inner:
+            for index in range(each.shape[-1]):
+                result[..., place, place] = each[..., index]
+                place += 1
+        return result
+
+    @cached_property
+    def shapes(self) -> Mapping[str, tuple[Array, Array]]:
+        """By link, the coordinates that move it, and the motion (..., 12 + k, c) of its ends and of its inner bending in those alone."""
+        found: dict[str, tuple[Array, Array]] = {}
+        place = len(self.model.coordinates)
+        for name, link in self.assembly.links.items():
+            inner, ends = self.parts[name].inner.shape[-1], self.ends(link)
+            moving = _moving(ends)
+            shape = np.zeros((*ends.shape[:-2], ENDS + inner, len(moving) + inner), dtype=ends.dtype)
+            shape[..., :ENDS, : len(moving)] = ends[..., moving]
+            shape[..., range(ENDS, ENDS + inner), range(len(moving), len(moving) + inner)] = 1.0
+            found[name] = np.concatenate([moving, np.arange(place, place + inner)]), shape
+            place += inner
+        return found
+
+    def ends(self, link: PlacedLink) -> Array:
+        """Twists (..., 12, n) of both ends of a link, at its centre, in its frame."""
+        seen = [self._end(body, link) for body in link.joins]
+        batch = np.broadcast_shapes(*(each.shape[:-2] for each in seen))
+        return np.concatenate([np.broadcast_to(each, (*batch, *each.shape[-2:])) for each in seen], axis=-2)
+
+    def _end(self, body: str, link: PlacedLink) -> Array:
+        return (
+            self.twists[body] if body == GROUND else twist_transform(link.frame, self.assembly.bodies[body].reference) @ self.twists[body]
+        )
+
+    def softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Array:
+        """K_g (..., n + k, n + k) of the wrenches (..., 6) of all links, and of the loads on bodies."""
+        forces: dict[str, list[tuple[Array, Array]]] = {name: [] for name in self.assembly.bodies}
+        for name, acting in loads.items():
+            forces[name] += [(load[..., :3], point) for load, point in acting]
+        pieces: list[tuple[Array, Array]] = []
+        for name, link in self.assembly.links.items():
+            part, wrench, (moving, shape) = self.parts[name], wrenches[name], self.shapes[name]
+            law = np.einsum("...i,...iab->...ab", wrench, part.per_force)
+            pieces.append((moving, _transposed(shape) @ law @ shape))
+            force = link.frame.direction(wrench[..., :3])
+            arm = link.frame.direction(part.half[..., None] * np.eye(3)[0])
+            for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+                if body != GROUND:
+                    forces[body].append((sign * force, link.frame.position - sign * arm))
+        pieces += [self._turning(name, acting) for name, acting in forces.items() if acting]
+        return _assembled(pieces, self.size)
+
+    def quadratics(self) -> Quadratic:
+        """K as strains, the inner bending of every part beside those of the model."""
+        size, place = self.size, len(self.model.coordinates)
+        own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
+        parts = [(Sparse(rows.columns, rows.values, size), law) for rows, law in own]
+        for part in self.parts.values():
+            inner = len(part.inner)
+            parts.append((Sparse(np.arange(place, place + inner), np.eye(inner), size), np.diag(part.inner)))
+            place += inner
+        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], size)
+
+    def large_softening(self, wrenches: Mapping[str, Array], loads: _Loads) -> Quadratic:
+        """K_g of one design as `softening` has it, without its zeros."""
+        forces: dict[str, list[tuple[Array, Array]]] = {
+            name: [(load[:3], at) for load, at in loads.get(name, ())] for name in self.assembly.bodies
+        }
+        twists = {name: few(twist) for name, twist in self.twists.items()}
+        parts: list[tuple[Sparse, Array]] = []
+        place = len(self.model.coordinates)
+        for name, link in self.assembly.links.items():
+            part, wrench = self.parts[name], wrenches[name]
+            inner = np.arange(place, place + part.inner.shape[-1])
+            place += len(inner)
+            ends = [_carried(self.assembly, link, body, twists[body], self.size) for body in link.joins]
+            law = np.einsum("i,iab->ab", wrench, part.per_force)
+            if law.any():
+                parts.append((below([*ends, Sparse(inner, np.eye(len(inner)), self.size)], self.size), law))
+            force = link.frame.direction(wrench[:3])
+            arm = link.frame.direction(part.half * np.eye(3)[0])
+            for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+                if body != GROUND:
+                    forces[body].append((sign * force, link.frame.position - sign * arm))
+        for name, acting in forces.items():
+            if acting:
+                turns = twists[name][..., slice(3, 6), :]
+                parts.append((Sparse(turns.columns, turns.values, self.size), _turning_law(self.assembly.bodies[name].reference, acting)))
+        return Quadratic.of([rows for rows, _ in parts], [law for _, law in parts], self.size)
+
+    def _turning(self, name: str, acting: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+        turns = self.twists[name][..., 3:, :]
+        moving = _moving(turns)
+        turns = turns[..., moving]
+        return moving, _transposed(turns) @ _turning_law(self.assembly.bodies[name].reference, acting) @ turns
+
+    def moving(self, shapes: Array) -> tuple[str, ...]:
+        """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
+        own = shapes[: len(self.model.coordinates)]
+        first = {name: np.real(first_design(twist, 2)) @ own for name, twist in self.twists.items() if name != GROUND}
+        sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items()}
+        largest = max(sizes.values(), default=0.0)
+        return tuple(name for name, size in sizes.items() if size > 0.5 * largest > 0.0)[:_NAMED]
+
+
+def _moving(shape: Array) -> Array:
+    """The coordinates (c,) whose columns of a shape (..., r, n) are not nought."""
+    return np.flatnonzero(np.any(shape != 0.0, axis=tuple(range(shape.ndim - 1))))
+
+
+def _assembled(pieces: Sequence[tuple[Array, Array]], size: int) -> Array:
+    """The sum (..., n, n) of matrices (..., c, c), each of some coordinates (c,)."""
+    smalls = [small for _, small in pieces]
+    batch = np.broadcast_shapes(*(each.shape[:-2] for each in smalls))
+    result = np.zeros((*batch, size, size), dtype=np.result_type(float, *smalls))
+    for places, small in pieces:
+        result[..., places[:, None], places] += small
+    return result
+
+
+def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:
+    """What forces at points of a rigid body resist of its rotation (..., 3, 3)."""
+    moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
+    return np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
+
+
+def _carried(assembly: Assembly, link: PlacedLink, body: str, twist: Sparse, size: int) -> Sparse:
+    """The twist (6, n + k) of a body at a link's centre, in its frame."""
+    values = twist.values if body == GROUND else twist_transform(link.frame, assembly.bodies[body].reference) @ twist.values
+    return Sparse(twist.columns, values, size)
+
+
+def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
+    """The description with the drawn parts that computed matrices stand for: those have a length."""
+    try:
+        return with_drawn_parts(mechanism)
+    except DesignError:
+        return mechanism
+
+
+def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loads]:
+    """Wrenches of the links under weight, payloads and forces, strokes at rest; and these loads."""
+    model = pieces.model
+    loads = _weights(mechanism)
+    total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
+    motion = displacement(model, total[..., None])
+    seen = _seen_forces(pieces, motion)
+    sprung = {name: seen[name] - _pushed(link) for name, link in pieces.assembly.links.items()}
+    return _whole(mechanism, sprung, loads), loads
+
+
+def _pushed(link: PlacedLink) -> Array:
+    """The compression (..., 6) that a link has as drawn."""
+    push = push_of(link.part)
+    return np.zeros(6) if push is None else np.asarray(push)[..., None] * np.eye(6)[0]
+
+
+def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:
+    """Wrenches of the links per metre of a stroke."""
+    model = pieces.model
+    column = model.input_index((actuator,))
+    motion = input_motion(model, column)
+    return _whole(mechanism, _seen_forces(pieces, motion, column), {}), {}
+
+
+def _seen_forces(pieces: _Pieces, motion: Array, column: list[int] | None = None) -> dict[str, Array]:
+    """What the springs of every link feel (..., 6) of a motion (..., n, 1) and of a unit of the input in that column."""
+    model = pieces.model
+    places = {name: model.output_index(tuple(f"{name}.{force}" for force in FORCES)) for name in pieces.assembly.links}
+    outputs = model.output @ motion if model.is_sparse else None
+    found: dict[str, Array] = {}
+    for name, rows in places.items():
+        seen = model.output[..., rows, :] @ motion if outputs is None else outputs[rows]
+        found[name] = (seen if column is None else seen + model.feedthrough[..., rows, :][..., column])[..., 0]
+    return found
+
+
+def _weights(mechanism: Mechanism) -> _Loads:
+    """Weights of bodies, payloads and links, and stated forces."""
+    assembly, gravity = expand(mechanism), stack(mechanism.gravity)
+    loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
+    for name, placed in assembly.bodies.items():
+        loads[name] += [(_force(item.mass[..., None] * gravity), item.centre) for item in carried_masses(mechanism, placed)]
+    masses = _by_part(assembly.links.values(), mass)
+    for link, own in zip(assembly.links.values(), masses, strict=True):
+        back = _transposed(link.frame.rotation)
+        fall = (back @ gravity[..., None])[..., 0]
+        pulled = own[..., :12, :12] @ np.concatenate([_force(fall), _force(fall)], axis=-1)[..., None]
+        for place, body in enumerate(link.joins):
+            if body != GROUND:
+                wrench = (spatial_rotation(link.frame.rotation) @ pulled[..., 6 * place : 6 * place + 6, :])[..., 0]
+                loads[body].append((wrench, link.frame.position))
+    for force in mechanism.forces.values():
+        if force.body != GROUND:
+            loads[force.body].append((_force(stack(force.force)), stack(force.at)))
+    return loads
+
+
+def _by_part(links: Iterable[PlacedLink], work: Callable[[Part, Material | None], _Of]) -> list[_Of]:
+    """What a function gives of every link's part and material, asked once of links that share both."""
+    known: dict[tuple[int, int], _Of] = {}
+    found: list[_Of] = []
+    for link in links:
+        key = id(link.part), id(link.material)
+        if key not in known:
+            known[key] = work(link.part, link.material)
+        found.append(known[key])
+    return found
+
+
+def _force(force: Array) -> Array:
+    return np.concatenate([force, np.zeros_like(force)], axis=-1)
+
+
+def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dict[str, Array]:
+    """The wrenches of the links with the forces of their locked freedoms, which no spring feels: from the equilibrium of every body."""
+    assembly = expand(mechanism)
+    locked = {name: [freedom.index for freedom in locked_by(link.part)] for name, link in assembly.links.items()}
+    if not any(locked.values()):
+        return sprung
+    order = {name: slice(6 * place, 6 * place + 6) for place, name in enumerate(assembly.bodies)}
+    batch = np.broadcast_shapes(*(each.shape[:-1] for each in sprung.values()))
+    unmet = np.zeros((*batch, 6 * len(order)), dtype=np.result_type(*sprung.values()))
+    for name, placed in assembly.bodies.items():
+        for load, point in loads.get(name, []):
+            unmet[..., order[name]] += (_transposed(transport(point - placed.reference)) @ load[..., None])[..., 0]
+    columns: list[Array] = []
+    for name, link in assembly.links.items():
+        carry = np.zeros((*batch, 6 * len(order), 6), dtype=np.result_type(unmet, link.frame.position))
+        for body, sign in zip(link.joins, (1.0, -1.0), strict=True):
+            if body != GROUND:
+                carry[..., order[body], :] = sign * _transposed(twist_transform(link.frame, assembly.bodies[body].reference))
+        unmet = unmet + (carry @ sprung[name][..., None])[..., 0]
+        columns.append(carry[..., locked[name]])
+    held = np.concatenate(columns, axis=-1)
+    forces = -np.linalg.pinv(np.real(held)) @ unmet[..., None]
+    result, place = {}, 0
+    for name, wrench in sprung.items():
+        whole = np.zeros((*batch, 6), dtype=np.result_type(wrench, forces)) + wrench
+        whole[..., locked[name]] += forces[..., place : place + len(locked[name]), 0]
+        place += len(locked[name])
+        result[name] = whole
+    return result
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Factors of one design, and the `shapes` (n + k, s) in which it gives way under its dead load: several where the factor repeats."""
+
+    dead: complex
+    worst: complex
+    strokes: Array
+    stiffens: float
+    shapes: Array
+
+
+def _single(stiffness: Array, dead: Array, unit: list[Array], corners: Array) -> _Found:
+    """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
+    root = scipy.linalg.cholesky(np.real(stiffness), lower=True)
+    normal = np.stack([_normal(root, np.real(each)) for each in (dead, *unit)])
+    values, shapes = np.linalg.eigh(normal[0])
+    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
+    shape = _back(root, shapes[:, 0])
+    strokes, steep = _worst(normal, corners) if unit else (corners[0], shapes[:, 0])
+    total = dead + sum((stroke * each for stroke, each in zip(strokes, unit, strict=True)), np.zeros_like(dead))
+    found, least = _factor(stiffness, dead, shape), _factor(stiffness, total, _back(root, steep))
+    return _Found(found, min(found, least, key=np.real), strokes, float(max(values[-1], 0.0)), _back(root, shapes[:, alike]))
+
+
+def _worst(normal: Array, corners: Array) -> tuple[Array, Array]:
+    """The corner with the least eigenvalue, and its shape.
+
+    Eigenvalues in the space of the softest shapes of some corners are bounds from above for all corners; the corner with the least of them
+    is solved and its shapes added, until that corner is one that was solved.
+    """
+    weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
+    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
+    space, solved = np.zeros((normal.shape[-1], 0)), dict[int, Array]()
+    while True:
+        for corner in dict.fromkeys(wanted):
+            lowest = [0, min(_KEPT, normal.shape[-1]) - 1]
+            solved[corner] = scipy.linalg.eigh(np.tensordot(weights[corner], normal, axes=1), subset_by_index=lowest)[1]
+            space = np.linalg.qr(np.concatenate([space, solved[corner]], axis=-1))[0][:, : normal.shape[-1]]
+        small = space.T @ normal @ space
+        bounds = np.linalg.eigvalsh(np.tensordot(weights, small, axes=1))[:, 0]
+        least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
+        if least in solved:
+            return corners[least], solved[least][:, 0]
+        wanted = [least]
+
+
+def _factor(stiffness: Array, softening: Array, shape: Array) -> complex:
+    """The factor of a shape: the elastic energy over what the loads take away; infinite where they take nothing."""
+    elastic, taken = shape @ stiffness @ shape, -(shape @ softening @ shape)
+    return complex(elastic / taken) if np.real(taken) > _NONE * np.real(elastic) else complex(np.inf)
+
+
+def _of_large(mechanism: Mechanism, pieces: _Pieces, limits: StrokeLimits | None) -> Stability:
+    """Load factors of one design of many freedoms: the least eigenvalues of K_g x = mu K x, without dense matrices."""
+    solver = Solver(pieces.quadratics())
+    dead = pieces.large_softening(*_dead(mechanism, pieces))
+    unit = [pieces.large_softening(*_stroke(mechanism, pieces, name)) for name in (() if limits is None else limits.actuators)]
+    corners = np.zeros((1, 0)) if limits is None else np.real(first_design(limits.corners, 2))
+    values, shapes = _softest(solver, dead)
+    alike = values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
+    strokes, steep = _worst_of_large(solver, [dead, *unit], corners) if unit else (corners[0], shapes[:, 0])
+    factors = [_large_factor(solver, each, shape) for each, shape in ((dead, shapes[:, 0]), (_mixed([dead, *unit], strokes), steep))]
+    stiffest = -_softest(solver, Quadratic(dead.rows, -dead.law))[0][0]
+    return Stability(
+        dead=np.array(factors[0]),
+        worst=np.array(min(factors)),
+        strokes=np.array(strokes),
+        stiffens=np.array(float(max(stiffest, 0.0))),
+        moving=pieces.moving(shapes[:, alike]),
+        provenance=f"linearised buckling of the {pieces.model.provenance}",
+    )
+
+
+def _softest(solver: Solver, softening: Quadratic) -> tuple[Array, Array]:
+    """The least mu of K_g x = mu K x and their shapes (n + k, s)."""
+    if not softening.matrix.count_nonzero():
+        size = softening.rows.shape[1]
+        return np.zeros(1), solver.solve(np.ones((size, 1)))
+    return least_ratios(solver, softening, _SHAPES)
+
+
+def _mixed(parts: list[Quadratic], strokes: Array) -> Quadratic:
+    """K_g of the dead load, the first part, and of strokes."""
+    rows = scipy.sparse.vstack([part.rows for part in parts], format="csr")
+    laws = [part.law * weight for part, weight in zip(parts, (1.0, *strokes), strict=True)]
+    return Quadratic(rows, scipy.sparse.block_diag(laws, format="csr"))
+
+
+def _worst_of_large(solver: Solver, parts: list[Quadratic], corners: Array) -> tuple[Array, Array]:
+    """As `_worst`: the corner with the least mu, and its shape."""
+    weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
+    wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
+    space, solved = np.zeros((parts[0].rows.shape[1], 0)), dict[int, Array]()
+    while True:
+        for corner in dict.fromkeys(wanted):
+            solved[corner] = _softest(solver, _mixed(parts, corners[corner]))[1][:, :_KEPT]
+            space = _orthonormal(solver, np.concatenate([space, solved[corner]], axis=-1))
+        small = np.array([space.T @ (part @ space) for part in parts])
+        bounds = np.array([np.linalg.eigvalsh(np.tensordot(weight, small, axes=1))[0] for weight in weights])
+        least = int(np.argmax(bounds <= np.min(bounds) + _ALIKE * np.max(np.abs(bounds))))
+        if least in solved:
+            return corners[least], solved[least][:, 0]
+        wanted = [least]
+
+
+def _orthonormal(solver: Solver, shapes: Array) -> Array:
+    """What spans the same, with unit energies and none between any two."""
+    shapes = shapes / np.sqrt(np.sum(shapes * (solver.stiffness @ shapes), axis=0))
+    values, turn = np.linalg.eigh(shapes.T @ (solver.stiffness @ shapes))
+    kept = values > _ALIKE
+    return (shapes @ turn)[:, kept] / np.sqrt(values[kept])
+
+
+def _large_factor(solver: Solver, softening: Quadratic, shape: Array) -> float:
+    elastic, taken = float(shape @ (solver.stiffness @ shape)), -float(shape @ (softening @ shape))
+    return elastic / taken if taken > _NONE * elastic else float(np.inf)
+
+
+def _normal(root: Array, matrix: Array) -> Array:
+    half = scipy.linalg.solve_triangular(root, matrix, lower=True)
+    whole = scipy.linalg.solve_triangular(root, half.T, lower=True)
+    return 0.5 * (whole + whole.T)
+
+
+def _back(root: Array, shape: Array) -> Array:
+    return scipy.linalg.solve_triangular(root.T, shape, lower=False)
+
+
+def _rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
+    return model.output[..., model.output_index(tuple(f"{owner}.{name}" for name in names)), :]
+
+
+def _few_rows(model: LinearModel, owner: str, names: tuple[str, ...]) -> Array:
+    first = model.output_index((f"{owner}.{names[0]}",))[0]
+    return cast("Array", cast("Rows", model.output).few(first, len(names)))
+
+
+def _transposed(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

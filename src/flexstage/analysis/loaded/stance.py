@@ -1,0 +1,239 @@
+"""How a stage stands away from its drawn position: brought somewhere, loaded, held, heated; and small motions about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.linear.channels import wrench_places
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.nonlinear.elements.strain import strains
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.paths.critical import require_continuation, unstable_motions
+from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_STILL = 1e-12
+"""Motion over the flexures' length, and in radians, that counts as none."""
+_SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
+"""Where between rest and what is asked an equilibrium is looked for when there is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stance(InNotebook):
+    """How a stage stands: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
+
+    Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.
+    `held` tells of every coordinate that was brought somewhere or is locked: its value counted from the sagged position and the force that
+    holds it there. `rest` and `state` are the two equilibria, `linear` small motions about the second.
+    """
+
+    sag: Matrix
+    moved: Matrix | None
+    held: Matrix | None
+    locked: tuple[str, ...]
+    rest: Annotated[State, INNER]
+    state: Annotated[State, INNER]
+    linear: Annotated[LinearModel, INNER]
+    doubts: Annotated[tuple[Finding, ...], INNER]
+    provenance: str
+
+    @cached_property
+    def links(self) -> LinearModel:
+        """The same small motions link by link: flexures follow their ends as at rest, as lost motion asks for."""
+        return linearise(self.state, locked=self.locked, inner=False)
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory there, and drives that do nothing."""
+        return (*self.doubts, *strain_cautions(strains(self.state)), *left_out(self.state))
+
+
+@check_arguments
+def stance(
+    mechanism: Mechanism,
+    at: Mapping[str, float] | None = None,
+    *,
+    loads: Mapping[str, float] | None = None,
+    hold: Sequence[str] = (),
+    temperature: float = 0.0,
+) -> Stance:
+    """Bring a stage somewhere at large displacements, and read small motions about that place.
+
+    The stage first sags under its weight, payloads, preloads and stated forces, under `loads` (as in `equilibrium`) and `temperature` (a
+    uniform change [K]). From there `at` brings coordinates (`platform.y` [m], `platform.rz` [rad], a component of the rotation vector) by
+    the dead force that holds them, which then stays while the coordinate is released; strokes in `at` (of a stack, by its name) are kept.
+    Coordinates in `hold` stay locked: where the stage sags to, or where `at` brings them. Raises `DesignError` for unknown names, for what
+    contradicts itself, where no equilibrium is found (it says how far there is one), and where the released stage does not stay.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> found = stance(parallelogram(), {"platform.x": 1e-4})
+    >>> round(float(found.moved.at("platform", "x")) * 1e6, 3), round(float(found.held.at("platform.x", "force")))
+    (100.0, 1939)
+    """
+    asked = _Asked(nonlinear(mechanism, temperature=temperature), dict(at or {}), dict(loads or {}), tuple(dict.fromkeys(hold)))
+    require(_contradictions(asked))
+    rest = equilibrium(asked.model, asked.loads)
+    require_equilibrium(rest)
+    state = asked.reach(rest, 1.0)
+    if not bool(state.converged):
+        raise refuse("--at", *_how_far(asked, rest))
+    _require_stable(asked, state)
+    if asked.at:
+        require_continuation(asked.reach(rest, 0.0), state)
+    places = (PLATFORM, *(name for name in wrench_places(asked.model.assembly) if name not in asked.model.bodies))
+    units = (TWIST_UNITS,) * len(places)
+    sag = np.stack([rest.twist(name) for name in places])
+    linear = linearise(state, locked=asked.hold)
+    return Stance(
+        sag=Matrix(sag, places, COMPONENTS, units),
+        moved=Matrix(np.stack([state.twist(name) for name in places]) - sag, places, COMPONENTS, units) if asked.at else None,
+        held=_held(asked, state),
+        locked=asked.hold,
+        rest=rest,
+        state=state,
+        linear=linear,
+        doubts=tuple(_idle(asked, rest, state)),
+        provenance=linear.provenance,
+    )
+
+
+def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping[str, float], hold: Sequence[str]) -> None:
+    """Refuse places, loads and locks that contradict one another, with all that is wrong.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_consistent(nonlinear(parallelogram()), {"platform.x": 1e-4}, {"platform.fy": 1.0}, [])
+    """
+    require(_contradictions(_Asked(model, dict(at), dict(loads), tuple(dict.fromkeys(hold)))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What is asked of a model: `at` in coordinates and inputs, `loads`, and what stays locked."""
+
+    model: Nonlinear
+    at: dict[str, float]
+    loads: dict[str, float]
+    hold: tuple[str, ...]
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return tuple(channel.name for channel in self.model.inputs)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """What is held: coordinates that are brought somewhere, and the locked ones."""
+        return tuple(dict.fromkeys([*(name for name in self.at if name not in self.inputs), *self.hold]))
+
+    @property
+    def driven(self) -> dict[str, float]:
+        """Inputs that are set beside the loads."""
+        return {name: value for name, value in self.at.items() if name in self.inputs}
+
+    def reach(self, rest: State, share: float | Array) -> State:
+        """The equilibrium a share of the way from rest to what is asked."""
+        held = {name: coordinate(rest, name) + share * self.at.get(name, 0.0) for name in self.coordinates}
+        given = {name: self.loads.get(name, 0.0) + share * value for name, value in self.driven.items()}
+        return equilibrium(self.model, {**self.loads, **given}, hold=held, start=rest)
+
+
+def coordinate(state: State, name: str) -> Array:
+    """The value (...) of a coordinate, as `equilibrium` holds it [m, rad].
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> round(float(coordinate(equilibrium(nonlinear(parallelogram()), hold={"platform.x": 1e-4}), "platform.x")), 12)
+    0.0001
+    """
+    owner, _, component = name.rpartition(".")
+    if component not in COMPONENTS:
+        raise refuse(name, "it is no coordinate of this stage", "Write for example platform.y")
+    return state.twist(owner)[..., COMPONENTS.index(component)]
+
+
+def _contradictions(asked: _Asked) -> Iterator[Finding]:
+    for name in asked.driven:
+        if name in asked.loads:
+            yield Finding(name, "it is both a load that stays and what is driven", "Leave out one of the two")
+    for name in asked.coordinates:
+        owner, _, component = name.rpartition(".")
+        load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""
+        if name in asked.at and (load in asked.loads or load in asked.at):
+            what = f"the force that brings it there is what is looked for, and {load} states it"
+            yield Finding(name, what, f"Leave out {load}, or {name}")
+    bodies = [asked.model.assembly.points[owner][0] if owner in asked.model.assembly.points else owner for owner in _owners(asked)]
+    for body in dict.fromkeys(bodies):
+        if bodies.count(body) > 6:
+            yield Finding(body, f"{bodies.count(body)} of its coordinates are held, and it has six", "Hold fewer")
+
+
+def _owners(asked: _Asked) -> list[str]:
+    return [name.rpartition(".")[0] for name in asked.coordinates]
+
+
+def _how_far(asked: _Asked, rest: State) -> tuple[str, str]:
+    """What is said where there is no equilibrium: how far there is one, and what it takes."""
+    tried = asked.reach(rest, _SHARES)
+    count = int(np.argmin(np.append(tried.converged, False)))
+    if not count:
+        return "no equilibrium was found, not even a sixteenth of the way", "Look whether what is held contradicts itself"
+    share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
+    units = [WRENCH_UNITS[COMPONENTS.index(name.rpartition(".")[2])] for name in asked.coordinates]
+    force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
+    reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
+    what = f"no equilibrium was found there, but {share:.0%} of the way ({reached}) there is one"
+    return f"{what}{f', held by {force}' if force else ''}, its largest strain {most:.2%}", "Ask for no more than that"
+
+
+def _require_stable(asked: _Asked, state: State) -> None:
+    """Refuse a place that the stage leaves once what brought it there is released."""
+    count = int(unstable_motions(state, locked=asked.hold))
+    if count > 0:
+        most = float(np.max(strains(state).largest, initial=0.0))
+        ways = f"{count} way{'s' if count > 1 else ''}"
+        loose = [name for name in asked.coordinates if name not in asked.hold]
+        under = "under the force that brings it there the released stage" if loose else "under its weight and loads, or strokes, the stage"
+        what = f"{under} leaves in {ways}; its largest strain is {most:.2%}{_stable_until(asked)}"
+        lock = f"Lock it: --hold {loose[0]}, or ask" if loose else "Ask"
+        raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle what gives way")
+
+
+def _stable_until(asked: _Asked) -> str:
+    """Up to which sixteenth of what is asked, loads and strokes and places, the stage stays."""
+    rest = equilibrium(asked.model, {name: _SHARES * value for name, value in asked.loads.items()})
+    states = asked.reach(equilibrium(asked.model, asked.loads), _SHARES) if asked.at else rest
+    stays = unstable_motions(states, locked=asked.hold) == 0
+    count = int(np.argmin(np.append(stays, False)))
+    return f"; up to {_SHARES[count - 1]:.0%} of the way it stays" if count else ""
+
+
+def _held(asked: _Asked, state: State) -> Matrix | None:
+    if not asked.coordinates:
+        return None
+    places = [COMPONENTS.index(name.rpartition(".")[2]) for name in asked.coordinates]
+    values = [asked.at.get(name, 0.0) for name in asked.coordinates]
+    units = tuple((TWIST_UNITS[place], WRENCH_UNITS[place]) for place in places)
+    return Matrix(np.stack([values, state.reactions], axis=-1), asked.coordinates, ("value", "force"), units)
+
+
+def _idle(asked: _Asked, rest: State, state: State) -> Iterator[Finding]:
+    """Drives and loads that do nothing."""
+    for name, value in {**asked.loads, **asked.driven}.items():
+        if value == 0.0 and name not in asked.coordinates:
+            yield Finding(name, "it is zero, and does nothing", "Give it a size, or leave it out")
+    moved = np.abs(state.pose.position - rest.pose.position) / asked.model.size
+    turned = np.abs(state.pose.turn - rest.pose.turn)
+    if any(asked.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
+        yield Finding(", ".join(asked.driven), "it moves nothing", "Look what its ends are joined to")

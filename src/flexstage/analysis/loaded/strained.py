@@ -1,0 +1,97 @@
+"""Where strained flexures leave what the theory of large displacements holds for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.models.nonlinear.elements.hinge import deform, exerted
+from flexstage.models.nonlinear.elements.strain import Strains
+from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.graph import hinge_ends
+from flexstage.parts.contact import Contact
+from flexstage.parts.part import inner
+
+_STRAIN, _CURVING = 0.02, 40.0
+"""The largest strain that a linear law is physics for, and the largest b^2 k / t that two shapes across a leaf's width suffice for."""
+
+
+def strain_cautions(strained: Strains) -> Iterator[Finding]:
+    """Flexures whose strain, stress or curving is beyond the theory in any case; of many that are alike each is told.
+
+    >>> none = np.zeros((1, 1))
+    >>> [str(each.where) for each in strain_cautions(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]
+    ['leaf']
+    """
+    largest, curving, stress = (np.nan_to_num(each) for each in (strained.largest, strained.curving, strained.stress))
+    for name, most in zip(strained.names, _most(largest), strict=True):
+        if most > _STRAIN:
+            what = f"its strain reaches {most:.2%}, beyond which no linear elastic law is physics"
+            yield Finding(name, what, "Ask for less stroke, or make it longer or thinner")
+    for name, most, limit in zip(strained.names, _most(stress), strained.limit, strict=True):
+        if most > limit:
+            what = f"its stress reaches {most / 1e6:.4g} MPa, its material's limit is {limit / 1e6:.4g} MPa"
+            yield Finding(name, what, "Ask for less stroke, make it longer or thinner, or take a stronger material")
+    for name, most in zip(strained.names, _most(curving), strict=True):
+        if most > _CURVING:
+            what = f"b^2 k / t reaches {most:.3g}, above {_CURVING:g}: two shapes across its width do not suffice"
+            yield Finding(name, what, "Count on an error of some tenths of a per cent in bending")
+
+
+def left_out(state: State) -> Iterator[Finding]:
+    """What the theory does not count and a state gets to in any case: contacts that would lift off, stops that would be met.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.equilibrium import equilibrium
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> list(left_out(equilibrium(nonlinear(parallelogram()), {"platform.fx": 1.0})))
+    []
+    """
+    yield from _lifted(state)
+    yield from _stopped(state)
+
+
+def _lifted(state: State) -> Iterator[Finding]:
+    model, pose = state.model, state.pose
+    hinges = model.hinges
+    pressed = [place for place, name in enumerate(hinges.names) if isinstance(inner(model.assembly.links[name].part), Contact)]
+    if not pressed:
+        return
+    deformation, _ = deform(hinges, hinge_ends(model, pose))
+    force = exerted(hinges, deformation, state.loads.inputs, state.loads.constant, np.zeros(deformation.shape))
+    known = state.converged.ravel()
+    for place in pressed:
+        least = float(np.min(-force[place, known, 0], initial=np.inf))
+        if least <= 0.0:
+            what = f"its seat would have to pull with up to {-least:.4g} N: it lifts off, which is not counted"
+            yield Finding(hinges.names[place], what, "Ask for less, or preload it more")
+
+
+def _stopped(state: State) -> Iterator[Finding]:
+    model, known = state.model, state.converged.ravel()
+    for name, stop in model.assembly.stops.items():
+        frame = stop.sight.frame
+        place, axis = np.real(frame.position).reshape(-1, 3)[0], np.real(frame.rotation).reshape(-1, 3, 3)[0][:, 0]
+        moved = [_moved(state, model.body(body), place) @ axis for body in (stop.sight.body, stop.sight.base)]
+        gone = (moved[0] - moved[1])[known]
+        low, high = float(np.min(gone, initial=np.inf)), float(np.max(gone, initial=-np.inf))
+        if low < float(stop.low) or high > float(stop.high):
+            what = f"the stage goes through it: {_gap(low)} to {_gap(high)} along it, where it has {_gap(stop.low)} to {_gap(stop.high)}"
+            yield Finding(name, what, "Stops are not met at large displacements: ask for no more than they allow")
+
+
+def _gap(value: float | np.ndarray) -> str:
+    return f"{float(value) * 1e3:.4g} mm"
+
+
+def _moved(state: State, body: int, place: np.ndarray) -> np.ndarray:
+    """Displacements (b, 3) of a drawn point that moves with a body."""
+    arm = place - state.model.reference[body]
+    return state.pose.position[:, body] + state.pose.turn[:, body] @ arm - place
+
+
+def _most(values: np.ndarray) -> np.ndarray:
+    """The largest (l,) of all cases (..., l)."""
+    return np.max(values, axis=tuple(range(values.ndim - 1)), initial=0.0)

@@ -1,0 +1,232 @@
+"""A stage over its stroke: force, stiffness, parasitic motion, frequencies, strain, stability at every point of a path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.loaded.stance import coordinate
+from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.unit import quantity_of_unit, show
+from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.eigen import eigenvalues
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.nonlinear.elements.strain import Strains, strains
+from flexstage.models.nonlinear.equilibrium import State
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.paths.critical import unstable_motions
+from flexstage.models.nonlinear.paths.path import Path
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
+
+_FREQUENCIES = ("f1", "f2", "f3")
+_AT_ONCE = 2
+"""Points between which it is told how far it is."""
+_FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke(InNotebook):
+    """A stage along `drive`: a row a point `along` it.
+
+    Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
+    displacement and rotation vector; the share `lost` of a stack's stroke; the platform's first natural frequencies, free under that force;
+    the largest stress and strain of a flexure; and in how many ways the free stage would leave that place (0: stable). Drive and
+    displacements count from `sag`, where weight and loads bring the platform from its drawn place; None where they count from that one.
+    """
+
+    drive: str
+    along: Matrix
+    sag: Matrix | None
+    strained: Annotated[Strains, INNER]
+    doubts: Annotated[tuple[Finding, ...], INNER]
+    provenance: str
+
+    @property
+    def cautions(self) -> tuple[Finding, ...]:
+        """What is beyond the theory, or not found."""
+        return (*_cautions(self), *self.doubts)
+
+
+@dataclass(frozen=True, eq=False)
+class Beyond:
+    """The path from where a stage gives way, and what is told of it."""
+
+    path: Path
+    stroke: Stroke
+
+
+@check_arguments
+def stroke(
+    path: Path, rest: State | None = None, *, kinematics: Kinematics | None = None, told: Callable[[int], None] | None = None
+) -> Stroke:
+    """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
+
+    Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
+    `rest`, if it is given. With the stage's ideal `kinematics` the lost motion of a driven stack is told: 1 - R_a V^+ (t - t_rest) / a, of
+    the platform's displacement and rotation vector t and the stroke a, R_a and V those of the drawn position (`lost_motion`). `told` hears
+    how many points are done; without it they are done together.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.paths.path import path
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = stroke(path(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4])))
+    >>> found.along.columns[:4]
+    ('platform.x', 'force', 'stiffness', 'platform.y')
+    """
+    count = len(path.values)
+    portions = [np.arange(count)] if told is None else np.array_split(np.arange(count), max(1, -(-count // _AT_ONCE)))
+    found: list[Stroke] = []
+    for portion in portions:
+        found.append(_portion(path if told is None else path.some(portion), rest, kinematics))
+        if told is not None:
+            told(int(portion[-1]) + 1)
+    first, parts = found[0], [each.strained for each in found]
+    largest, curving, stress = (np.concatenate([getattr(each, name) for each in parts]) for name in ("largest", "curving", "stress"))
+    rows, unit = tuple(str(number + 1) for number in range(count)), first.along.unit
+    values = np.concatenate([each.along.values for each in found])
+    along = Matrix(values, rows, first.along.columns, unit if isinstance(unit, str) else unit[:1] * count)
+    strained = replace(parts[0], largest=largest, curving=curving, stress=stress)
+    return replace(first, along=along, strained=strained, doubts=tuple(left_out(path.state)))
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """States (k,) along a drive's `values`, from `rest` if it is given, and what a stroke tells of them, worked out when first asked for.
+
+    `locked` coordinates stay held where the stage is free; by its ideal `kinematics` lost motion is told.
+    """
+
+    drive: str
+    values: Array
+    state: State
+    locked: tuple[str, ...]
+    rest: State | None
+    kinematics: Kinematics | None = None
+
+    @cached_property
+    def about(self) -> LinearModel:
+        """Small motions about them."""
+        return linearise(self.state, locked=self.locked)
+
+    @cached_property
+    def strained(self) -> Strains:
+        """Strain and stress of the flexures."""
+        return strains(self.state)
+
+    @cached_property
+    def motions(self) -> Array:
+        """In how many ways each would be left, what a held drive holds counted as held; -1 where there is none."""
+        return unstable_motions(self.state)
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Natural frequencies (k, n) of the free stage [Hz]; NaN where it is not stable."""
+        with np.errstate(invalid="ignore"):
+            return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
+
+    @cached_property
+    def columns(self) -> dict[str, tuple[Callable[[], Array], str]]:
+        """What gives each column, and its unit."""
+        return dict(_columns(self))
+
+    def column(self, name: str) -> Array:
+        """A column (k,), alone."""
+        return self.columns[name][0]()
+
+
+def _portion(path: Path, rest: State | None, kinematics: Kinematics | None) -> Stroke:
+    points = Points(path.drive, path.values, path.state, path.locked, rest, kinematics)
+    points.__dict__["motions"] = path.motions
+    none = _FREQUENCIES[points.frequencies.shape[-1] :]
+    columns = tuple(name for name in points.columns if name not in none)
+    values = np.stack([points.column(name) for name in columns], axis=-1)
+    rows = tuple(str(number + 1) for number in range(len(path.values)))
+    units = (tuple(points.columns[name][1] for name in columns),) * len(rows)
+    sag = None if rest is None else Matrix(rest.twist(PLATFORM)[None], (PLATFORM,), COMPONENTS, (TWIST_UNITS,))
+    along = Matrix(values, rows, columns, units)
+    return Stroke(path.drive, along, sag, points.strained, (), points.about.provenance)
+
+
+def _columns(points: Points) -> Iterator[tuple[str, tuple[Callable[[], Array], str]]]:
+    drive, state, rest = points.drive, points.state, points.rest
+    owner, _, component = drive.rpartition(".")
+    held = component in COMPONENTS and state.held[:1] == (drive,)
+    units: dict[str, str] = dict(zip(COMPONENTS, TWIST_UNITS, strict=True))
+    known = {channel.name: channel.unit for channel in state.model.inputs}
+    begun = 0.0 if rest is None or not held else coordinate(rest, drive)
+    yield drive, (lambda: points.values - begun, units[component] if held else known.get(drive, "1"))
+    if held:
+        force = WRENCH_UNITS[COMPONENTS.index(component)]
+        yield "force", (lambda: state.reactions[..., 0], force)
+        conjugate = f"{owner}.{_FORCE_OF[component]}"
+        if conjugate in known:
+            yield "stiffness", (lambda: _stiffness(points.about, drive, conjugate), f"{force}/{units[component]}")
+    twist = state.twist(PLATFORM) - (0.0 if rest is None else rest.twist(PLATFORM))
+    yield from (
+        (f"platform.{name}", (partial(_take, twist, place), units[name]))
+        for place, name in enumerate(COMPONENTS)
+        if f"platform.{name}" != drive
+    )
+    ideal = points.kinematics
+    if ideal is not None and drive in ideal.actuators and ideal.actuated:
+        yield "lost", (lambda: _lost(ideal, drive, points.values, twist), "1")
+    yield from ((name, (partial(_frequency, points, place), "Hz")) for place, name in enumerate(_FREQUENCIES))
+    yield "stress", (lambda: np.max(points.strained.stress, axis=-1, initial=0.0), "Pa")
+    yield "strain", (lambda: np.max(points.strained.largest, axis=-1, initial=0.0), "1")
+    yield "unstable", (lambda: np.where(points.motions < 0, np.nan, points.motions), "1")
+
+
+def _take(twist: Array, place: int) -> Array:
+    return twist[..., place]
+
+
+def _lost(ideal: Kinematics, drive: str, strokes: Array, twist: Array) -> Array:
+    """The share of a stroke that the platform does not follow; NaN where there is none."""
+    sense = (ideal.mapping.values @ ideal.projection)[ideal.actuators.index(drive)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(strokes == 0.0, np.nan, 1.0 - twist @ sense / strokes)
+
+
+def _frequency(points: Points, place: int) -> Array:
+    few = place >= points.frequencies.shape[-1]
+    return np.full(len(points.values), np.nan) if few else points.frequencies[..., place]
+
+
+def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
+    """Force over displacement in its own direction, everything else free."""
+    known = np.asarray(np.isfinite(about.stiffness_matrix).all(axis=(-2, -1)))[..., None, None]
+    matrix = np.where(known, about.stiffness_matrix, np.eye(len(about.coordinates)))
+    moved = np.linalg.solve(matrix, about.input_matrix[..., about.input_index((force,))])
+    compliance = (about.output[..., about.output_index((coordinate,)), :] @ moved)[..., 0, 0]
+    return np.where(known[..., 0, 0], 1.0 / compliance, np.nan)
+
+
+def _cautions(found: Stroke) -> Iterator[Finding]:
+    yield from strain_cautions(found.strained)
+    lost = np.isnan(found.along.values[:, -2])
+    if lost.any():
+        what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {_first(found, lost)}"
+        yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.trace)")
+    loose = found.along.values[:, -1] > 0
+    if loose.any():
+        what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {_first(found, loose)}"
+        yield Finding(found.drive, what, "Ask flexstage buckle what gives way")
+
+
+def _first(found: Stroke, points: Array) -> str:
+    """Where the drive is at the first of some points."""
+    along = found.along
+    unit = along.unit if isinstance(along.unit, str) else along.unit[0][0]
+    return show(float(along.values[points, 0][0]), LENGTH if unit == "m" else quantity_of_unit(unit), digits=4)

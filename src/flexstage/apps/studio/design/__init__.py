@@ -1,0 +1,1 @@
+"""The text of a design in the studio: reading, writing, history."""

@@ -1,0 +1,108 @@
+"""The text of a design as it is edited: snapshots for undo and redo, pinned ones by name, and the file on disk it came from."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from flexstage.base.finding import refuse
+from flexstage.base.storage.store import write
+
+_MOST = 200
+"""Snapshots that are kept."""
+_USUAL = 5_000_000
+"""Bytes up to which a file is read here; what is larger, and all that cannot be read, is told by the reader of designs."""
+_MARK = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A file on disk: its `text` with plain line ends, its digest, and how it marks its beginning and ends its lines."""
+
+    path: Path
+    text: str
+    digest: str
+    mark: bytes
+    ending: str
+
+    @classmethod
+    def read(cls, path: Path) -> Stored:
+        """What is on disk now; raises `DesignError` where it cannot be read."""
+        raw, text = _read(path)
+        mark = _MARK if raw.startswith(_MARK) else b""
+        ending = "\r\n" if "\r\n" in text and text.count("\n") == text.count("\r\n") else "\n"
+        return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
+
+    def write(self, text: str, *, over: bool) -> Stored:
+        """The file with that text, written whole or not at all; refused where another program changed it, unless `over`."""
+        found = _digest(self.path.read_bytes()) if self.path.exists() else ""
+        if found != self.digest and not over:
+            what = "it was changed on disk since it was read here" if found else "it was removed since it was read here"
+            raise refuse(self.path.name, what, "Reload it (your text stays in undo), or save over it")
+        raw = self.mark + text.replace("\n", self.ending).encode() if self.ending != "\n" else self.mark + text.encode()
+        write(self.path, raw)
+        return replace(self, text=text, digest=_digest(raw))
+
+
+@dataclass(frozen=True)
+class History:
+    """The present text, those before it and those that were undone; `revision` counts all changes, `page` made the last one."""
+
+    text: str
+    past: tuple[str, ...] = ()
+    future: tuple[str, ...] = ()
+    revision: int = 1
+    page: int = 0
+    pins: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def change(self, text: str, page: int) -> History:
+        """With another text; itself where that is the same."""
+        if text == self.text:
+            return self
+        past = (*self.past, self.text)[-_MOST:]
+        return replace(self, text=text, past=past, future=(), revision=self.revision + 1, page=page)
+
+    def undo(self, page: int) -> History:
+        """With the text before."""
+        if not self.past:
+            return self
+        return replace(
+            self, text=self.past[-1], past=self.past[:-1], future=(self.text, *self.future), revision=self.revision + 1, page=page
+        )
+
+    def redo(self, page: int) -> History:
+        """With the text after."""
+        if not self.future:
+            return self
+        return replace(
+            self, text=self.future[0], past=(*self.past, self.text), future=self.future[1:], revision=self.revision + 1, page=page
+        )
+
+    def pin(self, name: str, *, keep: bool) -> History:
+        """With the present text under a name, or without that name."""
+        kept = {key: text for key, text in self.pins.items() if key != name}
+        return replace(self, pins={**kept, name: self.text} if keep else kept)
+
+    def require_known(self, revision: int, page: int) -> None:
+        """Refuse an edit of a page that has not seen what another page wrote."""
+        if revision < self.revision and page != self.page:
+            raise refuse("text", "another window changed it first", "Its text is shown now; make the change again")
+
+
+def _read(path: Path) -> tuple[bytes, str]:
+    """A file's bytes and text; raises `DesignError` where there is none."""
+    with contextlib.suppress(OSError, ValueError):
+        if path.is_file() and path.stat().st_size <= _USUAL:
+            raw = path.read_bytes()
+            return raw, raw.decode("utf-8-sig")
+    from flexstage.mechanism.store.file import read_text  # takes long to import
+
+    text = read_text(path)
+    return path.read_bytes(), text
+
+
+def _digest(raw: bytes) -> str:
+    return hashlib.sha256(raw).hexdigest()

@@ -1,0 +1,223 @@
+"""A design's text read for the studio: what it says number by number, or what is wrong with it and where."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import requirements
+from flexstage.analysis.loaded.course import path_findings
+from flexstage.analysis.workspace.stroke import stroke_limits
+from flexstage.apps.studio.design.answers import Reading
+from flexstage.apps.studio.protocol import Amount, Channel, Problem
+from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.number import first_design
+from flexstage.base.units.quantity import Bound, Quantity
+from flexstage.base.units.unit import show
+from flexstage.mechanism.addresses.address import provenance, set_text
+from flexstage.mechanism.addresses.locate import link_path, locate
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement, expand
+from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import NumberNode
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.lines import line_numbers, line_of, spot_of
+from flexstage.show.display import field_unit, preferred_unit
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
+
+_REACH = 0.5
+"""How far a slider goes either way, over the value."""
+_FROM_NOUGHT = 10.0
+"""How far it goes from nought, in the unit that is shown."""
+
+
+def design(text: str, file: str) -> Mechanism:
+    """The design that a text says; raises `DesignError` with all that is wrong with it."""
+    return _made(_Source(text, file, lambda: loads(text, where=Path(file).name, folder=Path(file).parent)))
+
+
+def follow(text: str, file: str, before: str, address: str, stated: str) -> None:
+    """Take a text for another one with a number set, as `write` has found it to be: parts that stay are those of that design."""
+    keep(text, file, lambda: set_text(design(before, file), address, stated))
+
+
+def keep(text: str, file: str, make: Callable[[], Mechanism]) -> None:
+    """Take a description for what a text says, as it has been found to be; raises what making it raises."""
+    _made(_Source(text, file, make))
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A text in its file, and how its design is made."""
+
+    text: str
+    file: str
+    make: Callable[[], Mechanism] = field(compare=False)
+
+
+@lru_cache(maxsize=8)
+def _made(source: _Source) -> Mechanism:
+    return source.make()
+
+
+def read(text: str, file: str, stored: str) -> Reading:
+    """What a text says, and what its numbers were in the `stored` one."""
+    try:
+        found = design(text, file)
+        requirements(found)
+        require(path_findings(found))
+    except DesignError as error:
+        return Reading(problems_of(error.findings, text, file))
+    lines, assembly = line_numbers(text), expand(found)
+    return Reading(
+        (),
+        found.name,
+        tuple(_amounts(found, lines, _stored_values(stored, file))),
+        tuple(_actuators(found, assembly)),
+        tuple(_channel(name, unit, None, None) for name, unit in zip(COMPONENTS, TWIST_UNITS, strict=True)),
+        tuple(_gauges(assembly)),
+        (*assembly.strokes, *assembly.thrusts, *_sixfold((GROUND,), COMPONENTS), *_sixfold((PLATFORM, *assembly.points), FORCES)),
+        (*_sixfold((PLATFORM, *assembly.points), COMPONENTS), *assembly.gauges),
+        link_lines(found, lines),
+        tuple(found.paths),
+    )
+
+
+def problems_of(findings: Iterable[Finding], text: str, file: str) -> tuple[Problem, ...]:
+    """Findings with line and column in the text."""
+    rows, lines = text.splitlines(), line_numbers(text)
+    return tuple(_problem(each, rows, lines, Path(file).name) for each in findings)
+
+
+def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int | None]:
+    """The line that draws each link."""
+    assembly = expand(mechanism)
+    found = {**assembly.links, **assembly.superelements}
+    return {name: line_of(address_of(mechanism, link), lines) for name, link in found.items()}
+
+
+def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
+    """Where a link is drawn in the description (`units.vertical.links.pivot`)."""
+    drawn = link.described if isinstance(link, PlacedLink) else link
+    return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
+
+
+def _problem(finding: Finding, rows: list[str], lines: Mapping[str, int], where: str) -> Problem:
+    spot = spot_of(finding, where)
+    line = spot.line or line_of(spot.address, lines)
+    column = spot.column or (None if line is None or line > len(rows) else _column(rows[line - 1], spot.address))
+    return Problem(spot.address or where, finding.what, finding.advice, line, column)
+
+
+def _column(row: str, address: str) -> int:
+    """Where the innermost step of an address stands in a row; else where its text begins."""
+    for step in reversed(address.replace('"', "").replace("/", ".").split(".")):
+        if step and (found := re.search(rf"(?<![\w-]){re.escape(step)}(?![\w-])", row)):
+            return found.start() + 1
+    return len(row) - len(row.lstrip()) + 1
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
+    """Every single number, by address."""
+    yield from node_of(Mechanism).numbers(mechanism)
+    for key, value in mechanism.changes.items():
+        place = locate(mechanism, key)
+        yield from place.node.numbers(value, place.address)
+
+
+@lru_cache(maxsize=2)
+def _stored_values(text: str, file: str) -> Mapping[str, float]:
+    try:
+        return {address: float(value) for address, value, _ in _numbers(design(text, file)) if np.ndim(value) == 0}
+    except DesignError:
+        return {}
+
+
+def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str, float]) -> Iterator[Amount]:
+    tags, seen = provenance(mechanism), set[str]()
+    for address, value, node in _numbers(mechanism):
+        if address in seen or np.ndim(value):
+            continue
+        seen.add(address)
+        quantity, number = node.quantity, float(np.real(value))
+        unit, factor = _shown(quantity)
+        low, high = _span(number, factor, node.bound)
+        yield Amount(
+            address,
+            _group(address),
+            number,
+            _text(number.hex(), quantity),
+            quantity.si,
+            unit,
+            factor,
+            quantity.name,
+            low,
+            high,
+            stored.get(address),
+            mechanism.formulas.get(address),
+            line_of(address, lines),
+            tags.get(address, ""),
+        )
+
+
+@lru_cache(maxsize=4096)
+def _text(bits: str, quantity: Quantity) -> str:
+    """A number as the file says it; most of a design's stay when one is changed."""
+    value = float.fromhex(bits)
+    return show(value, quantity) if quantity.si not in ("1", "mixed") else f"{value:.12g}"
+
+
+@lru_cache(maxsize=256)
+def _shown(quantity: Quantity) -> tuple[str, float]:
+    """The unit that a quantity is shown in, and what one is in SI."""
+    form = field_unit(quantity)
+    return ("", 1.0) if form.unit == "1" else (form.unit, 1.0 / form.factor)
+
+
+def _span(value: float, factor: float, bound: Bound | None) -> tuple[float, float]:
+    """Between what a slider goes, within the bound."""
+    reach = _REACH * abs(value) if value else _FROM_NOUGHT * factor
+    low, high = value - reach, value + reach
+    return (low, high) if bound is None else (max(low, bound.low), min(high, bound.high))
+
+
+def _group(address: str) -> str:
+    """The table of the file that an address stands in."""
+    if "/" in address.partition(".")[0]:
+        return "change"
+    steps = address.split(".")
+    return ".".join(steps[:2]) if len(steps) > 2 else steps[0] if len(steps) > 1 else ""
+
+
+def _channel(name: str, si: str, low: float | None, high: float | None) -> Channel:
+    form = preferred_unit(si)
+    return Channel(name, si, form.unit, 1.0 / form.factor, low, high)
+
+
+def _actuators(mechanism: Mechanism, assembly: Assembly) -> Iterator[Channel]:
+    if assembly.strokes:
+        limits = stroke_limits(mechanism)
+        for name, low, high in zip(limits.actuators, first_design(limits.low, 1), first_design(limits.high, 1), strict=True):
+            yield _channel(name, "m", _known(low), _known(high))
+    for name in assembly.thrusts:
+        yield _channel(name, assembly.actuator(name).input.si, None, None)
+
+
+def _gauges(assembly: Assembly) -> Iterator[Channel]:
+    for name, gauge in assembly.gauges.items():
+        half = _known(0.5 * float(np.ravel(np.real(gauge.gauge.range))[0]))
+        yield _channel(name, gauge.unit, None if half is None else -half, half)
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _sixfold(places: Iterable[str], components: Iterable[str]) -> Iterator[str]:
+    parts = tuple(components)
+    return (f"{place}.{component}" for place in places for component in parts)

@@ -1,0 +1,1 @@
+"""Processes, memory, threads and compiled kernels."""

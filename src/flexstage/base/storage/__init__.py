@@ -1,0 +1,1 @@
+"""Files, documents, digests and stores."""

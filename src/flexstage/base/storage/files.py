@@ -1,0 +1,436 @@
+"""Files that others wrote: only regular ones; HDF5 and MAT files in a process of their own, with limits of processor time and memory.
+
+The libraries that read these files can crash, run in circles beyond the reach of any exception, or take all memory. They run in a worker,
+which serves many files; one that dies, hangs or is interrupted is replaced. Limits are kept by the system, where it has them. Data that
+stand in other files are refused.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import math
+import os
+import signal
+import stat
+import threading
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.processes.jobs import Line, Worker, limit_memory, limit_processor
+from flexstage.base.processes.memory import gigabytes, require_memory
+
+Attribute: TypeAlias = str | float | tuple[str, ...]
+PATIENCE = 8.0
+"""Processor time that one question about a file may take [s], and `_SLOW` more for every byte of what is asked."""
+MEMORY = 1_000_000_000
+"""What the worker may take beside what is asked of it [B]."""
+_SLOW = 1e-7
+_COPIES = 3
+_TEXTS = 100_000
+_FULL = 4000
+"""Rows of sparse arrays that are read in full."""
+_NUMBERS = "fiub"
+_COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
+
+
+def require_regular(path: Path) -> None:
+    """Raise `DesignError` where there is no file, or what is there is a folder, a device, a pipe: reading such may never end.
+
+    >>> require_regular(Path("/dev/null"))
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: /dev/null: it is a device, no regular file. Name a file, or save what it gives as one.
+    """
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        raise refuse(str(path), "there is no such file", "Check the path") from None
+    except (OSError, ValueError) as error:
+        raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Name a file that can be read") from None
+    if stat.S_ISREG(mode):
+        return
+    kinds = {stat.S_ISDIR: "a folder", stat.S_ISFIFO: "a pipe", stat.S_ISSOCK: "a socket"}
+    kind = next((name for test, name in kinds.items() if test(mode)), "a device")
+    raise refuse(str(path), f"it is {kind}, no regular file", "Name a file, or save what it gives as one")
+
+
+@dataclass(frozen=True, eq=False)
+class HdfArray:
+    """An array of an HDF5 file: its path, its shape, the kind of its numbers (as numpy's, `t` for texts, `r` for references).
+
+    `size` bytes has a number, `columns` are kinds by name where it is a table; `attributes` its own;
+    `texts` what it says; `references` paths of what it refers to.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    kind: str
+    size: int
+    columns: Mapping[str, str]
+    attributes: Mapping[str, Attribute]
+    texts: tuple[str, ...] = ()
+    references: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Hdf:
+    """What an HDF5 file holds: attributes of groups by their paths ("" is the file), arrays by theirs, in the order of the file."""
+
+    path: Path
+    groups: Mapping[str, Mapping[str, Attribute]]
+    arrays: Mapping[str, HdfArray]
+
+    @property
+    def attributes(self) -> Mapping[str, Attribute]:
+        """The attributes of the file."""
+        return self.groups[""]
+
+    def read(self, name: str, spans: Sequence[tuple[int, int]] = (), column: str = "") -> Array:
+        """An array or one column of a table, or what spans (start, stop) of its first axes hold; pairs of numbers as complex ones."""
+        array = self.arrays[name]
+        lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
+        needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
+        require_memory(f"{self.path}: {name}", "its numbers", _COPIES * needed, _advise_less)
+        return _ask(_Question("array", self.path, name, tuple(spans), column), needed)
+
+    def texts(self, name: str, column: str = "") -> tuple[str, ...]:
+        """An array of texts, or one column of a table."""
+        return tuple(_ask(_Question("texts", self.path, name, column=column), self.path.stat().st_size))
+
+
+def hdf(path: Path) -> Hdf:
+    """What an HDF5 file holds; no numbers are read. Raises `DesignError` where it is none, breaks off, is damaged or needs other files.
+
+    >>> import h5py, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with h5py.File(Path(folder) / "a.h5", "w") as file:
+    ...         file["test/u"] = [1.0, 2.0]
+    ...         file["test"].attrs["fs"] = 50.0
+    ...     found = hdf(Path(folder) / "a.h5")
+    ...     dict(found.groups["test"]), found.read("test/u", [(1, 2)]).tolist()
+    ({'fs': 50.0}, [2.0])
+    """
+    require_regular(path)
+    return Hdf(path, *_ask(_Question("look", path), path.stat().st_size))
+
+
+@dataclass(frozen=True)
+class Opaque:
+    """An object of a class in a MAT file: only MATLAB knows what is in it."""
+
+    kind: str
+
+
+def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+    """Arrays, texts and objects of a MAT file of version 4 or 5, those of structures by their paths (`test.u`). Raises `DesignError`.
+
+    >>> import scipy.io, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     scipy.io.savemat(Path(folder) / "a.mat", {"test": {"fs": 50.0}, "units": ["V"]})
+    ...     mat(Path(folder) / "a.mat")
+    [('test.fs', array([[50.]])), ('units', ('V',))]
+    """
+    require_regular(path)
+    size = path.stat().st_size
+    require_memory(str(path), "its numbers", _COPIES * size, _advise_less)
+    return _ask(_Question("mat", path), size)
+
+
+def _advise_less(there: float) -> str:
+    return f"Read less of it, export it in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
+
+
+@contextlib.contextmanager
+def new_hdf(place: Path, size: int) -> Generator[Any]:
+    """An HDF5 file to fill, at most `size` bytes, whose room is taken first: on a full disk the library takes its process down.
+
+    Raises `OSError` where there is no room, or where it cannot be written.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with new_hdf(Path(folder) / "a.h5", 1_000_000) as file:
+    ...         file["x"] = [1.0, 2.0]
+    ...     hdf(Path(folder) / "a.h5").read("x").tolist(), (Path(folder) / "a.h5").stat().st_size < 5000
+    ([1.0, 2.0], True)
+    """
+    import h5py
+
+    with h5py.File("empty", "w", driver="core", backing_store=False, libver="v110") as file:
+        file.flush()
+        image = file.id.get_file_image()
+    with place.open("xb") as stream:
+        stream.write(image)
+        stream.flush()
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(stream.fileno(), 0, max(size, len(image)))
+    file = h5py.File(place, "r+", libver="v110", locking=False)
+    try:
+        yield file
+    finally:
+        try:
+            file.close()  # room that is not used is given back
+        except RuntimeError as error:  # of what was left to write
+            raise OSError(str(error)) from None
+
+
+@dataclass(frozen=True)
+class _Question:
+    """What is asked about a file: for one of the tasks below, spans (start, stop) of an array, a column of a table."""
+
+    task: str
+    path: Path
+    name: str = ""
+    spans: tuple[tuple[int, int], ...] = ()
+    column: str = ""
+
+
+class Child:
+    """The worker of this process that answers questions about files; started by the first one, and anew after one that ended it."""
+
+    def __init__(self) -> None:
+        self._worker: Worker | None = None
+        self._owner = 0
+        self._lock = threading.Lock()
+
+    def ask(self, question: _Question, seconds: float, memory: float) -> Any:
+        """The answer; raises as `Worker.call` does, and the next question finds a new worker then."""
+        with self._lock:
+            known = self._worker
+            if known is None or self._owner != os.getpid() or known.process.poll() is not None:
+                known = self._worker = Worker(_answer)
+                self._owner = os.getpid()
+            return known.call(question, seconds, memory)
+
+    def code(self) -> int:
+        """How the last worker ended."""
+        return self._worker.process.returncode if self._worker is not None else 0
+
+    def end(self) -> None:
+        """End the worker."""
+        if self._worker is not None and self._owner == os.getpid():
+            self._worker.end()
+
+
+CHILD = Child()
+"""The one child of this process: starting it takes half a second, and so does its libraries' loading."""
+atexit.register(CHILD.end)
+
+
+def _ask(question: _Question, size: int) -> Any:
+    """What the worker says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
+    path, seconds = str(question.path), PATIENCE + _SLOW * size
+    try:
+        answer = CHILD.ask(replace(question, path=question.path.absolute()), seconds, MEMORY + _COPIES * size)
+    except EOFError:
+        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
+    if isinstance(answer, _WrongError):
+        where, what, advice = answer.args
+        raise refuse(f"{path}: {where}" if where else path, what, advice)
+    return answer
+
+
+def _how_it_ended(code: int, seconds: float) -> str:
+    """How reading a file ended that gave no answer."""
+    if -code == getattr(signal, "SIGXCPU", None):
+        return f"reading it took more than {seconds:.3g} s of the processor"
+    return "the library that reads it crashed" + (f" (signal {-code})" if code < 0 else "")
+
+
+# --- the worker itself ---
+
+
+class _WrongError(Exception):
+    """What is wrong: where in the file, what, and what to do."""
+
+
+def _answer(_line: Line, question: _Question, seconds: float, memory: float) -> Any:
+    """The answer to a question, or what is wrong: damaged files make the libraries stumble in ways of all kinds."""
+    limit_processor(seconds)
+    limit_memory(memory)
+    try:
+        return _TASKS[question.task](question)
+    except MemoryError:
+        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
+    except Exception as error:  # noqa: BLE001
+        return _answer_to_error(question, error)
+
+
+def _error_text(error: Exception) -> str:
+    return " ".join(str(getattr(error, "strerror", None) or error or type(error).__name__).split())[:300]
+
+
+def _answer_to_error(question: _Question, error: Exception) -> _WrongError:
+    if isinstance(error, _WrongError):
+        return error
+    said = _error_text(error)
+    if question.task == "mat":
+        size = question.path.stat().st_size
+        advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
+        return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
+    if "truncated file" in said:
+        numbers = said.partition("truncated file: ")[2].rstrip(")") or said
+        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew")
+    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew")
+
+
+_ELSEWHERE = "its data stand in another file", "Only the file that is named is read: copy all data into it"
+
+
+@contextlib.contextmanager
+def _open(question: _Question) -> Generator[Any]:
+    import h5py
+
+    with h5py.File(question.path, "r", locking=False) as file:
+        yield file
+
+
+def _look(question: _Question) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
+    """All groups and arrays of a file, each once."""
+    with _open(question) as file:
+        groups: dict[str, dict[str, Attribute]] = {}
+        found: dict[str, HdfArray] = {}
+        waiting, seen = [("", file)], set[Any]()
+        while waiting:
+            name, thing = waiting.pop()
+            if thing.id in seen:
+                continue
+            seen.add(thing.id)
+            if hasattr(thing, "external"):  # committed types have a dtype and no data
+                if thing.shape is not None and (array := _array(file, name, thing)).kind:
+                    found[name] = array
+            elif hasattr(thing, "keys"):
+                groups[name] = _attributes(thing)
+                waiting += reversed([(f"{name}/{key}".lstrip("/"), each) for key, each in _members(name, thing)])
+        return groups, found
+
+
+def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
+    import h5py
+
+    for key in group:
+        if isinstance(key, bytes):
+            raise ValueError("a name in it is no text")
+        link = group.get(key, getlink=True)
+        if isinstance(link, h5py.ExternalLink):
+            raise _WrongError(f"{name}/{key}".lstrip("/"), *_ELSEWHERE)
+        if isinstance(link, h5py.HardLink):
+            yield key, group[key]
+
+
+def _array(file: Any, name: str, data: Any) -> HdfArray:
+    """An array: everything but its numbers. Raises where they stand in other files."""
+    if data.external or data.is_virtual:
+        raise _WrongError(name, *_ELSEWHERE)
+    kind, columns = _kind(data)
+    short = math.prod(data.shape) <= _TEXTS
+    texts = tuple(_texts(data[()])) if kind == "t" and short else ()
+    references = tuple((file[each].name or "").lstrip("/") for each in np.ravel(data[()].T) if each) if kind == "r" and short else ()
+    return HdfArray(name, data.shape, kind, data.dtype.itemsize, columns, _attributes(data), texts, references)
+
+
+def _kind(data: Any) -> tuple[str, dict[str, str]]:
+    """The kind of an array, "" for what is of none; kinds of the columns of a table."""
+    import h5py
+
+    kind = data.dtype
+    if kind.names and tuple(kind.names) in _COMPLEX_FIELDS:
+        return "c", {}
+    if kind.names:
+        return "V", {name: _text_kind(kind[name].kind) for name in kind.names if kind[name].shape == ()}
+    if h5py.check_ref_dtype(kind) is h5py.Reference:
+        return "r", {}
+    return _text_kind(kind.kind), {}
+
+
+def _text_kind(kind: str) -> str:
+    return "t" if kind in "OSU" else kind if kind in _NUMBERS + "c" else ""
+
+
+def _attributes(thing: Any) -> dict[str, Attribute]:
+    plain = {str(name): _plain(thing.attrs[name]) for name in thing.attrs}
+    return {name: value for name, value in plain.items() if value is not None}
+
+
+def _plain(value: Any) -> Attribute | None:
+    """A text, a number, several texts; None for others."""
+    if isinstance(value, (bytes, str)):
+        return _text(value)
+    array = np.asarray(value)
+    if array.dtype.kind in "OSU":
+        listed = _texts(array)
+        return tuple(listed) if array.ndim else listed[0]
+    return float(array.ravel()[0]) if array.dtype.kind in _NUMBERS and array.size == 1 else None
+
+
+def _texts(values: Any) -> list[str]:
+    return [_text(each) for each in np.asarray(values).ravel().tolist()]
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def _one_array(question: _Question) -> Array:
+    with _open(question) as file:
+        values = file[question.name][tuple(slice(*span) for span in question.spans)]
+    values = np.asarray(values[question.column] if question.column else values)
+    names = values.dtype.names
+    if names in _COMPLEX_FIELDS:
+        whole = np.empty(values.shape, dtype=complex)
+        np.real(whole)[...], np.imag(whole)[...] = values[names[0]], values[names[1]]  # to the bit: a sum would lose the sign of zeros
+        values = whole
+    return _numbers(values)
+
+
+def _numbers(values: Array) -> Array:
+    if values.dtype.kind not in _NUMBERS + "c":
+        raise ValueError(f"numbers of kind {values.dtype}")
+    return values
+
+
+def _some_texts(question: _Question) -> list[str]:
+    with _open(question) as file:
+        values = file[question.name][()]
+    return _texts(values[question.column] if question.column else values)
+
+
+def _mat(question: _Question) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+    content = scipy.io.loadmat(question.path, appendmat=False)
+    flat = [each for name, value in content.items() if not name.startswith("__") for each in _flatten(name, value)]
+    return [(name, value if isinstance(value, (tuple, Opaque)) else _numbers(value)) for name, value in flat]
+
+
+def _opaque(name: str, value: Any) -> tuple[str, Opaque]:
+    """An object by its name, which stands within it where it is a variable of its own, and its class."""
+    inner, _, kind = (bytes(value.ravel()[0][key]).decode("latin-1") if key in value.dtype.names else "" for key in ("s0", "s1", "s2"))
+    return inner if name == "None" and inner else name, Opaque(kind)
+
+
+def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Arrays, texts, lists of texts and objects, by their paths in structures; sparse arrays in full; nothing of what else there is."""
+    sparse = scipy.sparse.issparse(value) and max(value.shape) <= _FULL
+    array = value.toarray() if sparse else np.asarray(value)
+    if isinstance(value, scipy.io.matlab.MatlabOpaque):
+        yield _opaque(name, value)
+    elif array.dtype.kind == "U":
+        yield name, tuple(text.rstrip() for text in array.ravel().tolist()) or ("",)
+    elif array.dtype.names and array.size == 1:
+        for key in array.dtype.names:
+            yield from _flatten(f"{name}.{key}", array.ravel()[0][key])
+    elif array.dtype.kind == "O":
+        yield from (_opaque(name, each) for each in array.ravel()[:1] if isinstance(each, scipy.io.matlab.MatlabOpaque))
+        members = [np.asarray(each) for each in array.ravel()]
+        if members and all(each.dtype.kind == "U" for each in members):
+            yield name, tuple(str(each.ravel()[0]).rstrip() if each.size else "" for each in members)
+    elif array.dtype.kind in "fiubc":
+        yield name, array
+
+
+_TASKS = {"look": _look, "array": _one_array, "texts": _some_texts, "mat": _mat}

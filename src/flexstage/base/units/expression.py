@@ -1,0 +1,359 @@
+"""Expressions of numbers with units and of named numbers: + - * / ( ), sqrt, sin, cos, tan, and nothing else.
+
+A unit belongs to the number before it, as far as what follows are names of units: `10 um/V` is one number, `10 um/arm` a quotient.
+Values are floats, complex numbers or arrays; dimensions go along with them, the angle being one of its own.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+import numpy as np
+
+from flexstage.base.finding import suggest_nearest
+from flexstage.base.number import freeze
+from flexstage.base.units.dimension import Dimension, common_spelling, dimension_of
+from flexstage.base.units.unit import ANGLE_POWERS, number_with_unit, quantity_of_dimension
+
+FUNCTIONS: Mapping[str, Callable[[Any], Any]] = {"sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "tan": np.tan}
+LONGEST = 300
+DEEPEST = 20
+_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?")
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_UNIT_NAME = re.compile(r"(?:g0|[A-Za-zµμ°%_]+)(?:\^-?[0-9](?:\.[0-9])?)?(?![\w^])")
+_BETWEEN = re.compile(r"\s*[*/]?\s*")
+_PLAIN = re.compile(r"[+-]?(?:\d+[\d.,]*|\.\d+)(?:[eE][+-]?\d+)?\s*(?:/?[^\W\d_%°(](?:[^+\-]|\^-)*|[%°(](?:[^+\-]|\^-)*|1\s*/.*)?")
+_ZERO = Fraction(0)
+
+
+class ExpressionError(ValueError):
+    """What is wrong with an expression, and what to do."""
+
+    def __init__(self, what: str, advice: str) -> None:
+        self.what, self.advice = what, advice
+        super().__init__(f"{what}. {advice}.")
+
+
+@dataclass(frozen=True, eq=False)
+class Amount:
+    """A value in coherent SI units and its dimension (of size 1)."""
+
+    value: Any
+    dimension: Dimension
+
+    def noun(self) -> str:
+        """What it is: a length, a ratio, a quantity in m^2.
+
+        >>> evaluate(parse_expression("2 mm * 3 mm"), {}).noun()
+        'a quantity in m^2'
+        """
+        return quantity_of_dimension(self.dimension).noun
+
+
+Scope = Mapping[str, Amount | None]
+"""Amounts by name; `None` for one whose own text is wrong, which has been told."""
+
+
+class UnknownAmountError(Exception):
+    """An amount that an expression refers to is not known, and somebody else says why."""
+
+
+class Expression:
+    """An arithmetic expression."""
+
+    names: frozenset[str] = frozenset()
+    """The named numbers that it refers to."""
+
+    def amount(self, scope: Scope) -> Amount:
+        """Its amount; raises `ExpressionError` for unlike dimensions, names there are none of, and values that no number holds."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class Literal(Expression):
+    """A number with its unit."""
+
+    known: Amount
+
+    def amount(self, scope: Scope) -> Amount:  # noqa: ARG002 (a number refers to nothing)
+        """The number itself."""
+        return self.known
+
+
+@dataclass(frozen=True, eq=False)
+class Name(Expression):
+    """A named number."""
+
+    name: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", frozenset([self.name]))
+
+    def amount(self, scope: Scope) -> Amount:
+        """The number of that name."""
+        if self.name not in scope:
+            raise ExpressionError(f'there is no number "{self.name}"', _name_advice(self.name, scope))
+        found = scope[self.name]
+        if found is None:
+            raise UnknownAmountError(self.name)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Negative(Expression):
+    inner: Expression
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", self.inner.names)
+
+    def amount(self, scope: Scope) -> Amount:
+        inner = self.inner.amount(scope)
+        return Amount(-inner.value, inner.dimension)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair(Expression):
+    sign: str
+    left: Expression
+    right: Expression
+    text: str
+
+    _VALUES: ClassVar[Mapping[str, Callable[[Any, Any], Any]]] = {
+        "+": lambda left, right: left + right,
+        "-": lambda left, right: left - right,
+        "*": lambda left, right: left * right,
+        "/": lambda left, right: left / right,
+    }
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", self.left.names | self.right.names)
+
+    def amount(self, scope: Scope) -> Amount:
+        left, right = self.left.amount(scope), self.right.amount(scope)
+        if self.sign == "/" and np.any(np.equal(right.value, 0.0)):
+            raise ExpressionError(f'"{self.text}" divides by nothing: what stands below is 0', "Check the number that is 0")
+        value = self._VALUES[self.sign](left.value, right.value)
+        if self.sign in "*/":
+            return Amount(value, left.dimension.times(right.dimension, Fraction(1 if self.sign == "*" else -1)))
+        if left.dimension.powers != right.dimension.powers:
+            word = "adds" if self.sign == "+" else "takes"
+            joint = "and" if self.sign == "+" else "less"
+            what = f'"{self.text}" {word} unlike quantities: {left.noun()} {joint} {right.noun()}'
+            raise ExpressionError(what, "Give both the same unit")
+        return Amount(value, left.dimension)
+
+
+@dataclass(frozen=True, eq=False)
+class _Call(Expression):
+    function: str
+    inner: Expression
+    text: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", self.inner.names)
+
+    def amount(self, scope: Scope) -> Amount:
+        inner = self.inner.amount(scope)
+        if self.function == "sqrt":
+            if np.any(np.real(inner.value) < 0.0):
+                raise ExpressionError(f'"{self.text}" is the root of a number below 0', "Check its sign")
+            return Amount(freeze(np.sqrt(inner.value)), _ONE.times(inner.dimension, Fraction(1, 2)))
+        if inner.dimension.powers != ANGLE_POWERS:
+            what = f'"{self.text}" needs an angle and has {inner.noun()}'
+            raise ExpressionError(what, "Write the angle with its unit, for example sin(30 deg)")
+        return Amount(freeze(FUNCTIONS[self.function](inner.value)), _ONE)
+
+
+_ONE = Dimension(Fraction(1))
+
+
+@functools.lru_cache(maxsize=1024)
+def parse_expression(text: str) -> Expression:
+    """Return the expression that a text states; raises `ExpressionError`.
+
+    >>> sorted(parse_expression("2*arm + sqrt(half*arm) - 1 mm").names)
+    ['arm', 'half']
+    """
+    if len(text) > LONGEST:
+        raise ExpressionError(
+            f"the expression has {len(text)} characters, at most {LONGEST} are read", "Give parts of it names of their own"
+        )
+    return _Parser(common_spelling(text)).whole()
+
+
+def evaluate(expression: Expression, scope: Scope) -> Amount:
+    """Return the amount of an expression; raises `ExpressionError`, also for a value that is not finite.
+
+    >>> arm = Amount(0.026, dimension_of("m"))
+    >>> round(evaluate(parse_expression("arm/2 + 1 mm"), {"arm": arm}).value, 12)
+    0.014
+    """
+    with np.errstate(all="ignore"):
+        found = expression.amount(scope)
+    if not np.all(np.isfinite(found.value)):
+        raise ExpressionError("its value is not finite", "Check the numbers it is made of")
+    return found
+
+
+def is_plain(text: str) -> bool:
+    """Whether a text has the form of one number, perhaps with a unit, right or wrong.
+
+    >>> is_plain("25,4 mm"), is_plain("3 m^-2"), is_plain("2*arm"), is_plain("arm"), is_plain("1 mm + 2 mm")
+    (True, True, False, False, False)
+    """
+    return _PLAIN.fullmatch(text.strip()) is not None
+
+
+class _Parser:
+    """Reads a text from left to right: sums of products of signed atoms."""
+
+    def __init__(self, text: str) -> None:
+        self.text, self.at, self.depth = text, 0, 0
+
+    def whole(self) -> Expression:
+        found = self.sum()
+        if self.at < len(self.text):
+            raise self.unexpected()
+        return found
+
+    def sum(self) -> Expression:
+        return self.chain("+-", self.product)
+
+    def product(self) -> Expression:
+        return self.chain("*/", self.signed)
+
+    def chain(self, signs: str, inner: Callable[[], Expression]) -> Expression:
+        start = self.at
+        left = inner()
+        while sign := self.sign(signs):
+            right = inner()
+            left = _Pair(sign, left, right, self.text[start : self.at].strip())
+        return left
+
+    def signed(self) -> Expression:
+        return _Negative(self.deeper(self.signed)) if self.sign("-") else self.atom()
+
+    def atom(self) -> Expression:
+        start = self.at
+        if number := self.match(_NUMBER):
+            end = unit_end(self.text, self.at)
+            unit, self.at = self.text[self.at : end].strip(), end
+            return Literal(_amount(number, unit))
+        if self.sign("("):
+            return self.inside()
+        name = self.match(_NAME)
+        if name is None:
+            raise self.unexpected()
+        if self.sign("("):
+            if name not in FUNCTIONS:
+                raise ExpressionError(f'there is no function "{name}"', f"There are {', '.join(FUNCTIONS)}")
+            return _Call(name, self.inside(), self.text[start : self.at].strip())
+        return Name(name)
+
+    def inside(self) -> Expression:
+        found = self.deeper(self.sum)
+        if not self.sign(")"):
+            raise self.unexpected()
+        return found
+
+    def deeper(self, inner: Callable[[], Expression]) -> Expression:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise ExpressionError(f"it nests deeper than {DEEPEST} levels", "Give parts of it names of their own")
+        found = inner()
+        self.depth -= 1
+        return found
+
+    def sign(self, signs: str) -> str:
+        """The sign that stands next, if it is one of these."""
+        return self.match(re.compile(rf"[{re.escape(signs)}]")) or ""
+
+    def match(self, pattern: re.Pattern[str]) -> str | None:
+        """What stands next, past blanks, if it fits."""
+        blank = len(self.text) - len(self.text[self.at :].lstrip())
+        found = pattern.match(self.text, blank)
+        if found is None:
+            return None
+        self.at = found.end()
+        return found[0]
+
+    def unexpected(self) -> ExpressionError:
+        """What cannot stand where it stands."""
+        before, rest = self.text[: self.at].strip(), self.text[self.at :].strip()
+        if not rest:
+            return ExpressionError(f'"{self.text.strip()}" ends too early', "Complete it")
+        name = _NAME.match(rest)
+        after = f'after "{before}"' if before else "at its beginning"
+        if name and before:
+            advice = f"A named number is multiplied with *: {before[-20:]}*{name[0]}"
+            return ExpressionError(f'"{name[0]}" {after} is no known unit, and no sign stands between', advice)
+        if rest[0] == "^":
+            return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
+        if rest[0] == ",":
+            return ExpressionError(f'found "," {after}', "The decimal sign is a point")
+        return ExpressionError(f'found "{rest[0]}" {after}', "There are + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
+
+
+def unit_end(text: str, at: int) -> int:
+    """Where the unit ends that begins at a place in a text: the place itself where there is none.
+
+    >>> unit_end("10 um/arm", 2), unit_end("10 um/V", 2)
+    (5, 7)
+    """
+    start = re.compile(r"\s*(?:1\s*/|/)?\s*").match(text, at)
+    end = _unit(text, start.end() if start else at)
+    return at if end is None else end
+
+
+def _unit(text: str, at: int) -> int | None:
+    """Where a product or quotient of names of units ends; nothing where none begins."""
+    end = _factor(text, at)
+    while end is not None:
+        between = _BETWEEN.match(text, end)
+        further = _factor(text, between.end() if between else end)
+        if further is None:
+            return end
+        end = further
+    return None
+
+
+def _factor(text: str, at: int) -> int | None:
+    if text[at : at + 1] == "(":
+        end = _unit(text, at + 1)
+        closing = re.compile(r"\s*\)").match(text, end) if end is not None else None
+        return closing.end() if closing else None
+    name = _UNIT_NAME.match(text, at)
+    return name.end() if name and is_unit(name[0]) and text[name.end() : name.end() + 1] != "(" else None
+
+
+def is_unit(name: str) -> bool:
+    """Whether a name, perhaps with a power, is that of a unit.
+
+    >>> is_unit("mm"), is_unit("arm")
+    (True, False)
+    """
+    try:
+        dimension_of(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _amount(number: str, unit: str) -> Amount:
+    value, dimension = number_with_unit(number, unit)
+    if not np.isfinite(value) or (value == 0.0 and Fraction(number) != _ZERO):
+        raise ExpressionError(f'no double-precision number holds "{number} {unit}"', "Check the exponent and the unit")
+    return Amount(value, dimension)
+
+
+def _name_advice(name: str, scope: Scope) -> str:
+    if is_unit(name):
+        return f"{name} is a unit, and stands after a number: 1 {name}"
+    if name in FUNCTIONS:
+        return f"{name} is a function: {name}(...)"
+    return suggest_nearest(name, scope) if scope else f'State it: [numbers] {name} = "26 mm"'

@@ -1,0 +1,1 @@
+"""Models of hysteresis and their inverse."""

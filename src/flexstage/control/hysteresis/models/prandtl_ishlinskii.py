@@ -1,0 +1,118 @@
+"""The generalised Prandtl-Ishlinskii model: plays side by side between two envelopes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array, freeze
+from flexstage.control.hysteresis.models.envelope import IDENTITY, Envelope, straight
+from flexstage.control.hysteresis.models.protocol import Hysteresis
+
+
+@dataclass(frozen=True, eq=False)
+class PrandtlIshlinskii(Hysteresis):
+    """y = b( sum_i p_i F_{r_i}[a(x)] ): plays F of thresholds r_i weighted by p_i, envelopes a before and b after them.
+
+    One sample, for each axis, in this order (what code made elsewhere must repeat):
+
+        u   = a(x)
+        z_i = max(u - r_i, min(u + r_i, z_i))     for every i, z_i the state
+        y   = b(sum_i p_i z_i)
+
+    (Kuhnen, Eur. J. Control 9, 2003, 407-418, with the envelopes of Al Janaideh, Rakheja and Su, IEEE/ASME Trans. Mechatronics 16,
+    2011, 734-744.) `thresholds` (axes, n) ascend from r_0 = 0, which is the part without memory; `weights` (axes, n). Of a stack:
+    x volts, `before` volts to volts, thresholds in V, weights in m/V, `after` m to m with the offset of the gauge, y metres of free
+    stroke. Its inverse is of the same form with volts and metres exchanged (`inverse`). At rest all z_i = 0. Where all weights are
+    positive and `before` ascends, each loop is run through with the stroke behind the volts, at an energy of 0 or more.
+
+    One axis may be given as (n,). Raises `DesignError` for thresholds that do not ascend from 0, and shapes that differ.
+
+    >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
+    >>> (1e6 * model.run(np.array([0.0, 500.0, 400.0, 0.0]))).round(9).tolist()
+    [0.0, 70.0, 60.0, 5.0]
+    """
+
+    thresholds: Array
+    weights: Array
+    before: Envelope = IDENTITY
+    after: Envelope = IDENTITY
+
+    def __post_init__(self) -> None:
+        """Make the arrays (axes, n) and read-only, and check them."""
+        for name in ("thresholds", "weights"):
+            object.__setattr__(self, name, freeze(np.atleast_2d(np.asarray(getattr(self, name), dtype=float))))
+        require(_findings(self))
+
+    @property
+    def axes(self) -> int:
+        """Number of actuators."""
+        return len(self.thresholds)
+
+    def start(self, value: Array) -> Array:
+        """Outputs of the plays (axes, n) after a monotone travel from rest, all at 0, to the input (axes,)."""
+        effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
+        return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
+
+    def stepper(self, state: Array) -> PlayStepper:
+        """A kernel for simulations that starts from `state`: about ten calls of numpy a sample, whatever the number of axes."""
+        return PlayStepper(self, state)
+
+
+class PlayStepper:
+    """A Prandtl-Ishlinskii model that runs: holds its plays and buffers."""
+
+    __slots__ = ("_after", "_before", "_bound", "_effective", "_plays", "_sum", "_thresholds", "_weights")
+
+    def __init__(self, model: PrandtlIshlinskii, state: Array) -> None:
+        self._before, self._after = (each.function((model.axes,)) for each in (model.before, model.after))
+        self._thresholds, self._weights = model.thresholds, model.weights
+        self._plays = np.array(np.broadcast_to(state, model.thresholds.shape), dtype=float)
+        self._bound = np.empty_like(self._plays)
+        self._effective, self._sum = np.empty(model.axes), np.empty(model.axes)
+
+    @property
+    def state(self) -> Array:
+        """Outputs of the plays (axes, n) now, a copy."""
+        return self._plays.copy()
+
+    def __call__(self, value: Array, out: Array) -> Array:
+        """Take the input (axes,) of the next sample, write the output into `out` (axes,) and return it."""
+        plays, bound = self._plays, self._bound
+        effective = self._before(value, self._effective)[:, None]
+        np.add(effective, self._thresholds, out=bound)
+        np.minimum(bound, plays, out=plays)
+        np.subtract(effective, self._thresholds, out=bound)
+        np.maximum(bound, plays, out=plays)
+        return self._after(np.vecdot(self._weights, plays, out=self._sum), out)
+
+
+def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
+    thresholds, weights = model.thresholds, model.weights
+    if thresholds.shape != weights.shape or thresholds.ndim != 2 or not thresholds.size:
+        yield Finding("hysteresis", f"thresholds are {thresholds.shape}, weights {weights.shape}", "Give as many of both, at least one")
+        return
+    if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
+        yield Finding("hysteresis", "a threshold or a weight is not finite", "Mend the numbers")
+    for axis in np.flatnonzero(thresholds[:, 0] != 0.0):
+        what = f"the first threshold of axis {axis} is {thresholds[axis, 0]:g}"
+        yield Finding("thresholds", what, "Let it be 0: the part without memory, of whatever weight")
+    for axis, place in np.argwhere(np.diff(thresholds) <= 0.0):
+        what = f"threshold {place + 1} of axis {axis}, {thresholds[axis, place + 1]:g}, follows {thresholds[axis, place]:g}"
+        yield Finding("thresholds", what, "Let them ascend")
+    for name, envelope in (("before", model.before), ("after", model.after)):
+        if envelope.axes not in (1, model.axes):
+            yield Finding(f"envelope {name}", f"it has {envelope.axes} axes, the plays {model.axes}", "Give one to each, or one to all")
+
+
+def proportional(gain: Sequence[float] | Array, offset: Sequence[float] | Array | float = 0.0) -> PrandtlIshlinskii:
+    """No hysteresis: y = `offset` + `gain` x for each axis, gain in m/V of a stack.
+
+    >>> (1e6 * proportional([1.5e-7, 2e-7]).run(np.array([[0.0, 0.0], [1000.0, 1000.0]]))[1]).round(9).tolist()
+    [150.0, 200.0]
+    """
+    gain = np.atleast_1d(np.asarray(gain, dtype=float))
+    return PrandtlIshlinskii(np.zeros((len(gain), 1)), gain[:, None], after=straight(np.ones(len(gain)), offset))

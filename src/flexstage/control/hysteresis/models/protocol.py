@@ -1,0 +1,91 @@
+"""What every hysteresis offers to a loop: a start, a step, a run, and a kernel that steps in place."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, Protocol
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, freeze
+
+
+class Stepper(Protocol):
+    """A hysteresis that runs: it holds its state and buffers, and each call takes it one sample on."""
+
+    @property
+    def state(self) -> Array:
+        """The state now, a copy: what `Hysteresis.step` takes."""
+        ...
+
+    def __call__(self, value: Array, out: Array) -> Array:
+        """Take the input `value` (axes,) of the next sample, write the output into `out` (axes,) and return it."""
+        ...
+
+
+class Hysteresis(Protocol):
+    """Hystereses of `axes` actuators side by side, rate independent: the output depends on the order of the inputs, not on their times.
+
+    Between two samples the input is taken to move monotonically, so that one update a sample is exact where a converter holds the
+    input. Inputs and outputs are (axes,), plants take volts and give metres of free stroke; the form of the state is the model's own.
+    """
+
+    @property
+    def axes(self) -> int:
+        """Number of actuators."""
+        ...
+
+    def start(self, value: Array) -> Array:
+        """The state after a monotone travel from the state of rest to the input `value` (axes,)."""
+        ...
+
+    def step(self, state: Array, value: Array) -> tuple[Array, Array]:
+        """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is.
+
+        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import proportional
+        >>> (1e6 * proportional([2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
+        [20.0]
+        """
+        kernel = self.stepper(state)
+        out = kernel(np.asarray(value, dtype=float), np.empty(self.axes))
+        return kernel.state, out
+
+    def run(self, values: Array, state: Array | None = None) -> Array:
+        """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest.
+
+        Raises `DesignError` for inputs of another shape and for numbers that are not finite.
+
+        >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import proportional
+        >>> (1e6 * proportional([2e-7]).run(np.array([0.0, 100.0]))).round(9).tolist()
+        [0.0, 20.0]
+        """
+        values = np.asarray(values, dtype=float)
+        if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
+            raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
+        if not np.all(np.isfinite(values)):
+            raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
+        rows = values.reshape(len(values), self.axes)
+        found = np.empty_like(rows)
+        if len(rows):
+            kernel = self.stepper(self.start(rows[0]) if state is None else state)
+            for value, out in zip(rows, found, strict=True):
+                kernel(value, out)
+        return found.reshape(values.shape)
+
+    def stepper(self, state: Array) -> Stepper:
+        """A kernel for simulations that starts from `state`."""
+        ...
+
+
+def freeze_by_axis(model: Any) -> None:
+    """Make all numbers of a dataclass (axes,) and read-only.
+
+    >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
+    >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()
+    [4e-08, 4e-08]
+    """
+    names = [each.name for each in fields(model)]
+    arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(getattr(model, name), dtype=float)) for name in names))
+    for name, value in zip(names, arrays, strict=True):
+        object.__setattr__(model, name, freeze(value))

@@ -1,0 +1,60 @@
+"""One stack's hysteresis for others of its kind: the same loop over other volts, with other strokes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.models.envelope import Envelope
+from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+from flexstage.control.hysteresis.models.shape import Range, major_loop
+
+
+@dataclass(frozen=True, eq=False)
+class Stacks:
+    """Ranges of volts `low` and `high` (n,) [V] and full `stroke` (n,) [m] of some stacks."""
+
+    low: Array
+    high: Array
+    stroke: Array
+
+
+def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
+    """A model of one axis over `volts` as one of n axes whose major loops have the same form over each stack's own range and stroke.
+
+    Volts and strokes are stretched: knots of the envelope before the plays, and values of the one after them; thresholds and weights stay.
+    The full stroke is that of the settled loop, counted from 0 at its lower end. Raises `DesignError` for a model of more axes, and for
+    ranges and strokes that are none.
+
+    >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
+    >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))
+    >>> loops = [major_loop(scale_to_stacks(model, (0.0, 1000.0), two), (low, high)) for low, high in ((0.0, 1000.0), (-100.0, 400.0))]
+    >>> [(round(float(loop.stroke[axis]) * 1e6, 6), round(float(loop.width[axis]), 6)) for axis, loop in enumerate(loops)]
+    [(150.0, 0.071429), (30.0, 0.071429)]
+    """
+    if model.axes != 1:
+        raise refuse("hysteresis", f"the model has {model.axes} axes", "Scale the model of one stack")
+    require(_findings(volts, stacks))
+    loop = major_loop(model, volts)
+    stretch = (stacks.high - stacks.low) / (volts[1] - volts[0])
+    growth = stacks.stroke / loop.stroke[0]
+    axes = len(stretch)
+    before = Envelope(
+        stacks.low[:, None] + stretch[:, None] * (model.before.knots - volts[0]), np.repeat(model.before.values, axes, axis=0)
+    )
+    after = Envelope(np.repeat(model.after.knots, axes, axis=0), growth[:, None] * (model.after.values - loop.up[0]))
+    return PrandtlIshlinskii(np.repeat(model.thresholds, axes, axis=0), np.repeat(model.weights, axes, axis=0), before, after)
+
+
+def _findings(volts: Range, stacks: Stacks) -> list[Finding]:
+    found = []
+    if not volts[0] < volts[1]:
+        found.append(Finding("volts", f"{volts[0]:g} V to {volts[1]:g} V is no range", "Give the lower voltage first"))
+    for axis, (low, high, stroke) in enumerate(zip(stacks.low, stacks.high, stacks.stroke, strict=True)):
+        if not (low < high and stroke > 0.0):
+            what = f"{low:g} V to {high:g} V and a stroke of {stroke:g} m are none of a stack"
+            found.append(Finding(f"stack {axis}", what, "Give volts that ascend and a positive stroke"))
+    return found

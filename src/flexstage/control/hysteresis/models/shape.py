@@ -1,0 +1,51 @@
+"""The major loop of a hysteresis: its branches, stroke and width."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.hysteresis.models.protocol import Hysteresis
+
+Range: TypeAlias = tuple[float, float]
+"""Lowest and highest input, V."""
+
+
+@dataclass(frozen=True, eq=False)
+class MajorLoop:
+    """The settled loop over a range: outputs (k, axes) on the way `up` and `down` at inputs `volts` (k,) that ascend.
+
+    `stroke` (axes,) is the output between the ends, `width` (axes,) the largest distance of the branches at one input, as a part of it.
+    """
+
+    volts: Array
+    up: Array
+    down: Array
+
+    @property
+    def stroke(self) -> Array:
+        """Output between the ends of the loop (axes,)."""
+        return self.up[-1] - self.up[0]
+
+    @property
+    def width(self) -> Array:
+        """Largest distance of the branches at one input (axes,), as a part of the stroke."""
+        return np.max(self.down - self.up, axis=0) / self.stroke
+
+
+def major_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 8) -> MajorLoop:
+    """The loop of a hysteresis between two inputs after `cycles` cycles, at `count` inputs a branch.
+
+    >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
+    >>> loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))
+    >>> (1e6 * loop.stroke).round(6).tolist(), loop.width.round(6).tolist()  # 5e-8 m/V times 200 V wide
+    ([140.0], [0.071429])
+    """
+    up = np.linspace(*volts, count)
+    once = np.concatenate([up, up[-2::-1]])
+    inputs = np.concatenate([once, *[once[1:]] * cycles])
+    found = model.run(np.tile(inputs[:, None], (1, model.axes)))[-len(once) :]
+    return MajorLoop(up, found[:count], found[: count - 2 : -1])

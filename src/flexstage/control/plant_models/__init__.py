@@ -1,0 +1,1 @@
+"""Plants of a loop: retained modes, electronics, coordinates."""

@@ -1,0 +1,57 @@
+"""A plant whose stacks creep: creep between the hold and the amplifiers' lag, as linear states."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.control.hysteresis.creep import Creep
+from flexstage.control.plant_models.electronics import ChargeDrive
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.system import System, connect, rename, select
+from flexstage.models.linear.model import Channel
+
+
+def add_creep(given: Plant, creep: Creep) -> Plant:
+    """The plant behind the creep of its stacks: free strokes `<actuator>` go through y = g_0 u + sum_i g_i s_i first (Hammerstein).
+
+    Hysteresis, which does not depend on time, stands before it, so that everything behind the hold stays linear and exactly sampled; creep
+    and amplifier lag are linear and may change places. Of stacks that are held at their charge what creeps, y - u, comes as far as charge
+    leaves it: (left + (1 - left) w_0/(s + w_0)) (y - u). Raises `DesignError` for as many axes as there are not actuators.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = add_creep(plant, Creep([1.0], [0.1, 0.05], [2.0, 0.2]))
+    >>> found.states[:2], round(float(found.system.transfer([0.0])[0, 0, 0].real / plant.system.transfer([0.0])[0, 0, 0].real), 9)
+    (('creep.B.1', 'creep.B.2'), 1.15)
+    """
+    if creep.axes != len(given.actuators):
+        raise refuse("creep", f"it has {creep.axes} axes, the stage {len(given.actuators)} actuators", "Give one to each actuator")
+    entering = given.coordinates.commands()
+    crept = {name: f"crept.{name}" for name in given.actuators}
+    first = creep.system(entering, tuple(Channel(name, "m") for name in crept.values()))
+    systems, links = [first, rename(given.system, crept)], {}
+    states = [f"creep.{name}.{number + 1}" for name in given.actuators for number in range(creep.times.shape[1])]
+    held = {name: each.charge for name, each in given.hardware.amplifiers.items() if each.charge is not None and name in crept}
+    for name, drive in held.items():
+        systems.insert(1, _relieve(name, drive))
+        links |= {f"own.{name}": {crept[name]: 1.0, name: -1.0}, crept[name]: {name: 1.0, f"left.{name}": 1.0}}
+    states += [f"relief.{name}" for name in reversed(held)]
+    whole = connect(systems, links, _inputs(given, entering), given.system.output_names)
+    note = f"{given.note}; creep by {creep.times.shape[1]} exponentials an actuator"
+    return replace(
+        given, system=select(whole, given.system.input_names, given.system.output_names), states=(*states, *given.states), note=note
+    )
+
+
+def _relieve(name: str, drive: ChargeDrive) -> System:
+    """From what a stack creeps by itself [m] to what it does so held at its charge [m]."""
+    rate, left = 2.0 * np.pi * drive.corner, drive.left
+    one, entry, exit_ = np.eye(1), (Channel(f"own.{name}", "m"),), (Channel(f"left.{name}", "m"),)
+    return System(-rate * one, one, (1.0 - left) * rate * one, left * one, entry, exit_)
+
+
+def _inputs(given: Plant, strokes: tuple[Channel, ...]) -> tuple[Channel, ...]:
+    return (*strokes, *(channel for channel in given.system.inputs if channel.name not in given.actuators))

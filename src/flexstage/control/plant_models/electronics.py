@@ -1,0 +1,344 @@
+"""Hardware of a loop: the computer's clock, amplifiers with their converters and stacks, gauges with their filters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, TypeVar
+
+import numpy as np
+
+from flexstage.analysis.workspace.stroke import stacks, stroke_limits
+from flexstage.base.arguments import UNLIMITED, CheckedFields, check_arguments
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.number import Table
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import CURRENT, FREQUENCY, TIME
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts import amplifier
+from flexstage.parts.actuator import ChargedActuator, ThrustActuator
+from flexstage.parts.gauge import Instrument
+
+
+@dataclass(frozen=True)
+class ChargeHold(CheckedFields):
+    """What an amplifier of charge does to a stack of that electromechanical `coupling` k: far above a corner it holds charge, not volts.
+
+    The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C). `left` is
+    the share of hysteresis and creep that the stroke keeps by charge.
+    """
+
+    coupling: float
+    left: float
+    corner: float | None = None
+    leakage: float | None = None
+
+
+@dataclass(frozen=True)
+class AmplifierSettings(amplifier.Amplifier):
+    """What a design file does not say of an amplifier; what is absent limits nothing.
+
+    Besides what every amplifier has, `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before
+    its lag, `bits` of the converter before it. Of voice coils it drives the current: `bandwidth`, `current` and `bits` count, its noise is
+    `current_noise` [A/Hz^(1/2)]. With `charge` it holds the charge of its stack; commands, range, slew, noise and steps are then those of
+    the volts that would give the same charge to a stack free of load.
+    """
+
+    slew: float | None = None
+    noise_density: float | None = None
+    bits: int | None = None
+    current_noise: float | None = None
+    charge: ChargeHold | None = None
+
+
+@dataclass(frozen=True)
+class GaugeSettings(CheckedFields):
+    """What replaces or adds to what a design file says of a gauge; what is absent is the gauge's own, or limits nothing.
+
+    `bandwidth` [Hz] of its first-order lag, `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before that lag, `resolution`
+    [m, rad] its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
+    """
+
+    bandwidth: Annotated[float, UNLIMITED] | None = None
+    noise_density: float | None = None
+    resolution: float | None = None
+    filter_order: int = 0
+    filter_corner: float | None = None
+
+
+@dataclass(frozen=True)
+class ChargeDrive:
+    """A stack of that `coupling` k held at its charge above a `corner` [Hz]; `left` is the share of hysteresis and creep that is left."""
+
+    coupling: float
+    corner: Annotated[float, FREQUENCY]
+    left: float
+
+    @property
+    def stiffening(self) -> Annotated[float, VIEW]:
+        """Axial stiffness at constant charge over that at constant volts, 1/(1 - k^2).
+
+        Preumont, Vibration Control of Active Structures, 2018, ch. 4: a stack with open electrodes.
+
+        >>> round(ChargeDrive(0.6, 0.1, 0.2).stiffening, 12)
+        1.5625
+        """
+        return 1.0 / (1.0 - self.coupling**2)
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """One actuator's amplifier, converter and stack, all counted as free stroke from the bias; of a force actuator in its input, A or N.
+
+    `low` to `high` [m] the stroke it can command, `slew` [m/s] how fast (the lesser of current x gain / capacitance and the amplifier's own
+    slew x gain, the gain being free stroke per volt), `bandwidth` [Hz] of the lag behind the hold, `noise_density` [m/Hz^(1/2)] of free
+    stroke before that lag (None: not stated), `step` [m] of the converter (0: none). Infinite: no limit. `charge` is what it does where it
+    holds charge, its corner known.
+    """
+
+    low: float = -np.inf
+    high: float = np.inf
+    slew: float = np.inf
+    bandwidth: float = np.inf
+    noise_density: float | None = None
+    step: float = 0.0
+    charge: ChargeDrive | None = None
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One gauge between stage and computer.
+
+    `bandwidth` [Hz] of its lag (infinite: none), `filter_order` and `filter_corner` [Hz] of the Butterworth filter behind it,
+    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before both (None: not stated), `resolution` [m, rad] of the number read
+    (0: none), `half_range` [m, rad] what it can measure both ways.
+    """
+
+    bandwidth: float = np.inf
+    noise_density: float | None = None
+    resolution: float = 0.0
+    filter_order: int = 0
+    filter_corner: float = np.inf
+    half_range: float = np.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Hardware:
+    """Everything between controller and stage, and back.
+
+    `rate` [Hz] of the samples (None: a continuous loop, for analysis only), `delay` [s] from the taking of a sample to the arrival of the
+    output computed from it, any fraction of a sample; `amplifiers` and `sensors` by the names of actuators and gauges (those left out are
+    ideal). Raises `DesignError` for numbers that cannot be.
+
+    >>> Hardware(rate=10e3).step
+    0.0001
+    """
+
+    rate: Annotated[float | None, FREQUENCY] = None
+    delay: Annotated[float, TIME] = 0.0
+    amplifiers: Annotated[Mapping[str, Amplifier], INNER] = field(default_factory=lambda: Table({}))
+    sensors: Annotated[Mapping[str, Sensor], INNER] = field(default_factory=lambda: Table({}))
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be."""
+        require(_findings(self))
+
+    @property
+    def step(self) -> float | None:
+        """Time between samples [s]; None for a continuous loop."""
+        return None if self.rate is None else 1.0 / self.rate
+
+
+@check_arguments
+def hardware(
+    mechanism: Mechanism,
+    *,
+    rate: float | None = None,
+    delay: float = 0.0,
+    amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
+    gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
+) -> Hardware:
+    """The hardware of a stage: what its stacks and gauges state, and what the settings add, one for all or each by name.
+
+    Raises `DesignError` for names that the stage does not have, and for settings that need what a stack does not state (its capacitance
+    for `resistance` and `current`, its voltage range for `noise_density`).
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> given = hardware(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
+    >>> round(given.amplifiers["B1"].bandwidth), round(given.amplifiers["B1"].step * 1e9, 3)  # 1/(2 pi 100 ohm 0.4 uF), 150 um/2^16
+    (3979, 2.289)
+    """
+    assembly = expand(mechanism)
+    piezos, placed = stacks(mechanism), {name: item for name, item in assembly.gauges.items() if not item.members}
+    thrusts = {name: part for name in assembly.thrusts if isinstance(part := assembly.actuator(name), ThrustActuator)}
+    powers = _by_name(amplifiers, (*piezos, *thrusts), AmplifierSettings(), "actuator")
+    limits = stroke_limits(mechanism)
+    require(finding for name in piezos for finding in _amplifier_findings(name, powers[name], piezos[name]))
+    require(finding for name in thrusts for finding in _thrust_findings(name, powers[name], thrusts[name]))
+    senses = _by_name(gauges, tuple(placed), GaugeSettings(), "gauge")
+    return Hardware(
+        rate,
+        delay,
+        Table(
+            {
+                name: _amplifier(powers[name], piezo, float(low), float(high))
+                for (name, piezo), low, high in zip(piezos.items(), limits.low, limits.high, strict=True)
+            }
+            | {name: _thrust_amplifier(powers[name], part) for name, part in thrusts.items()}
+        ),
+        Table({name: _sensor(senses[name], item.gauge) for name, item in placed.items()}),
+    )
+
+
+_Setting = TypeVar("_Setting", AmplifierSettings, GaugeSettings)
+
+
+def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, ...], none: _Setting, kind: str) -> dict[str, _Setting]:
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(names, none if given is None else given)
+    require(Finding(name, f"the stage has no {kind} of this name", suggest_nearest(name, names)) for name in given if name not in names)
+    return {name: given.get(name, none) for name in names}
+
+
+def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, high: float) -> Amplifier:
+    gain = _gain(piezo)
+    capacitance = np.nan if piezo.capacitance is None else float(piezo.capacitance)
+    return Amplifier(
+        low=low,
+        high=high,
+        slew=_slew(setting, gain, capacitance),
+        bandwidth=float(setting.cutoff(np.array(capacitance))),
+        noise_density=None if setting.noise_density is None else setting.noise_density * gain,
+        step=0.0 if setting.bits is None else (high - low) / 2**setting.bits,
+        charge=None if setting.charge is None else _charge_drive(setting.charge, capacitance),
+    )
+
+
+def _charge_drive(held: ChargeHold, capacitance: float) -> ChargeDrive:
+    corner = held.corner if held.leakage is None else 0.5 / (np.pi * held.leakage * capacitance)
+    return ChargeDrive(held.coupling, float(corner or 0.0), held.left)
+
+
+def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:
+    """That of a force actuator, in its input [A, N]: clipped by what cannot be passed for a moment."""
+    high = _largest_input(setting, part)
+    slew, cutoff = part.slew(high) if np.isfinite(high) else None, part.cutoff
+    return Amplifier(
+        low=-high,
+        high=high,
+        slew=np.inf if slew is None else float(slew),
+        bandwidth=min(_first_stated(setting.bandwidth, np.inf), np.inf if cutoff is None else float(cutoff)),
+        noise_density=setting.current_noise,
+        step=0.0 if setting.bits is None else 2.0 * high / 2**setting.bits,
+    )
+
+
+def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
+    ends = [limit.short for limit in part.limits if limit.clips and limit.short is not None]
+    return min((float(end) for end in (*ends, setting.current) if end is not None), default=np.inf)
+
+
+def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
+    if setting.charge is not None:
+        yield Finding(name, "its amplifier holds the charge of a stack, and this one drives a force actuator", "Leave kind out")
+    for key in ("resistance", "slew", "noise_density"):
+        if getattr(setting, key) is not None:
+            what = f"{key} is of the volts of a stack's amplifier, and this one drives a force actuator"
+            advice = "State bandwidth, current, current_noise and bits; its slew follows from the coil's voltage and inductance"
+            yield Finding(name, what, advice)
+    for key in ("current", "current_noise"):
+        if getattr(setting, key) is not None and part.input is not CURRENT:
+            yield Finding(name, f"{key} is given, and its input is {part.input.noun}", "Leave it out, or describe it as a voice coil")
+    if setting.bits is not None and not 1 <= setting.bits <= 64:
+        yield Finding(name, f"its converter has {setting.bits} bits", "Give 1 to 64")
+    elif setting.bits is not None and np.isinf(_largest_input(setting, part)):
+        yield Finding(name, "bits divide the range of its input, which has no end", 'Add for example peak_current = "5 A" to its part')
+    for key in ("bandwidth", "current"):
+        value = getattr(setting, key)
+        if value is not None and not value > 0.0:
+            yield Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
+
+
+def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
+    """Fastest change of free stroke [m/s]: by the current that charges the stack, and by the amplifier itself."""
+    by_current = np.inf if setting.current is None else setting.current * gain / capacitance
+    return min(by_current, np.inf if setting.slew is None else setting.slew * gain)
+
+
+def _gain(piezo: ChargedActuator) -> float:
+    """Free stroke per volt [m/V]; NaN where no range is stated."""
+    if piezo.voltage_low is None or piezo.voltage_high is None:
+        return np.nan
+    return float(piezo.stroke / (piezo.voltage_high - piezo.voltage_low))
+
+
+def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
+    return Sensor(
+        bandwidth=_first_stated(setting.bandwidth, gauge.bandwidth, np.inf),
+        noise_density=setting.noise_density if setting.noise_density is not None else _float_or_none(gauge.noise_density),
+        resolution=_first_stated(setting.resolution, gauge.resolution, 0.0),
+        filter_order=setting.filter_order,
+        filter_corner=np.inf if setting.filter_corner is None else setting.filter_corner,
+        half_range=0.5 * float(gauge.range),
+    )
+
+
+def _float_or_none(value: object) -> float | None:
+    return None if value is None else float(value)  # type: ignore[arg-type]
+
+
+def _first_stated(*values: object) -> float:
+    return next(float(value) for value in values if value is not None)  # type: ignore[arg-type]
+
+
+def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
+    if setting.resistance is not None and setting.bandwidth is not None:
+        what = f"bandwidth {setting.bandwidth:g} Hz and resistance {setting.resistance:g} ohm are both given"
+        yield Finding(name, what, "Give the one that limits")
+    stated = {"resistance": setting.resistance, "current": setting.current, "leakage": setting.charge and setting.charge.leakage}
+    for key, value in stated.items():
+        if value is not None and piezo.capacitance is None:
+            yield Finding(name, f"{key} needs its stack's capacitance, which is not stated", 'Add for example capacitance = "0.5 uF"')
+    if setting.current_noise is not None:
+        yield Finding(name, "current_noise is that of a voice coil's amplifier", "State the noise of a stack's amplifier in volts")
+    for key in ("current", "slew", "noise_density"):
+        if getattr(setting, key) is not None and np.isnan(_gain(piezo)):
+            what = f"{key} needs its stack's voltage range, which is not stated"
+            yield Finding(name, what, 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
+    if setting.bits is not None and not 1 <= setting.bits <= 64:
+        yield Finding(name, f"its converter has {setting.bits} bits", "Give 1 to 64")
+    for key in ("bandwidth", "resistance", "current", "slew"):
+        value = getattr(setting, key)
+        if value is not None and not value > 0.0:
+            yield Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
+
+
+def _findings(given: Hardware) -> Iterable[Finding]:
+    if given.rate is not None and not 0.0 < given.rate < np.inf:
+        yield Finding("rate", f"it is {given.rate:g} Hz", "Give a positive number, or none for a continuous loop")
+    if not 0.0 <= given.delay < np.inf:
+        yield Finding("delay", f"it is {given.delay:g} s", "Give a time of 0 or more")
+    if given.rate is None and given.delay:
+        yield Finding("delay", f"{given.delay:g} s in a continuous loop, which has no samples to delay", "Give a rate, or no delay")
+    for kind in (given.amplifiers, given.sensors):
+        for name, item in kind.items():
+            yield from _item_findings(name, item, given.rate)
+
+
+def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> Iterable[Finding]:
+    if not item.bandwidth > 0.0:
+        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Give a positive number, or leave it out")
+    if item.noise_density is not None and not 0.0 <= item.noise_density < np.inf:
+        yield Finding(name, f"its noise density is {item.noise_density:g}", "Give a number of 0 or more")
+    if isinstance(item, Amplifier):
+        if not item.low < item.high:
+            yield Finding(name, f"its stroke goes from {item.low:g} m to {item.high:g} m", "Give low below high")
+        return
+    if not 0.0 <= item.resolution < np.inf:
+        yield Finding(name, f"its resolution is {item.resolution:g}", "Give 0 or more")
+    if not 0 <= item.filter_order <= 12:
+        yield Finding(name, f"its filter has order {item.filter_order}", "Give 0 (none) to 12")
+    if item.filter_order and not 0.0 < item.filter_corner < np.inf:
+        what = f"its filter of order {item.filter_order} has no corner"
+        yield Finding(name, what, "State filter_corner, below half the sampling rate" if rate else "State filter_corner")

@@ -1,0 +1,255 @@
+"""The plant of a loop as a test found it: strokes to gauges by the modes and delay found, the rest by the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.base.units.dimension import dimension_of
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.system import System, connect, lag, rename, select, static
+from flexstage.experiment.identification.diagnosis.lateness import common_delay
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.residues import modal_sum
+from flexstage.experiment.records.record import Channel as Recorded
+from flexstage.experiment.records.unit import same_dimension, unit_problem
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.model import Channel, LinearModel
+
+_ALIKE, _APART = 0.7, 0.5
+_BESIDE = 0.05
+_LEAST = 0.5
+_BELOW = 1.2
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Which of the model's modes (numbers `model`, of those that the plant has kept) are which of those found (numbers `found`)."""
+
+    model: Array
+    found: Array
+
+
+def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
+    """The plant with what a test found in the place of the model's strokes-to-gauges: modes, static term, delay.
+
+    From strokes to gauges it is H = (sum of the modes + D) times the gauges' lags as the design states them, `delay` late; D is the real
+    constant that is left up to the highest mode. Amplifiers and filters are part of what is seen, and the hardware has none of its own;
+    the delay comes on top of the loop's. A platform's
+    motion in a loop's coordinate is what the gauges tell of it. Ground and wrenches act as in the model, whose modes take frequency and
+    damping of those found that they resemble. Modes above the band of the test are its D.
+
+    Raises `DesignError` where inputs and outputs are not the stage's actuators and gauges, and where the modes are not those of such a
+    stage.
+    """
+    require(_channel_findings(given.coordinates, found))
+    pairs = pair_modes(given, model, found)
+    require(_stage_findings(given, found, pairs))
+    rows, columns, factors = _places(given.coordinates, found)
+    lags = 2.0 * np.pi * np.array([given.hardware.sensors[name].bandwidth for name in given.gauges])
+    ahead = _before_lags(found, rows, lags)
+    late = common_delay(ahead)
+    delay = 0.0 if late is None else late.value
+    participation = ahead.participation * np.exp(ahead.poles * delay)[:, None]
+    direct = _static_term(ahead, participation, delay)[np.ix_(rows, columns)]
+    sizes = factors[0][:, None], factors[1]
+    moved = _modal_system(
+        found.poles, ahead.shapes[rows] * sizes[0], participation[:, columns] * sizes[1], direct * sizes[0] * sizes[1], given
+    )
+    driven = _lagged(moved, given, lags)
+    hardware = replace(
+        given.hardware,
+        delay=given.hardware.delay + delay,
+        amplifiers={name: replace(each, bandwidth=np.inf) for name, each in given.hardware.amplifiers.items()},
+        sensors={name: replace(each, filter_order=0) for name, each in given.hardware.sensors.items()},
+    )
+    system = _together(given, driven, _retuned(given, pairs, found))
+    copies = (len(system.A) - len(driven.A)) // max(1, len(given.states))
+    return Plant(
+        system=system,
+        states=(
+            *(f"mode{number + 1}{mark}" for number in range(len(found.poles)) for mark in ("", "'")),
+            *(f"gauge.{name}" for name, each in zip(given.gauges, lags, strict=True) if np.isfinite(each)),
+            *(f"design{number + 1}.{name}" for number in range(copies) for name in given.states),
+        ),
+        coordinates=given.coordinates,
+        hardware=hardware,
+        frequencies=found.frequencies,
+        ratios=found.damping,
+        left_out=0,
+        note=f"strokes to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
+        provenance=found.provenance,
+    )
+
+
+def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
+    """The model's modes that resemble those found: alike at the gauges (assurance 0.7 or more) and within half of the frequency.
+
+    A mode found is compared with what the model's modes within 5 % of its partner span, as pairs turn into one another.
+    """
+    kept = _kept(given)
+    rows = [channel.name for channel in model.outputs]
+    names = given.coordinates.gauges
+    shapes = np.real(model.output[[rows.index(name) for name in names]] @ eigen(model).shapes[:, kept])
+    seen = found.real_shapes[[[channel.name for channel in found.outputs].index(name) for name in names]]
+    assurance = np.array(
+        [[_assurance(seen[:, row], shapes, given.frequencies, column) for column in range(len(kept))] for row in range(seen.shape[1])]
+    ).reshape(seen.shape[1], len(kept))
+    apart = np.abs(np.log(found.frequencies[:, None] / given.frequencies))
+    solved: Any = scipy.optimize.linear_sum_assignment(1.0 - assurance + apart)
+    good = (assurance[solved] > _ALIKE) & (apart[solved] < _APART)
+    return Pairs(solved[1][good], solved[0][good])
+
+
+def _kept(given: Plant) -> list[int]:
+    """Numbers of the model's modes that the plant has kept."""
+    return [int(name.removeprefix("mode")) - 1 for name in given.states if name.startswith("mode") and not name.endswith("'")]
+
+
+def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> float:
+    near = np.abs(frequencies / frequencies[column] - 1.0) < _BESIDE
+    basis = scipy.linalg.orth(shapes[:, near])
+    return float(np.sum((basis.T @ seen) ** 2) / np.sum(seen**2))
+
+
+def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[Finding]:
+    if not len(found.frequencies):
+        yield Finding("--record", "no mode is found in it", "Record longer, or drive more: see flexstage identify")
+        return
+    below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
+    count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
+    if alike < _LEAST * max(count, 1) or not len(pairs.found):
+        ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
+        theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
+        what = f"{alike} of its {count} lowest modes ({theirs} Hz) are like the stage's ({ours} Hz): it seems to be of another stage"
+        yield Finding(
+            "--record", what, "Take the design of the stage that was tested; look for exchanged channels by flexstage identify --stage"
+        )
+
+
+def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]:
+    """Channels that are missing, and units that cannot be those of the stage's."""
+    units = {each.name: each.unit for each in (*loop.commands(), *loop.readings())}
+    for kind, wanted, there in (("input", loop.actuators, found.inputs), ("output", loop.gauges, found.outputs)):
+        names = [channel.name for channel in there]
+        for name in wanted:
+            if name not in names:
+                yield Finding(
+                    f"--record: {name}", f"no {kind} of the record is called so", f"{suggest_nearest(name, names)}; a loop needs all"
+                )
+                continue
+            unit = there[names.index(name)].unit
+            if unit_problem(unit) is not None or not same_dimension(unit, units[name]):
+                what = f'its unit is "{unit}", where the loop has {units[name]}'
+                yield Finding(
+                    f"--record: {name}", what, "Record free strokes (or the inputs of forces) and gauge readings, with their units"
+                )
+
+
+def _places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], tuple[Array, Array]]:
+    """Rows and columns of the loop's gauges and actuators in what was found, and the factors that make its numbers SI."""
+    rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
+    columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
+    return rows, columns, (_sizes(found.outputs, rows), 1.0 / _sizes(found.inputs, columns))
+
+
+def _sizes(channels: tuple[Recorded, ...], chosen: list[int]) -> Array:
+    return np.array([float(dimension_of(channels[number].unit).size) for number in chosen])
+
+
+def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
+    """What was found with the gauges' lags undone, 1 + s/omega_g, and its delay put back: residues and responses."""
+    every = np.full(len(found.outputs), np.inf)
+    every[rows] = lags
+    back = found.participation * np.exp(-found.poles * found.delay)[:, None]
+    shapes = found.shapes * (1.0 + found.poles / every[:, None])
+    lines = 2j * np.pi * found.responses.frequencies
+    values = found.responses.values * (1.0 + lines[:, None] / every)[:, :, None]
+    return replace(found, shapes=shapes, participation=back, responses=replace(found.responses, values=values), delay=0.0)
+
+
+def _lagged(moved: System, given: Plant, lags: Array) -> System:
+    """The motion as the gauges read it, late by their lags."""
+    ahead = rename(moved, {name: f"ahead.{name}" for name in moved.output_names})
+    seen = lag(ahead.outputs, lags / (2.0 * np.pi), moved.outputs)
+    return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
+
+
+def _static_term(found: Identified, participation: Array, delay: float) -> Array:
+    """The real constant (p, m) that the modes leave of the responses, by least squares up to the highest of them."""
+    lines = found.responses.frequencies
+    chosen = (lines >= found.band[0]) & (lines <= min(found.band[1], float(np.max(found.frequencies))))
+    lines = lines[chosen]
+    earlier = np.exp(2j * np.pi * lines * delay)[:, None, None]
+    left = found.responses.values[chosen] * earlier - modal_sum(lines, found.poles, found.shapes, participation)
+    away = np.min(np.abs(lines[:, None] / found.frequencies - 1.0) / found.damping, axis=1)
+    weights = np.minimum(away / 5.0, 1.0) ** 2
+    return np.real(np.tensordot(weights, left, axes=1)) / np.sum(weights)
+
+
+def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, given: Plant) -> System:
+    """sum phi l/(s - p) + conjugate + D as a real system, two states a mode: z' = p z + l u, y = 2 Re(phi z)."""
+    count = len(poles)
+    A = np.zeros((2 * count, 2 * count))
+    B, C = np.zeros((2 * count, drives.shape[1])), np.zeros((len(shapes), 2 * count))
+    for mode, pole in enumerate(poles):
+        own = slice(2 * mode, 2 * mode + 2)
+        A[own, own] = [[pole.real, -pole.imag], [pole.imag, pole.real]]
+        size = np.abs(pole)  # states of the size of the motion, not of its rate over it
+        B[own] = np.stack([np.real(drives[mode]), np.imag(drives[mode])]) / size
+        C[:, own] = 2.0 * size * np.stack([np.real(shapes[:, mode]), -np.imag(shapes[:, mode])], axis=1)
+    return System(A, B, C, direct, given.coordinates.commands(), given.coordinates.readings("measured."))
+
+
+def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
+    """The model's system with frequency and damping of its modes as found.
+
+    Stiffness to the ground goes with the squared frequency, what dampers carry with the rate: the stage still follows a slow ground.
+    """
+    A, B = given.system.A.copy(), given.system.B.copy()
+    ground = [column for column, name in enumerate(given.system.input_names) if name.startswith(f"{GROUND}.")]
+    for mode, other in zip(pairs.model, pairs.found, strict=True):
+        name = f"mode{_kept(given)[mode] + 1}"
+        place, rate = given.states.index(name), given.states.index(f"{name}'")
+        omega = 2.0 * np.pi * float(found.frequencies[other])
+        stiffer, damped = -(omega**2) / A[rate, place], -2.0 * float(found.damping[other]) * omega / A[rate, rate]
+        pushed = (B[rate, ground] - A[rate, rate] * B[place, ground]) * stiffer
+        A[rate, place], A[rate, rate] = A[rate, place] * stiffer, A[rate, rate] * damped
+        B[place, ground] *= damped
+        B[rate, ground] = pushed + A[rate, rate] * B[place, ground]
+    return replace(given.system, A=A, B=B)
+
+
+def _together(given: Plant, driven: System, rest: System) -> System:
+    """Gaps by both; the loop's coordinates by what the gauges tell of the strokes; all other motions by the model."""
+    loop, names = given.coordinates, rest.output_names
+    others = tuple(name for name in rest.input_names if name not in loop.actuators)
+    told = [f"{kind}.{name}" for kind in ("platform", "relative") for name in loop.names]
+    gaps = [f"gap.{name}" for name in loop.gauges]
+    outside = select(rest, others, names)
+    inside = [name for name in names if name not in told and name not in gaps]
+    elastic = rename(select(rest, loop.actuators, inside), {name: f"elastic.{name}" for name in (*loop.actuators, *inside)})
+    quiet = replace(outside, outputs=tuple(Channel(f"moved.{each.name}", each.unit) for each in outside.outputs))
+    sum_of = np.zeros((len(names), len(driven.outputs) + len(inside) + len(names)))
+    sum_of[:, len(driven.outputs) + len(inside) :] = np.eye(len(names))
+    for row, name in enumerate(names):
+        if name in gaps:
+            sum_of[row, gaps.index(name)] = 1.0
+        elif name in told:
+            sum_of[row, : len(gaps)] = loop.pose[loop.names.index(name.partition(".")[2])]
+        else:
+            sum_of[row, len(gaps) + inside.index(name)] = 1.0
+    entry = (*driven.outputs, *elastic.outputs, *quiet.outputs)
+    total = static(sum_of, tuple(replace(each, name=f"sum.{each.name}") for each in entry), rest.outputs)
+    wiring = {f"sum.{each.name}": {each.name: 1.0} for each in entry} | {f"elastic.{name}": {name: 1.0} for name in loop.actuators}
+    if inside:
+        return connect([driven, elastic, quiet, total], wiring, rest.inputs, names)
+    return connect([driven, quiet, total], {name: wiring[name] for name in total.input_names}, rest.inputs, names)

@@ -1,0 +1,285 @@
+"""The plant of a loop: a stage by any model between its amplifiers' inputs and its gauges' filtered readings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array, Table
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.plant_models.coordinates import Coordinates, coordinates
+from flexstage.control.plant_models.electronics import Hardware, Sensor
+from flexstage.control.systems.sampling import discretise, first_order_hold
+from flexstage.control.systems.system import System, connect, from_state_space, lag, rename, select, static
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, Damping
+from flexstage.models.linear.damping import damping_law
+from flexstage.models.linear.eigen import eigen
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import Channel, LinearModel
+from flexstage.models.linear.port import ports
+from flexstage.models.linear.state_space import state_space
+from flexstage.spatial.frame import COMPONENTS, FORCES
+
+SENSED = "sensed"
+"""Heads the names of inputs that sensors of inner loops hear as noise."""
+ADDED = "added"
+"""Heads the names of outputs that inner loops add to the strokes before the amplifiers."""
+_REPEATED = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """A stage with amplifiers and gauges, continuous: what a hold drives and a sampler sees.
+
+    `system` has as inputs the free strokes [m] or currents [A] `<actuator>` that the hold gives to the amplifiers, `ground.<c>` [m, rad]
+    and wrenches `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m, rad] (its reading behind its lag and filter, before noise and
+    rounding),
+    `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
+    `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
+    compliance is a static term; `note` says what was simplified. `heard` are the noise densities of further inputs: those of sensors of
+    inner loops.
+    """
+
+    system: Annotated[System, INNER]
+    states: Annotated[tuple[str, ...], INNER]
+    coordinates: Coordinates
+    hardware: Hardware
+    frequencies: Annotated[Array, FREQUENCY]
+    ratios: Array
+    left_out: int
+    note: str
+    provenance: str
+    heard: Annotated[Mapping[str, float], INNER] = field(default_factory=lambda: Table({}))
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of the actuators."""
+        return self.coordinates.actuators
+
+    @property
+    def gauges(self) -> tuple[str, ...]:
+        """Names of the gauges."""
+        return self.coordinates.gauges
+
+
+@check_arguments
+def plant(
+    model: LinearModel,
+    kinematics: Kinematics,
+    given: Hardware,
+    *,
+    modes: int | None = None,
+    points: tuple[str, ...] = (),
+    damping: Damping | None = None,
+    links: tuple[str, ...] = (),
+) -> Plant:
+    """The plant by a model of a stage, `kinematics` telling what its loop's coordinates are.
+
+    `modes` is how many to keep; absent, all below half the sampling rate (what samples can tell apart), and all of a continuous loop; never
+    fewer than the loop has coordinates, and never one of a pair without the other (frequencies within 0.1 %). What the others add
+    statically stays. `points` are further bodies or points whose motion is given, `links` those whose axial forces `<link>.fx` [N] are.
+    Raises `DesignError` for a batch of designs, for
+    gauges that do not tell the pose and actuators that cannot make it, for a design without damping.
+
+    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> found = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3), modes=2)
+    >>> found.system.input_names[:3], found.system.output_names[:3], found.states
+    (('B', 'ground.x', 'ground.y'), ('gap.S', 'platform.x', 'platform.y'), ('mode1', 'mode2', "mode1'", "mode2'", 'gauge.S'))
+    """
+    if model.stiffness_matrix.ndim != 2:
+        raise refuse("loop", f"the model holds a batch of {model.stiffness_matrix.shape[:-2]} designs", "Give one design")
+    loop = coordinates(kinematics, model)
+    require(_findings(model, loop, given, points))
+    law = damping_law(model, damping)
+    solved = eigen(model)
+    kept = _count(np.sqrt(solved.values) / (2.0 * np.pi), given, modes, len(loop.names))
+    twists = tuple(f"{place}.{name}" for place in dict.fromkeys((PLATFORM, *points)) for name in COMPONENTS)
+    grounds = tuple(f"{GROUND}.{name}" for name in COMPONENTS)
+    wrenches = tuple(f"{PLATFORM}.{name}" for name in FORCES)
+    forces = tuple(f"{name}.fx" for name in links)
+    space = state_space(
+        model,
+        ports(model, (*loop.gauges, *twists, *forces), (*loop.actuators, *grounds, *wrenches)),
+        law,
+        None if kept == len(solved.values) else kept,
+    )
+    stage = _with_relative(from_state_space(space), model, twists)
+    system, states = _with_hardware(stage, space.states, loop, given)
+    return Plant(
+        system=system,
+        states=states,
+        coordinates=loop,
+        hardware=given,
+        frequencies=np.sqrt(solved.values[:kept]) / (2.0 * np.pi),
+        ratios=space.ratios,
+        left_out=len(solved.values) - kept,
+        note=space.note,
+        provenance=space.provenance,
+    )
+
+
+def zero_order_hold(given: Plant) -> System:
+    """The plant between hold and sampler: exact at the samples; strokes come `delay` late, wrenches are held without delay.
+
+    The ground goes straight from sample to sample (`first_order_hold`): held, it would jump, and gauges would see the jumps.
+    A gauge is read before the output that its sample leads to arrives: without delay, and without a lag between, it still sees the last
+    one. A continuous plant is returned as it is. Inputs and outputs are those of `Plant.system`; its states come first, then the strokes
+    under way.
+
+    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=150e-6), modes=2)
+    >>> len(one.system.A), len(zero_order_hold(one).A)  # and two strokes of one actuator under way
+    (5, 7)
+    """
+    step = given.hardware.step
+    if step is None:
+        return given.system
+    actuators = given.actuators
+    ground = tuple(name for name in given.system.input_names if name.startswith(f"{GROUND}."))
+    others = tuple(name for name in given.system.input_names if name not in (*actuators, *ground))
+    outputs = given.system.output_names
+    driven = _delayed_inputs(select(given.system, actuators, outputs), step, given.hardware.delay, len(given.gauges))
+    moved, loaded = first_order_hold(select(given.system, ground, outputs), step), discretise(select(given.system, others, outputs), step)
+    late = np.zeros((len(driven.A) - len(moved.A), len(ground) + len(others)))
+    return replace(
+        driven,
+        B=np.hstack([driven.B, np.vstack([np.hstack([moved.B, loaded.B]), late])]),
+        D=np.hstack([driven.D, moved.D, loaded.D]),
+        inputs=(*driven.inputs, *moved.inputs, *loaded.inputs),
+    )
+
+
+def _delayed_inputs(stage: System, step: float, delay: float, gauges: int) -> System:
+    """Sampled between strokes and outputs; what a gauge (the first outputs) feels of a stroke at once is that of u[k-d-1]."""
+    direct = stage.D[:gauges]
+    found = discretise(replace(stage, D=np.vstack([np.zeros_like(direct), stage.D[gauges:]])), step, delay)
+    if not np.any(direct):
+        return found
+    width, states = len(found.inputs), len(found.A)
+    if states - len(stage.A) <= int(delay / step + 1e-9) * width:
+        found = _one_more_register(found, width if states > len(stage.A) else 0)
+    C = found.C.copy()
+    C[:gauges, -width:] += direct
+    return replace(found, C=C)
+
+
+def _one_more_register(system: System, last: int) -> System:
+    """Appends what the last `last` states, or with 0 the inputs, were one sample ago."""
+    width, states = len(system.inputs), len(system.A)
+    A = np.zeros((states + width, states + width))
+    A[:states, :states] = system.A
+    B = np.vstack([system.B, np.zeros((width, width))])
+    if last:
+        A[states:, states - last : states] = np.eye(width)
+    else:
+        B[states:] = np.eye(width)
+    return replace(system, A=A, B=B, C=np.hstack([system.C, np.zeros((len(system.C), width))]))
+
+
+def _count(frequencies: Array, given: Hardware, modes: int | None, least: int) -> int:
+    """How many modes are kept: those asked for, or those below half the sampling rate; whole pairs, and at least as many as coordinates."""
+    below = np.inf if given.rate is None else 0.5 * given.rate
+    count = min(max(int(np.sum(frequencies < below)) if modes is None else modes, least), len(frequencies))
+    while count < len(frequencies) and frequencies[count] < frequencies[count - 1] * (1.0 + _REPEATED):
+        count += 1
+    return count
+
+
+def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -> System:
+    """Further outputs: the twists against the ground, whose own motion carries them along."""
+    rows = [stage.output_names.index(name) for name in twists]
+    columns = [stage.input_names.index(f"{GROUND}.{name}") for name in COMPONENTS]
+    direct = stage.D[rows].copy()
+    direct[:, columns] -= model.rigid_output[model.output_index(twists)]
+    names = tuple(f"relative.{name.removeprefix(f'{PLATFORM}.')}" for name in twists)
+    further = tuple(Channel(name, stage.outputs[row].unit) for name, row in zip(names, rows, strict=True))
+    return replace(stage, C=np.vstack([stage.C, stage.C[rows]]), D=np.vstack([stage.D, direct]), outputs=(*stage.outputs, *further))
+
+
+def _with_hardware(stage: System, states: tuple[str, ...], loop: Coordinates, given: Hardware) -> tuple[System, tuple[str, ...]]:
+    """Amplifiers before the stage, lags and filters behind its gauges; the names of all states."""
+    amplifiers, lags = _amplifiers(loop, given), _lags(loop, given)
+    filters = [_filter(channel, given.sensors.get(channel.name, Sensor())) for channel in loop.readings()]
+    others = tuple(channel for channel in stage.inputs if channel.name not in loop.actuators)
+    body = rename(stage, {name: f"stroke.{name}" for name in loop.actuators})
+    motions = tuple(name for name in stage.output_names if name not in loop.gauges)
+    inputs = (*loop.commands(), *others)
+    outputs = (*(f"gap.{name}" for name in loop.gauges), *motions)
+    names = [*states, *_slow("amplifier", loop.actuators, amplifiers), *_slow("gauge", loop.gauges, lags)]
+    names += [f"filter.{name}.{number + 1}" for name, each in zip(loop.gauges, filters, strict=True) for number in range(len(each.A))]
+    return connect([body, amplifiers, lags, *filters], {}, inputs, outputs), tuple(names)
+
+
+def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
+    """Names of those lags that have a state."""
+    return [f"{kind}.{name}" for name, gain in zip(names, np.diag(lags.D), strict=True) if gain == 0.0]
+
+
+def _amplifiers(loop: Coordinates, given: Hardware) -> System:
+    bandwidths = np.array([given.amplifiers[name].bandwidth if name in given.amplifiers else np.inf for name in loop.actuators])
+    return lag(loop.commands(), bandwidths, loop.commands("stroke."))
+
+
+def _lags(loop: Coordinates, given: Hardware) -> System:
+    bandwidths = np.array([given.sensors[name].bandwidth if name in given.sensors else np.inf for name in loop.gauges])
+    return lag(loop.readings(), bandwidths, loop.readings("lagged."))
+
+
+def _filter(read: Channel, sensor: Sensor) -> System:
+    """A Butterworth low-pass of gain 1."""
+    entry, exit_ = (Channel(f"lagged.{read.name}", read.unit),), (Channel(f"gap.{read.name}", read.unit),)
+    if not sensor.filter_order:
+        return static(np.eye(1), entry, exit_)
+    order, turning = sensor.filter_order, 2.0 * np.pi * sensor.filter_corner
+    angles = np.pi * (2.0 * np.arange(order) + order + 1.0) / (2.0 * order)
+    A = np.diag(np.ones(order - 1), 1)
+    A[-1] = -np.real(np.poly(np.exp(1j * angles)))[:0:-1]
+    last, first = np.eye(order)[:, -1:], np.eye(order)[:1]
+    return System(A * turning, last * turning, first, np.zeros((1, 1)), entry, exit_)
+
+
+def sensor_filter(given: Plant) -> System:
+    """Lags and filters of the gauges alone: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
+
+    >>> from flexstage.control.plant_models.electronics import GaugeSettings, hardware
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> filtered = hardware(stage, gauges=GaugeSettings(filter_order=2, filter_corner=1000.0))
+    >>> found = sensor_filter(plant(lumped(stage), ideal(stage), filtered, modes=2))
+    >>> round(float(abs(found.transfer(np.array([1000.0]))[0, 0, 0])), 4)  # 0.7071 / (1 + (1/3)^2)^(1/2), the gauge has 3 kHz
+    0.6708
+    """
+    lags, inputs = _lags(given.coordinates, given.hardware), given.coordinates.readings()
+    filters = [_filter(channel, given.hardware.sensors.get(channel.name, Sensor())) for channel in inputs]
+    whole = connect([lags, *filters], {}, inputs, [f"gap.{name}" for name in given.gauges])
+    old = {name: f"noise.{name}" for name in given.gauges} | {f"gap.{name}": f"filtered.{name}" for name in given.gauges}
+    return rename(whole, old)
+
+
+def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> list[Finding]:
+    outputs = [channel.name for channel in model.outputs]
+    both = set(loop.actuators) & set(loop.gauges)
+    found = [Finding(name, "an actuator and a gauge have this name", "Rename one of them") for name in sorted(both)]
+    for name in points:
+        if f"{name}.x" not in outputs:
+            places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
+            found.append(Finding(name, "the model has no point of this name", suggest_nearest(name, places)))
+    for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
+        found += [Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in items if name not in known]
+    return found

@@ -1,0 +1,99 @@
+"""A plant with some of its modes; the static compliance of the others is kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.systems.system import System, select
+
+_REPEATED = 1e-3
+
+
+def reduce_modes(given: Plant, wanted: Array) -> Plant:
+    """Residualise a plant to the modes `wanted` (k,), and as many of the strongest as its loop has coordinates.
+
+    Of repeated modes all are kept or none. States left out follow at once, x = -A^-1 B u, so that every static gain stays as it is
+    (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
+
+    >>> from flexstage.control.example import integral_loop
+    >>> plant = integral_loop().plant
+    >>> found = reduce_modes(plant, resonances(plant) >= 0.5)
+    >>> len(plant.frequencies), len(found.frequencies), len(found.system.A)
+    (3, 1, 3)
+    """
+    kept = _kept_modes(given, wanted)
+    if np.all(kept):
+        return given
+    known = mode_names(given)
+    slow = np.array([not name.startswith("mode") or bool(kept[known.index(name.rstrip("'"))]) for name in given.states])
+    count = int(np.sum(kept))
+    return replace(
+        given,
+        system=_residualise(given.system, slow),
+        states=tuple(name for name, each in zip(given.states, slow, strict=True) if each),
+        frequencies=given.frequencies[kept],
+        ratios=given.ratios[kept],
+        left_out=given.left_out + len(kept) - count,
+        note=f"{given.note}; {count} {'mode' if count == 1 else 'modes'} retained, the others as a static term",
+    )
+
+
+def resonances(given: Plant) -> Array:
+    """Size (k,) of every mode's resonance between strokes and pose, on the scale where a stroke at rest moves the pose by 1.
+
+    Both as motions of the platform in lengths it is |c| |b| / (2 zeta omega^2).
+
+    >>> from flexstage.control.example import integral_loop
+    >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
+    [0.0, 49.5, 0.0]
+    """
+    loop = given.coordinates
+    modal = np.array([name.startswith("mode") for name in given.states])
+    stage = _residualise(select(given.system, given.actuators, [f"gap.{name}" for name in given.gauges]), modal)
+    names = [name for name, each in zip(given.states, modal, strict=True) if each]
+    sizes = np.zeros(len(given.frequencies))
+    for index, (name, frequency, ratio) in enumerate(zip(mode_names(given), given.frequencies, given.ratios, strict=True)):
+        place, rate = names.index(name), names.index(f"{name}'")
+        shape = loop.scale * (loop.pose @ stage.C[:, place])
+        force = (stage.B[rate] @ loop.strokes) / loop.scale
+        damped = 2.0 * max(float(ratio), 1e-6) * (2.0 * np.pi * frequency) ** 2
+        sizes[index] = float(np.linalg.norm(shape) * np.linalg.norm(force)) / damped
+    return sizes
+
+
+def _kept_modes(given: Plant, wanted: Array) -> Array:
+    """Those wanted, whole groups of repeated modes, and at least as many as the loop has coordinates."""
+    kept = wanted.copy()
+    order = np.argsort(-resonances(given))
+    kept[order[: len(given.coordinates.names)]] = True
+    same = np.diff(given.frequencies) < _REPEATED * given.frequencies[1:]
+    for index in (*np.flatnonzero(same), *np.flatnonzero(same)[::-1]):
+        kept[index] = kept[index + 1] = kept[index] or kept[index + 1]
+    return kept
+
+
+def mode_names(given: Plant) -> list[str]:
+    """Names of the modes' displacements among the states, in order."""
+    return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
+
+
+def _residualise(system: System, slow: Array) -> System:
+    """The system whose other states follow at once."""
+    fast = ~slow
+    if not np.any(fast):
+        return system
+    inner = system.A[np.ix_(fast, fast)]
+    states = -np.linalg.solve(inner, system.A[np.ix_(fast, slow)])
+    driven = -np.linalg.solve(inner, system.B[fast])
+    across = system.A[np.ix_(slow, fast)]
+    return replace(
+        system,
+        A=system.A[np.ix_(slow, slow)] + across @ states,
+        B=system.B[slow] + across @ driven,
+        C=system.C[:, slow] + system.C[:, fast] @ states,
+        D=system.D + system.C[:, fast] @ driven,
+    )

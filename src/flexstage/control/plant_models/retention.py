@@ -1,0 +1,235 @@
+"""Which modes a plant has to retain: by their loop gain with the controller, and by what they change of the margins and of steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.plant_models.electronics import Hardware
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.plant_models.reduction import mode_names
+from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response, reference_response
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.curves import dense_frequencies
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.sampling import split_delay
+from flexstage.control.systems.system import select
+from flexstage.spatial.frame import COMPONENTS
+
+LOOP_GAINS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0)
+"""Loop gains at resonance from which modes are retained: the first; where none reaches it, as low as the margins need."""
+MARGIN_CHANGE = 0.01
+"""Relative change of the margins that all modes left out may make together."""
+RINGING = 0.001
+"""Share of a step that a mode which is left out may ring by, along any axis: 1/20 of the 2 % within which a step is settled."""
+_LEAST = 0.01
+"""Margins of gain are compared as 1/k, of factors up to 100; beyond, no loop is near an edge."""
+_PLAIN = 400
+_UNDERDAMPED = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Retention:
+    """Modes of the stage that the plant retains, `retained` of `total`, the static compliance of the others being kept.
+
+    `gain` is the largest loop gain |L (1 + L)^-1| that one left out has at its resonance (`frequency` [Hz] of the mode), all loops
+    closed; `change` the largest relative change of peak of S, margins and rejection by all that are left out. `wanted` (k,) are the modes
+    to be retained, `retune` whether those that are added change the loop, not only what it leaves of a step.
+    """
+
+    retained: int
+    total: int
+    gain: float
+    frequency: Annotated[float | None, FREQUENCY]
+    change: float
+    wanted: Annotated[Array, INNER]
+    retune: Annotated[bool, INNER] = False
+
+    @property
+    def complete(self) -> Annotated[bool, INNER]:
+        """Whether the plant retains all modes that matter."""
+        return int(np.sum(self.wanted)) <= self.retained
+
+
+def retention(whole: Plant, closed: Loop) -> Retention:
+    """Find the modes of a `whole` plant that matter in a loop closed around some of them, with its controller as it is.
+
+    A mode left out matters where its loop gain at resonance is not small, the other loops and axes closed: |a| |b K S| for its pulse
+    transfer function a b psi(z), exact between hold and sampler, above half the sampling rate too; where it rings by more than `RINGING`
+    in a step, in the true motion of the platform along any axis; and where all that are left out would change a margin: those of less loop
+    gain are added until none changes by more than `MARGIN_CHANGE`, once none is left of more.
+
+    >>> from flexstage.control.systems.closed import loop
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.plant_models.reduction import reduce_modes
+    >>> closed = integral_loop()
+    >>> one = loop(reduce_modes(closed.plant, np.zeros(3, bool)), closed.controller)
+    >>> found = retention(closed.plant, one)
+    >>> (found.retained, found.total, found.complete)
+    (1, 3, True)
+    """
+    names = mode_names(whole)
+    kept = np.isin(names, closed.plant.states)
+    if np.all(kept):
+        return Retention(len(names), len(names), 0.0, None, 0.0, kept)
+    left_out = _contributions(whole, kept, closed)
+    chosen, change = _choose(left_out)
+    retune = bool(np.any(chosen))
+    chosen |= left_out.rings >= RINGING
+    wanted = kept.copy()
+    wanted[~kept] = chosen
+    rest = np.where(chosen, 0.0, left_out.gains)
+    largest = int(np.argmax(rest))
+    frequency = None if np.all(chosen) else float(whole.frequencies[~kept][largest])
+    return Retention(int(np.sum(kept)), len(names), float(rest[largest]), frequency, change, wanted, retune)
+
+
+@dataclass(frozen=True, eq=False)
+class _Contributions:
+    """What modes left out (d,) come to in a loop: `gains` at resonance, `place` (d,) among the lines, and `rings` in a step.
+
+    `plant` (f, c, n) is the response of what is retained from commands to pose; `poles` are those of modes left out, `held` how hold and
+    sampler see them.
+    """
+
+    lines: LoopLines
+    plant: Array
+    pose: Array
+    poles: _Poles
+    held: Array
+    place: Array
+    gains: Array
+    rings: Array
+
+    def margins(self, chosen: Array) -> ResponseMargins:
+        """Margins with the `chosen` modes too."""
+        return self.lines.margins(self.plant + self.poles.response(self.pose, self.held, chosen))
+
+
+def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
+    poles, loop, hardware = _left_out(whole, kept), closed.plant.coordinates, whole.hardware
+    own = np.abs(_folded(np.imag(poles.values) / (2.0 * np.pi), hardware.step))
+    lines = _lines(closed, poles.values)
+    lines = np.unique(np.concatenate([lines, own[own > lines[0]]]))
+    place = np.clip(np.searchsorted(lines, own), 0, len(lines) - 1)
+    seen = LoopLines(lines, loop.scale, feedback_response(closed.controller, loop, lines))
+    plant = loop.pose @ resolvent(select(closed.held, loop.actuators, [f"gap.{name}" for name in loop.gauges])).at(lines)
+    back, forward = seen.control @ seen.sensitivity(plant), reference_response(closed.controller, loop, lines)
+    forward = forward - back @ plant @ forward
+    held = poles.held(lines, hardware)
+    peaks = np.max(np.abs(held[:, place, np.arange(len(own))]), axis=0)
+    driven = [np.linalg.norm(np.einsum("dn,dnc->dc", poles.entries, each[place]) / loop.scale, axis=1) for each in (back, forward)]
+    seen_as = np.linalg.norm(poles.pose(loop.pose) * loop.scale, axis=1)
+    lengths = np.array([loop.length if each[0] == "r" else 1.0 for each in COMPONENTS])
+    moved = np.linalg.norm(poles.exits[:, len(loop.gauges) :] * lengths, axis=1)
+    decay = 2.0 * np.abs(np.real(poles.values)) / np.abs(poles.values)
+    return _Contributions(seen, plant, loop.pose, poles, held, place, peaks * seen_as * driven[0], peaks * moved * driven[1] * decay)
+
+
+def _choose(given: _Contributions) -> tuple[Array, float]:
+    """Modes (d,) to be added, and the change of margins by the rest: those of loop gain 0.1, else as many as margins need."""
+    truth = _figures(given.margins(np.ones(len(given.gains), bool)))
+    chosen, change = np.zeros(len(given.gains), bool), np.inf
+    for least in LOOP_GAINS:
+        chosen = given.gains >= least
+        change = _change(_figures(given.margins(chosen)), truth)
+        if change <= MARGIN_CHANGE or np.any(given.gains >= LOOP_GAINS[0]):
+            break
+    return chosen, change
+
+
+@dataclass(frozen=True, eq=False)
+class _Poles:
+    """Poles (d,) [1/s] of modes, of each pair one, with residues exits (d, p) times entries (d, n), of which H is the sum."""
+
+    values: Array
+    exits: Array
+    entries: Array
+
+    def pose(self, pose: Array) -> Array:
+        """Residues (d, c) at the pose, of which gauges (the first exits) tell."""
+        return self.exits[:, : pose.shape[1]] @ pose.T
+
+    def held(self, lines: Array, hardware: Hardware) -> Array:
+        """What each adds (2, f, d) between hold and sampler, over its static term, and its conjugate."""
+        every = [_held(values, np.append(lines, 0.0), hardware) for values in (self.values, np.conj(self.values))]
+        return np.stack([each[:-1] - each[-1] for each in every])
+
+    def response(self, pose: Array, held: Array, chosen: Array) -> Array:
+        """What the `chosen` modes add (f, c, n) at lines to a plant that has their static compliance."""
+        outer = (self.pose(pose)[:, :, None] * self.entries[:, None, :]).reshape(len(self.values), -1)
+        found = (held[0] * chosen) @ outer + (held[1] * chosen) @ np.conj(outer)
+        return found.reshape(held.shape[1], len(pose), -1)
+
+
+def _left_out(whole: Plant, kept: Array) -> _Poles:
+    """Poles of modes left out, one by one beside all that is kept: amplifiers, gauges, inner loops and modes."""
+    outputs = [*(f"gap.{name}" for name in whole.gauges), *(f"relative.{name}" for name in COMPONENTS)]
+    system, width = select(whole.system, whole.actuators, outputs), len(whole.actuators)
+    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
+    entry, exit_ = system.B / scale[:, None], system.C * scale
+    names = [name for name, each in zip(mode_names(whole), kept, strict=True) if not each]
+    places = np.array([[whole.states.index(f"{name}{mark}") for mark in ("", "'")] for name in names])
+    beside = np.setdiff1d(np.arange(len(system.A)), places.ravel())
+    inner, driven, seen = balanced[np.ix_(beside, beside)], entry[beside], exit_[:, beside]
+    values, exits, entries = [], [], []
+    for place in places:
+        square, rate = -system.A[place[1], place[0]], -system.A[place[1], place[1]]
+        pole = -0.5 * rate + 1j * np.sqrt(max(square - 0.25 * rate**2, _UNDERDAMPED * square))
+        right = np.array([1.0, pole]) / scale[place]
+        left = np.array([-np.conj(pole), 1.0]) * scale[place] / (2j * np.imag(pole))
+        carried = balanced[np.ix_(beside, place)] @ right
+        solved = np.linalg.solve(pole * np.eye(len(beside)) - inner, np.column_stack([driven, carried]))
+        force = left @ balanced[np.ix_(place, beside)]
+        values.append(pole + force @ solved[:, width])
+        entries.append(left @ entry[place] + force @ solved[:, :width])
+        exits.append(exit_[:, place] @ right + seen @ solved[:, width])
+    return _Poles(np.array(values), np.array(exits), np.array(entries))
+
+
+def _held(poles: Array, lines: Array, hardware: Hardware) -> Array:
+    """Pulse transfer functions psi (f, d) of 1/(s - p) behind hold and delay at `lines` [Hz]; of a continuous plant 1/(s - p).
+
+    With the delay (d + f) T it is z^-d (Gamma_0 + Gamma_1 / z) / (z - e^{pT}), as `discretise` has it.
+    """
+    step, turning = hardware.step, 2j * np.pi * lines[:, None]
+    if step is None:
+        return 1.0 / (turning - poles)
+    z = np.exp(turning * step)
+    whole, part = split_delay(hardware.delay / step)
+    late = np.exp(poles * (1.0 - part) * step)
+    now, before = (late - 1.0) / poles, late * (np.exp(poles * part * step) - 1.0) / poles
+    return z**-whole * (now + before / z) / (z - np.exp(poles * step))
+
+
+def _folded(frequencies: Array, step: float | None) -> Array:
+    """Where samples see frequencies [Hz]."""
+    return frequencies if step is None else frequencies - np.round(frequencies * step) / step
+
+
+def _lines(closed: Loop, poles: Array) -> Array:
+    """Frequencies [Hz] around all poles of the loop and of the modes left out, and evenly in the logarithm between."""
+    step = closed.step
+    seen = poles if step is None else np.exp(poles * step)
+    dense = dense_frequencies(np.concatenate([closed.system.poles, closed.held.poles, seen]), step)
+    return np.union1d(dense, np.geomspace(dense[0], dense[-1], _PLAIN))
+
+
+def _figures(found: ResponseMargins) -> Array:
+    """Margins as numbers that are compared relative to their size."""
+    factors = np.maximum([*found.lows, *(1.0 / np.array(found.gains))], _LEAST)
+    return np.array([found.peak, *factors, *found.phases, *found.delays, *found.rejections])
+
+
+def _change(found: Array, truth: Array) -> float:
+    """The largest relative difference; infinite where one has an edge and the other has none."""
+    finite = np.isfinite(truth)
+    if np.any(finite != np.isfinite(found)):
+        return np.inf
+    return float(np.max(np.abs(found[finite] / truth[finite] - 1.0), initial=0.0))

@@ -1,0 +1,1 @@
+"""Stability and margins of a loop."""

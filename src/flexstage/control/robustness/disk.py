@@ -1,0 +1,191 @@
+"""Disk margins: how far gains and phases may change together, in one loop or in all of them at once (Seiler, Packard, Gahinet 2020)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+import scipy
+
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.robustness.singular import balance, lower_bound, upper_bound
+from flexstage.control.robustness.stability import require_stable
+from flexstage.control.systems.closed import Cut, Loop, open_at, open_everywhere
+from flexstage.control.systems.curves import dense_frequencies, sensitivity
+from flexstage.control.systems.norm import Plane, level_crossings, peak, to_plane
+from flexstage.control.systems.resolvent import Resolvent, resolvent
+from flexstage.control.systems.system import System
+
+_SLACK = 1e-3
+_MOST = 400
+_TOPS = 8
+_NEAR = 0.02
+_TRUE = 1e-4
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A change that brings a loop to the edge of stability, and the frequency [Hz] of the oscillation there (NaN: there is no edge)."""
+
+    value: float
+    frequency: Annotated[float, FREQUENCY]
+
+
+@dataclass(frozen=True)
+class DiskMargin(InNotebook):
+    """How far all the loops' factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, may change at once, s the `skew`.
+
+    Stability is guaranteed for all d_i below `guaranteed`, at every frequency if `covered` (else at those looked at); at `reached` >=
+    `guaranteed`, some set of them at `frequency` [Hz] brings a pole to the edge. `loops` are the loops that change. `gain_low` to
+    `gain_high` and `phase` [rad] are what every loop may change by, independently of the others: a guarantee.
+    """
+
+    loops: tuple[str, ...]
+    skew: float
+    guaranteed: float
+    reached: float
+    frequency: Annotated[float, FREQUENCY]
+    covered: bool
+
+    @property
+    def gain_low(self) -> float:
+        """Least factor on every loop's gain."""
+        return (2.0 - self.guaranteed * (1.0 - self.skew)) / (2.0 + self.guaranteed * (1.0 + self.skew))
+
+    @property
+    def gain_high(self) -> float:
+        """Largest factor on every loop's gain."""
+        below = 2.0 - self.guaranteed * (1.0 + self.skew)
+        return (2.0 + self.guaranteed * (1.0 - self.skew)) / below if below > 0.0 else np.inf
+
+    @property
+    def phase(self) -> float:
+        """Turn [rad] of every loop, either way: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
+        low, high = self.gain_low, self.gain_high
+        cosine = low if np.isinf(high) else (1.0 + low * high) / (low + high)
+        return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def disk_margin(own: System, skew: float = 0.0) -> Edge:
+    """alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> whole = sensitivity(open_at(integral_loop(), Cut.POSE))
+    >>> disk_margin(whole).value <= 2.0
+    True
+    """
+    found = peak(_shift(own, skew))
+    return Edge(1.0 / found.value, found.frequency)
+
+
+def disk_margins(closed: Loop, cut: Cut | None, skew: float = 0.0) -> DiskMargin:
+    """The disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both ends together.
+
+    alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. From above mu <= min over
+    diagonal D of sigma(D M D^-1), from below mu >= max over phases U of rho(U M). The bound from above holds at all frequencies: for each D
+    the Hamiltonian matrix tells between which frequencies sigma stays below the level, until these intervals cover all, the level being
+    0.1 % above the highest found. Raises `DesignError` for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> one = integral_loop()
+    >>> found, alone = disk_margins(one, Cut.POSE), disk_margin(sensitivity(open_at(one, Cut.POSE)))
+    >>> found.covered, abs(found.reached / alone.value - 1.0) < 1e-4, abs(found.guaranteed / alone.value - 1.0) < 2e-3
+    (True, True, True)
+    """
+    require_stable(closed, "disk margins")
+    open_loop = open_everywhere(closed) if cut is None else open_at(closed, cut)
+    moved = _shift(sensitivity(open_loop), skew)
+    response = resolvent(moved)
+    frequencies = dense_frequencies(moved.poles, moved.step)
+    lowest, highest, place = _search_bounds(response, frequencies)
+    level, covered = _guaranteed_level(moved, response, frequencies, highest * (1.0 + _SLACK))
+    return DiskMargin(open_loop.output_names, skew, 1.0 / level, 1.0 / lowest, place, covered)
+
+
+def _shift(own: System, skew: float) -> System:
+    return replace(own, D=own.D + 0.5 * (skew - 1.0) * np.eye(len(own.D)))
+
+
+def _scale(matrices: Array, logs: Array) -> Array:
+    return matrices * np.exp(logs[..., :, None] - logs[..., None, :])
+
+
+def _search_bounds(response: Resolvent, frequencies: Array) -> tuple[float, float, float]:
+    """The highest bounds from below and above, and where the one from below stands: local maxima over frequency followed to their tops."""
+    matrices = response.at(frequencies)
+    sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
+    padded = np.concatenate([[-1.0], sizes, [-1.0]])
+    tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
+    lowest, highest, place = 0.0, 0.0, np.nan
+    for top in tops[np.argsort(-sizes[tops])][:_TOPS]:
+        if sizes[top] < highest * (1.0 - _NEAR):
+            break
+        ends = float(frequencies[max(top - 1, 0)]), float(frequencies[min(top + 1, len(frequencies) - 1)])
+        at, above = _local_maximum(response, ends)
+        below = lower_bound(response.at(np.array([at]))[0])[0]
+        highest = max(highest, above)
+        if below > lowest:
+            lowest, place = below, at
+    return lowest, highest, place
+
+
+def _local_maximum(response: Resolvent, ends: tuple[float, float]) -> tuple[float, float]:
+    """Where the bound from above is highest between two frequencies, and how high."""
+
+    def below(frequency: float) -> float:
+        return -_bound(response, frequency)[0]
+
+    options = {"xatol": 1e-7 * ends[1], "maxiter": 40}
+    found: Any = scipy.optimize.minimize_scalar(below, bounds=ends, method="bounded", options=options)
+    places = [float(found.x), *ends]
+    heights = [-below(place) for place in places]
+    best = int(np.argmax(heights))
+    return places[best], heights[best]
+
+
+def _bound(response: Resolvent, frequency: float) -> tuple[float, Array]:
+    matrix = response.at(np.array([frequency]))
+    return upper_bound(matrix[0], balance(matrix)[0])
+
+
+def _guaranteed_level(moved: System, response: Resolvent, frequencies: Array, level: float) -> tuple[float, bool]:
+    """The level below which mu is shown to stay at all frequencies, and whether it was shown."""
+    end = np.inf if moved.step is None else 0.5 / moved.step
+    plane = to_plane(moved)
+    open_: list[tuple[float, float]] = [(0.0, end)]
+    for _ in range(_MOST):
+        if not open_:
+            return level, True
+        low, high = open_.pop()
+        middle = _next_frequency(low, high, frequencies)
+        size, logs = _bound(response, middle)
+        if size >= level / (1.0 + 0.5 * _SLACK):
+            level, open_ = size * (1.0 + _SLACK), [*open_, (low, high)]
+            continue
+        scale = np.exp(logs)
+        system = replace(plane.system, B=plane.system.B / scale, C=plane.system.C * scale[:, None], D=_scale(plane.system.D, logs))
+        crossings = _true_crossings(replace(plane, system=system), response, logs, level)
+        below, above = crossings[crossings < middle], crossings[crossings > middle]
+        left, right = max(below, default=-np.inf), min(above, default=np.inf)
+        open_ += [piece for piece in ((low, min(left, high)), (max(right, low), high)) if piece[1] > piece[0]]
+    return level, False
+
+
+def _true_crossings(plane: Plane, response: Resolvent, logs: Array, level: float) -> Array:
+    """Those frequencies at which a singular value is the level indeed; eigenvalues near the axis leave more."""
+    found = level_crossings(plane, level)
+    sizes = np.linalg.svd(_scale(response.at(found), logs), compute_uv=False)
+    return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
+
+
+def _next_frequency(low: float, high: float, frequencies: Array) -> float:
+    """A frequency in between to look at next: the middle one of those that resolve the loop, else a mean."""
+    inside = frequencies[(frequencies > low) & (frequencies < high)]
+    if len(inside):
+        return float(inside[len(inside) // 2])
+    if np.isinf(high):
+        return 2.0 * max(low, float(frequencies[-1]))
+    return 0.5 * (low + high)

@@ -1,0 +1,208 @@
+"""Margins read off measured frequency responses themselves, with their uncertainty, beside what the models of the plant predict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.dimension import dimension_of
+from flexstage.base.units.quantity import ANGLE, FREQUENCY
+from flexstage.control.controllers.pose_plant import pose_plant
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.plant_models.plants import Plant
+from flexstage.control.robustness.response_margins import LoopLines, ResponseMargins, feedback_response
+from flexstage.control.systems.closed import Loop
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.records.record import Responses
+from flexstage.experiment.spectral.local_responses import LocalResponses, local_responses
+
+_DRAWS, _SEED = 100, 0
+_ENDS = (0.025, 0.975)
+_COHERENT = 0.5
+_AROUND = 1.5
+_LEAST_LINES = 16
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A number read off responses: its `value`, the ends `low` and `high` that hold it by 95 % (None: the responses do not say).
+
+    `fitted` is that of the plant that was tuned, `predicted` that of the stage's model, both at the same lines (NaN: there is no edge).
+    """
+
+    value: float
+    low: float | None
+    high: float | None
+    fitted: float
+    predicted: float
+
+
+@dataclass(frozen=True)
+class ReadChannel:
+    """Margins of one loop, the others closed: largest factor on its gain, `phase` [rad], and the frequency up to which |S_ii| < 1."""
+
+    channel: Annotated[str, INNER]
+    gain_high: Reading
+    phase: Annotated[Reading, ANGLE]
+    rejection: Annotated[Reading, FREQUENCY]
+
+
+@dataclass(frozen=True, eq=False)
+class ReadLines:
+    """|S_ii| (f, n) over `frequencies` (f,) [Hz]: as measured, the ends that hold it by 95 % at each line, of fit and of model.
+
+    `low` and `high` are absent where the test does not say how sure its responses are.
+    """
+
+    frequencies: Array
+    measured: Array
+    low: Array | None
+    high: Array | None
+    fitted: Array
+    predicted: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredMargins(InNotebook):
+    """What the lines of a test say of the loop: the peak of S (largest singular value, rotations as lengths) and margins by coordinate.
+
+    From `band` [Hz], `lines` of them; between lines nothing is known, so a peak narrower than their distance may be higher.
+    """
+
+    band: Annotated[tuple[float, float], FREQUENCY]
+    lines: int
+    peak: Reading
+    peak_frequency: Annotated[float, FREQUENCY]
+    channels: Annotated[tuple[ReadChannel, ...], INNER]
+    sensitivities: Annotated[ReadLines, INNER]
+
+    @property
+    def loops(self) -> Annotated[Mapping[str, ReadChannel], VIEW]:
+        """Margins by channel."""
+        return {each.channel: each for each in self.channels}
+
+
+def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
+    """Margins of a loop on the responses of a test, hold and delay of the loop added: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
+
+    P is what local polynomials tell of the records (`local_responses`), or the analyser's response. Its errors are taken as circular and
+    normal, of stored responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9); ends are
+    quantiles of 100 draws, about their median and mirrored at the value, whichever is wider. Stored responses are taken as measured
+    input by input, each driven alone.
+    H_0 is the hold's response; what folds back of frequencies above half the sampling rate is not counted.
+
+    Only lines within the band that was searched, below half the sampling rate, count.
+    """
+    loop, found = closed.plant.coordinates, seen.found
+    step = closed.step or 0.0
+    known = _responses(seen)
+    lines = known.frequencies
+    inside = (lines >= found.band[0]) & (lines <= found.band[1]) & (lines < (0.5 / step if step else np.inf))
+    lines = lines[inside]
+    require(_few_lines(lines, found))
+    rows = [[each.name for each in found.outputs].index(name) for name in loop.gauges]
+    columns = [[each.name for each in found.inputs].index(name) for name in loop.actuators]
+    outer = np.array([float(dimension_of(found.outputs[row].unit).size) for row in rows])
+    inner = np.array([float(dimension_of(found.inputs[column].unit).size) for column in columns])
+    chosen = np.ix_(np.flatnonzero(inside).tolist(), rows, columns)
+    scale = outer[:, None] / inner
+    response = known.values[chosen] * scale
+    late = np.sinc(lines * step) * np.exp(-2j * np.pi * lines * (0.5 * step + predicted.hardware.delay))
+    control = feedback_response(closed.controller, loop, lines)
+    whole = LoopLines(lines, loop.scale, control)
+    values = whole.margins((loop.pose @ response) * late[:, None, None])
+    sure = bool(np.all(np.isfinite(known.deviations)))
+    drawn = _draws(whole, loop, response, known.deviations[chosen] * scale, late) if sure else None
+    models = [whole.margins(resolvent(pose_plant(plant)).at(lines)) for plant in (closed.plant, predicted)]
+    names = loop.names
+    low, high = (None, None) if drawn is None else np.quantile([each.sizes for each in drawn], _ENDS, axis=0)
+
+    def reading(of: Callable[[ResponseMargins], float]) -> Reading:
+        low, high = (None, None) if drawn is None else _ends(of(values), np.array([of(each) for each in drawn]))
+        return Reading(of(values), low, high, of(models[0]), of(models[1]))
+
+    return MeasuredMargins(
+        band=(float(lines[0]), float(lines[-1])),
+        lines=len(lines),
+        peak=reading(lambda each: each.peak),
+        peak_frequency=values.peak_frequency,
+        channels=tuple(
+            ReadChannel(
+                name,
+                reading(lambda each, row=row: each.gains[row]),
+                reading(lambda each, row=row: each.phases[row]),
+                reading(lambda each, row=row: each.rejections[row]),
+            )
+            for row, name in enumerate(names)
+        ),
+        sensitivities=ReadLines(lines, values.sizes, low, high, models[0].sizes, models[1].sizes),
+    )
+
+
+def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterator[Finding]:
+    """Gauges that the inputs do not explain where the loops pass from rejecting to not, in 2/3 to 3/2 of those frequencies."""
+    if seen.multiple is None or seen.spectra is None:
+        return
+    ends = [each.rejection.fitted for each in margins.channels if np.isfinite(each.rejection.fitted)]
+    if not ends:
+        return
+    low, high = min(ends) / _AROUND, max(ends) * _AROUND
+    lines = seen.spectra.frequencies
+    inside = (lines >= low) & (lines <= high)
+    shares = np.median(seen.multiple[inside], axis=0) if np.any(inside) else np.zeros(len(seen.spectra.outputs))
+    for channel, share in zip(seen.spectra.outputs, shares, strict=True):
+        if share < _COHERENT:
+            what = (
+                f"from {low:.3g} to {high:.3g} Hz, where the loops are tuned, inputs explain {share:.0%} of it, {_COHERENT:.0%} are needed"
+            )
+            yield Finding(f"--record: {channel.name}", what, "Drive more there, record longer, or ask for another bandwidth")
+
+
+def _ends(value: float, drawn: Array) -> tuple[float, float]:
+    """Quantiles of the draws about their median, set about the value, and as much further as draws show the value to be biased.
+
+    The least of many noisy numbers is too small, and that of noisier ones smaller still: mirrored at the value (the basic bootstrap,
+    Davison & Hinkley, Bootstrap Methods and their Application, 1997, ch. 5), the quantiles take that back.
+    """
+    low, middle, high = np.quantile(drawn, (_ENDS[0], 0.5, _ENDS[1]), method="nearest")
+    if not (np.isfinite(low) and np.isfinite(middle)):
+        return float("nan"), float("nan")
+    further = 2.0 * value - high if np.isfinite(high) else np.inf
+    return float(min(value + low - middle, further)), float(max(value + high - middle, 2.0 * value - low))
+
+
+def _responses(seen: Identification) -> LocalResponses:
+    """Responses with standard deviations (f, p, m), in their units; NaN where the test does not say."""
+    found, stored = seen.found, seen.found.responses
+    if not isinstance(seen.test, Responses):
+        return local_responses(seen.test, found)
+    if stored.coherence is None or not stored.averages:
+        return LocalResponses(stored.frequencies, stored.values, np.full(stored.values.shape, np.nan))
+    share = np.clip(stored.coherence, 1e-6, 1.0)
+    return LocalResponses(stored.frequencies, stored.values, np.abs(stored.values) * np.sqrt((1.0 - share) / (share * stored.averages)))
+
+
+def _few_lines(lines: Array, found: Identified) -> Iterator[Finding]:
+    if len(lines) < _LEAST_LINES:
+        low, high = found.band
+        what = f"between {low:.4g} and {high:.4g} Hz it tells responses at {len(lines)} frequencies, {_LEAST_LINES} are needed"
+        yield Finding("--record", what, "Record longer, or drive with noise over all of the band")
+
+
+def _draws(whole: LoopLines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[ResponseMargins]:
+    random = np.random.default_rng(_SEED)
+    found = []
+    for _ in range(_DRAWS):
+        noise = random.standard_normal((2, *response.shape)) * np.sqrt(0.5)
+        moved = response + spread * (noise[0] + 1j * noise[1])
+        found.append(whole.margins((loop.pose @ moved) * late[:, None, None]))
+    return found

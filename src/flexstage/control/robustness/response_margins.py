@@ -1,0 +1,116 @@
+"""Margins read off frequency responses of a plant at lines, whatever the responses are from: a test, a model, a sum of modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.controllers.decentralised import channels
+from flexstage.control.plant_models.coordinates import Coordinates
+from flexstage.control.systems.resolvent import resolvent
+from flexstage.control.systems.system import System
+
+_NOTHING = 1e-300
+"""|L| of loops that are open."""
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseMargins:
+    """Margins of loops at lines; `sizes` (f, n) are |S_ii|, the others stay closed.
+
+    `peak` is the largest singular value of S, poses as lengths. By loop: the nearest factors on the gain below and above 1, `lows` and
+    `gains`, `phases` [rad], `delays` [s], and `rejections` [Hz], where |S_ii| first passes 1 (NaN: nowhere).
+    """
+
+    sizes: Array
+    peak: float
+    peak_frequency: float
+    lows: tuple[float, ...]
+    gains: tuple[float, ...]
+    phases: tuple[float, ...]
+    delays: tuple[float, ...]
+    rejections: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class LoopLines:
+    """Lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
+
+    lines: Array
+    scale: Array
+    control: Array
+
+    def sensitivity(self, plant: Array) -> Array:
+        """S (f, c, c) = (I + P K)^-1 of the responses (f, c, n) from commands to pose."""
+        return np.linalg.inv(np.eye(plant.shape[1]) + plant @ self.control)
+
+    def margins(self, plant: Array) -> ResponseMargins:
+        """Peak and margins of the responses (f, c, n) from commands to pose."""
+        sensitivity = self.sensitivity(plant)
+        peaks = np.linalg.norm(sensitivity * self.scale[:, None] / self.scale, 2, axis=(1, 2))
+        place = int(np.argmax(peaks))
+        own = np.diagonal(sensitivity, axis1=1, axis2=2)
+        loops = [1.0 / each - 1.0 for each in own.T]
+        gains, turns = [_gains(each) for each in loops], [_turns(self.lines, each) for each in loops]
+        return ResponseMargins(
+            np.abs(own),
+            float(peaks[place]),
+            float(self.lines[place]),
+            tuple(low for low, _ in gains),
+            tuple(high for _, high in gains),
+            tuple(phase for phase, _ in turns),
+            tuple(delay for _, delay in turns),
+            tuple(_rises(self.lines, np.abs(each)) for each in own.T),
+        )
+
+
+def feedback_response(controller: System, loop: Coordinates, lines: Array) -> Array:
+    """From the error of each coordinate to all commands (f, n, c); what the controller takes of the pose is what the error leaves."""
+    return _response(controller, loop, lines, {"error": 1.0, "pose": -1.0})
+
+
+def reference_response(controller: System, loop: Coordinates, lines: Array) -> Array:
+    """From the reference of each coordinate to all commands (f, n, c), the pose at rest."""
+    return _response(controller, loop, lines, {"error": 1.0, "reference": 1.0})
+
+
+def _response(controller: System, loop: Coordinates, lines: Array, signs: dict[str, float]) -> Array:
+    whole = resolvent(controller).at(lines)
+    found = np.zeros((len(lines), len(loop.actuators), len(loop.names)), dtype=complex)
+    order = [controller.output_names.index(f"command.{name}") for name in loop.actuators]
+    for kind, sign in signs.items():
+        for column, channel in enumerate(channels(kind, loop)):
+            if channel.name in controller.input_names:
+                found[:, :, column] += sign * whole[:, order, controller.input_names.index(channel.name)]
+    return found
+
+
+def _gains(own: Array) -> tuple[float, float]:
+    """The nearest factors below and above 1 at which L crosses -1/k, between lines straight in the plane."""
+    places = np.flatnonzero(np.imag(own[:-1]) * np.imag(own[1:]) < 0.0)
+    share = np.imag(own[places]) / (np.imag(own[places]) - np.imag(own[places + 1]))
+    real = np.real(own[places]) * (1.0 - share) + np.real(own[places + 1]) * share
+    factors = -1.0 / real[real < 0.0]
+    return float(np.max(factors[factors < 1.0], initial=0.0)), float(np.min(factors[factors > 1.0], initial=np.inf))
+
+
+def _turns(lines: Array, own: Array) -> tuple[float, float]:
+    """The least turn [rad] either way, and the least delay [s], at which |L| = 1 comes to -1."""
+    sizes = np.log(np.maximum(np.abs(own), _NOTHING))
+    places = np.flatnonzero(sizes[:-1] * sizes[1:] < 0.0)
+    share = sizes[places] / (sizes[places] - sizes[places + 1])
+    between = own[places] * (1.0 - share) + own[places + 1] * share
+    frequencies = lines[places] * (1.0 - share) + lines[places + 1] * share
+    delays = np.mod(np.angle(-between), 2.0 * np.pi) / (2.0 * np.pi * frequencies)
+    return float(np.min(np.abs(np.angle(-between)), initial=np.inf)), float(np.min(delays, initial=np.inf))
+
+
+def _rises(lines: Array, sizes: Array) -> float:
+    """Where |S_ii| first passes 1 from below; NaN where it does not."""
+    places = np.flatnonzero((sizes[:-1] < 1.0) & (sizes[1:] >= 1.0))
+    if not len(places):
+        return float("nan")
+    ends = slice(int(places[0]), int(places[0]) + 2)
+    return float(np.exp(np.interp(0.0, np.log(sizes[ends]), np.log(lines[ends]))))

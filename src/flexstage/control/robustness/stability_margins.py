@@ -1,0 +1,319 @@
+"""Margins of a loop: gain, phase, delay and disk of one loop at a time; peaks of S and T; bandwidths; crosstalk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+import scipy
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW, Along
+from flexstage.base.units.quantity import ANGLE, FREQUENCY, TIME
+from flexstage.control.robustness.disk import Edge, disk_margin
+from flexstage.control.robustness.stability import require_stable
+from flexstage.control.systems.closed import Cut, Loop, loop, open_at
+from flexstage.control.systems.curves import Curves, curves, roots, sensitivity, sign_changes
+from flexstage.control.systems.norm import Peak, peak
+from flexstage.control.systems.resolvent import Resolvent, resolvent
+from flexstage.control.systems.system import System, select
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
+
+_AT_REST = 1e-8
+_FEW = 250
+
+
+@dataclass(frozen=True)
+class ChannelMargins:
+    """How far one loop is from the edge of stability while the others stay closed.
+
+    Its gain may be multiplied by anything between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no edge); it may turn by `phase`
+    [rad] either way; it may come `delay` [s] later (the factor e^{-j omega tau} at samples). `disk` is alpha of its balanced disk
+    margin: the factors (1 + d/2)/(1 - d/2) with |d| < alpha, gains and phases *together*.
+    """
+
+    channel: Annotated[str, INNER]
+    gain_low: Edge
+    gain_high: Edge
+    phase: Annotated[Edge, ANGLE]
+    delay: Annotated[Edge, TIME]
+    disk: Edge
+
+
+@dataclass(frozen=True)
+class Margins(InNotebook):
+    """Margins of the loops cut open at `cut`, one at a time."""
+
+    cut: Cut
+    channels: Annotated[tuple[ChannelMargins, ...], INNER]
+
+    @property
+    def loops(self) -> Annotated[Mapping[str, ChannelMargins], VIEW]:
+        """Margins by channel."""
+        return {each.channel: each for each in self.channels}
+
+    def of(self, channel: str) -> ChannelMargins:
+        """Those of the channel of that name."""
+        return self.loops[channel]
+
+    @property
+    def table(self) -> Matrix:
+        """Rows are the channels."""
+        kinds = ("gain_low", "gain_high", "phase", "delay", "disk")
+        values = np.array([[getattr(each, kind).value for kind in kinds] for each in self.channels])
+        rows = tuple(each.channel for each in self.channels)
+        return Matrix(values, rows, kinds, (("1", "1", "rad", "s", "1"),) * len(rows))
+
+
+@check_arguments
+def margins(closed: Loop, cut: Cut, found: Curves | None = None) -> Margins:
+    """Margins of one loop at a time, the others closed; `found` are its `curves` where they are known already.
+
+    An edge is where S_ii = 1/(1 + L_i) is real, below 0 or above 1 (L_i real and negative: a gain), or has real part 1/2 (|L_i| = 1: a
+    phase, a delay), found to rounding between frequencies so dense that no L_i jumps. alpha_i = 1/||S_ii - 1/2|| (Seiler, Packard,
+    Gahinet, IEEE Control Systems 40, 2020) by `peak`. Raises `DesignError` for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = margins(integral_loop(), Cut.POSE).of("x")
+    >>> round(found.gain_high.value, 2), round(found.phase.value, 2), found.gain_low.value
+    (4.49, 1.56, 0.0)
+    """
+    require_stable(closed, "margins")
+    found, whole = found or curves(closed, cut), sensitivity(open_at(closed, cut))
+    return Margins(cut, tuple(_channel(found, whole, number) for number in range(len(found.names))))
+
+
+def _channel(found: Curves, whole: System, number: int) -> ChannelMargins:
+    low, high = _gains(found, number)
+    phase, delay = _phases(found, number)
+    name = whole.output_names[number]
+    return ChannelMargins(found.names[number], low, high, phase, delay, disk_margin(select(whole, [name], [name])))
+
+
+def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
+    """The nearest gains below and above 1 at which L_i = -1/k; both ends of the frequencies count, where L_i is real anyhow."""
+    places, own = found.crossings(np.imag, number)
+    ends = np.array([0.0] if found.response.system.step is None else [0.0, 0.5 / found.response.system.step])
+    places, own = np.append(places, ends), np.append(own, found.response.at(ends)[:, number, number])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gains = 1.0 / (1.0 - 1.0 / np.real(own))
+    edges = [(float(gain), float(place)) for gain, place in zip(gains, places, strict=True) if _AT_REST < gain < np.inf]
+    below = max((edge for edge in edges if edge[0] < 1.0), default=(0.0, np.nan))
+    above = min((edge for edge in edges if edge[0] > 1.0), default=(np.inf, np.nan))
+    return Edge(*below), Edge(*above)
+
+
+def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
+    """The least turn, and the least delay, at which |L_i| = 1 comes to -1."""
+    places, own = found.crossings(lambda own: np.real(own) - 0.5, number)
+    turns = np.angle(-(1.0 / own - 1.0))
+    delays = (turns % (2.0 * np.pi)) / (2.0 * np.pi * places)
+    phase = min(zip(np.abs(turns).tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
+    delay = min(zip(delays.tolist(), places.tolist(), strict=True), default=(np.inf, np.nan))
+    return Edge(*phase), (
+        Edge(0.0, np.inf) if _has_direct_gain(found.response.system.D[number, number], found.response.system.step) else Edge(*delay)
+    )
+
+
+def _has_direct_gain(own: complex, step: float | None) -> bool:
+    """Whether a continuous loop's gain is 1 or more at ever higher frequencies, S = 1/(1 + L) there: then no delay is short enough."""
+    return step is None and abs(own) <= abs(1.0 - own)
+
+
+@dataclass(frozen=True)
+class Peaks(InNotebook):
+    """Highest singular values of S = (I + L)^-1 and T = I - S at a cut, with rotations times the stage's length (poses) or as they are."""
+
+    cut: Cut
+    sensitivity: Peak
+    complementary: Peak
+
+
+def peaks(closed: Loop, cut: Cut) -> Peaks:
+    """H-infinity norms of S and T by `peak`. Raises `DesignError` for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> peaks(integral_loop(), Cut.POSE).sensitivity.value > 1.0
+    True
+    """
+    require_stable(closed, "peaks of S and T")
+    whole = sensitivity(open_at(closed, cut))
+    scale = closed.plant.coordinates.scale if cut is Cut.POSE else np.ones(len(closed.plant.actuators))
+    scaled = replace(whole, B=whole.B / scale, C=whole.C * scale[:, None], D=whole.D * scale[:, None] / scale)
+    rest = replace(scaled, C=-scaled.C, D=np.eye(len(scale)) - scaled.D)
+    return Peaks(cut, peak(scaled), peak(rest))
+
+
+@dataclass(frozen=True, eq=False)
+class Bandwidths(InNotebook):
+    """Bandwidths [Hz] (n,) by coordinate, the lowest frequency at which each is first crossed (NaN: never).
+
+    `tracking`: the true motion falls 3 dB below its reference; `complementary`: T_ii falls 3 dB below 1; `rejection`: |S_ii| rises through
+    1, above which the loop makes disturbances worse; `half_rejection`: |S_ii| rises through -3 dB.
+    """
+
+    coordinates: tuple[str, ...]
+    tracking: Annotated[Array, FREQUENCY, Along("coordinates")]
+    complementary: Annotated[Array, FREQUENCY, Along("coordinates")]
+    rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
+    half_rejection: Annotated[Array, FREQUENCY, Along("coordinates")]
+
+
+def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
+    """Bandwidths by coordinate; `found` are the `curves` at the pose where they are known already.
+
+    Raises `DesignError` for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = bandwidths(integral_loop(gain=100.0))
+    >>> found.tracking.round(1).tolist(), found.complementary.round(1).tolist()  # about 100/(2 pi)
+    ([15.9], [15.9])
+    """
+    require_stable(closed, "bandwidths")
+    found = found or curves(closed, Cut.POSE)
+    level = np.sqrt(0.5)
+    return Bandwidths(
+        found.names,
+        np.array([_tracking(closed, found, number) for number in range(len(found.names))]),
+        np.array([_rise(found, number, lambda own: level - np.abs(1.0 - own)) for number in range(len(found.names))]),
+        np.array([_rise(found, number, lambda own: np.abs(own) - 1.0) for number in range(len(found.names))]),
+        np.array([_rise(found, number, lambda own: np.abs(own) - level) for number in range(len(found.names))]),
+    )
+
+
+def _rise(found: Curves, number: int, of: Callable[[Array], Array]) -> float:
+    """Where a function of S_ii first rises through 0."""
+    values = of(found.sensitivity[:, number, number])
+    return _first_rise(found.frequencies, values, lambda points: of(found.response.at(points)[:, number, number]))
+
+
+def _first_rise(frequencies: Array, values: Array, of: Callable[[Array], Array]) -> float:
+    if values[0] >= 0.0:
+        return 0.0
+    places = np.flatnonzero((values[1:] >= 0.0) & (values[:-1] < 0.0))[:1]
+    if not len(places):
+        return np.nan
+    ends = frequencies[places], frequencies[places + 1]
+    return float(roots(of, ends, (values[places], values[places + 1]))[0])
+
+
+def _tracking(closed: Loop, found: Curves, number: int) -> float:
+    name = found.names[number]
+    response = resolvent(select(closed.system, [f"reference.{name}"], [f"relative.{name}"]))
+
+    def below(points: Array) -> Array:
+        return np.sqrt(0.5) - np.abs(response.at(points)[:, 0, 0])
+
+    return _first_rise(found.frequencies, below(found.frequencies), below)
+
+
+def crosstalk(closed: Loop, frequency: float = 0.0) -> Matrix:
+    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded.
+
+    At rest (`frequency` 0) with signs, at a frequency [Hz] the amplitudes. The coordinates themselves are tracking, all else is crosstalk.
+    Raises `DesignError` for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> round(float(crosstalk(integral_loop()).at("x", "x")), 9)
+    1.0
+    """
+    require_stable(closed, "crosstalk")
+    names = closed.plant.coordinates.names
+    chosen = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in COMPONENTS])
+    found = chosen.transfer(np.array([frequency]))[0]
+    return Matrix(np.abs(found) if frequency else found.real, COMPONENTS, names, ratio_units(TWIST_UNITS, closed.plant.coordinates.units))
+
+
+def delay_margin(closed: Loop) -> Edge:
+    """How much later [s] all commands together may come: the delay that brings a pole of the closed loop to the edge.
+
+    The least tau at which e^{-j omega tau} times an eigenvalue of L is -1: exact for a continuous loop. With samples only whole ones are
+    such a factor, the rest goes into the hold, exactly: found from there by the growth of the loop itself, in steps of a tenth, or for
+    long delays by the secant rule on what is left of tau. Infinite: no eigenvalue of L reaches the unit circle. Raises `DesignError`
+    for an unstable loop.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = integral_loop(gain=400.0)
+    >>> later = delay_margin(found).value
+    >>> closer = replace(found.plant, hardware=replace(found.plant.hardware, delay=found.plant.hardware.delay + later))
+    >>> abs(loop(closer, found.controller).system.growth) < 1e-6
+    True
+    """
+    require_stable(closed, "delay margin")
+    response = resolvent(open_at(closed, Cut.POSE))
+    expected = Edge(*min(_unit_crossings(response, curves(closed, Cut.POSE).frequencies), default=(np.inf, np.nan)))
+    step = closed.step
+    if step is None and np.max(np.abs(np.linalg.eigvals(response.system.D))) >= 1.0:
+        return Edge(0.0, np.inf)
+    if step is None or not np.isfinite(expected.value):
+        return expected
+    if len(closed.system.A) + expected.value / step * len(closed.plant.actuators) < _FEW:
+        return Edge(_scan_delay(closed, expected.value), expected.frequency)
+
+    def excess(later: float) -> float:
+        moved = resolvent(open_at(_delay_loop(closed, later % step), Cut.POSE))
+        return _missing_delay(moved, expected.frequency, later - later % step)
+
+    return Edge(_secant_root(excess, expected.value), expected.frequency)
+
+
+def _delay_loop(closed: Loop, delay: float) -> Loop:
+    hardware = replace(closed.plant.hardware, delay=closed.plant.hardware.delay + delay)
+    return loop(replace(closed.plant, hardware=hardware), closed.controller)
+
+
+def _scan_delay(closed: Loop, expected: float) -> float:
+    """The first delay at which the loop begins to grow, from none up."""
+    for number in range(1, 31):
+        outside = 0.1 * number * expected
+        if _delay_loop(closed, outside).system.growth >= 0.0:
+            found: Any = scipy.optimize.brentq(
+                lambda delay: _delay_loop(closed, delay).system.growth, outside - 0.1 * expected, outside, xtol=1e-13 * expected
+            )
+            return float(found)
+    return np.inf
+
+
+def _missing_delay(response: Resolvent, near: float, wanted: float) -> float:
+    """What a delay lacks of the nearest one that brings an eigenvalue near a frequency to -1; they recur with every turn."""
+    widths = np.geomspace(1e-6, 0.5, 20)
+    points = np.unique(np.concatenate([near * (1.0 - widths), [near], near * (1.0 + widths)]))
+    end = np.inf if response.system.step is None else 0.5 / response.system.step
+    turned = [(delay - wanted, frequency) for delay, frequency in _unit_crossings(response, points[points < end])]
+    return min((lack - round(lack * frequency) / frequency for lack, frequency in turned), key=abs)
+
+
+def _secant_root(of: Callable[[float], float], start: float) -> float:
+    """Zero of a function that falls nearly by 1 per 1, by the secant rule."""
+    last, at_last = start, of(start)
+    here = start + at_last
+    for _ in range(20):
+        at_here = of(here)
+        if abs(at_here) <= 1e-14 * start or at_here == at_last:
+            break
+        last, here, at_last = here, here - at_here * (here - last) / (at_here - at_last), at_here
+    return here
+
+
+def _unit_crossings(response: Resolvent, frequencies: Array) -> list[tuple[float, float]]:
+    """Delay and frequency wherever an eigenvalue of L has the size 1. In order of size, eigenvalues are continuous in frequency."""
+    edges: list[tuple[float, float]] = []
+    sizes = np.abs(_eigenloci(response.at(frequencies))) - 1.0
+    for number in range(sizes.shape[1]):
+        places = sign_changes(sizes[:, number])
+        ends, values = (frequencies[places], frequencies[places + 1]), (sizes[places, number], sizes[places + 1, number])
+        at = roots(lambda points, number=number: np.abs(_eigenloci(response.at(points))[:, number]) - 1.0, ends, values)
+        turns = (np.angle(_eigenloci(response.at(at))[:, number]) + np.pi) % (2.0 * np.pi)
+        edges += zip((turns / (2.0 * np.pi * at)).tolist(), at.tolist(), strict=True)
+    return edges
+
+
+def _eigenloci(loops: Array) -> Array:
+    """Eigenvalues (f, n) of L, the largest first."""
+    values = np.linalg.eigvals(loops)
+    return np.take_along_axis(values, np.argsort(-np.abs(values), axis=1), axis=1)

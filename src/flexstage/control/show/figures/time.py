@@ -1,0 +1,201 @@
+"""Loops over time: steps, errors, paths in plan with the error magnified."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.control.show.figures.frequency import plain_ticks
+from flexstage.control.simulation.result import Simulated
+from flexstage.show.display import display_unit_of, to_typography
+from flexstage.show.figures.style import FULL, HALF, INK, MUTED, SERIES, Margins, canvas, panels, style_context
+
+_ACROSS = 3
+_POINTS = 320
+_OF_SIZE = 0.05
+_BAND, _SHOWN = 0.02, 2.5
+_FEW = 1.5
+"""Decades; fewer are ticked between powers of ten too."""
+
+
+def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
+    """The answers to steps, one panel a coordinate: the reference, the true motion and, paler, the others of the same unit.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop()
+    >>> len(step_figure([("x", simulate(machine(example.plant, example.controller), np.full((200, 1), 1e-6)))]).axes)
+    1
+    """
+    columns = min(_ACROSS, len(found))
+    rows = -(-len(found) // columns)
+    with style_context():
+        width = FULL if columns > 1 else HALF
+        figure = canvas(width, 0.55 + 1.65 * rows)
+        grid = panels(figure, rows, columns, Margins(left=0.52, top=0.28, across=0.62, down=0.42))
+        for axes, (name, test) in zip(grid.ravel(), found, strict=False):
+            _step(axes, name, test)
+        for axes in grid.ravel()[len(found) :]:
+            axes.set_visible(False)
+        for axes in grid.ravel():
+            axes.tick_params(labelbottom=True)
+            axes.set_xlim(0.0, 1e3 * max(_settling_band(test, name) for name, test in found))
+        for axes in grid[-1]:
+            axes.set_xlabel("time [ms]")
+    return figure
+
+
+def _step(axes: Any, name: str, test: Simulated) -> None:
+    names = [channel.name for channel in test.coordinates]
+    index = names.index(name)
+    unit = test.coordinates[index].unit
+    form = display_unit_of(unit, float(np.max(np.abs(test.reference[:, index]))))
+    time = 1e3 * test.times
+    true = test.reference - test.true_error
+    for other, channel in enumerate(test.coordinates):
+        if other != index and channel.unit == unit:
+            axes.plot(*curve(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
+    axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="wanted")
+    axes.plot(*curve(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
+    axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
+    axes.tick_params(labelsize=6.5)
+
+
+def _settling_band(test: Simulated, name: str) -> float:
+    """The time [s] up to which a step is shown: some times that after which its error stays within 2 %."""
+    index = [channel.name for channel in test.coordinates].index(name)
+    outside = np.flatnonzero(np.abs(test.true_error[:, index]) > _BAND * float(np.max(np.abs(test.reference[:, index]))))
+    return min(_SHOWN * float(test.times[outside[-1]]), float(test.times[-1])) if len(outside) else float(test.times[-1])
+
+
+def error_figure(test: Simulated) -> Any:
+    """The true error over time, lengths above angles.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.simulation.machine import machine
+    >>> from flexstage.control.simulation.run import simulate
+    >>> example = integral_loop()
+    >>> len(error_figure(simulate(machine(example.plant, example.controller), np.full((200, 1), 1e-6))).axes)
+    1
+    """
+    units = list(dict.fromkeys(channel.unit for channel in test.coordinates))
+    scaled, noun = _clock(test.times)
+    with style_context():
+        figure = canvas(FULL, 0.65 + 1.25 * len(units))
+        grid = panels(figure, len(units), 1, Margins(left=0.62, top=0.3, down=0.14))
+        count = 0
+        for axes, unit in zip(grid[:, 0], units, strict=True):
+            chosen = [index for index, channel in enumerate(test.coordinates) if channel.unit == unit]
+            error = test.true_error[:, chosen]
+            form = display_unit_of(unit, float(np.max(np.abs(error), initial=0.0)))
+            for index, column in zip(chosen, error.T, strict=True):
+                axes.plot(*curve(scaled, form.factor * column), color=SERIES[count % 7], linewidth=0.9, label=test.coordinates[index].name)
+                count += 1
+            axes.set_ylabel(to_typography(f"error [{form.unit}]"))
+            axes.set_xlim(float(scaled[0]), float(scaled[-1]))
+        handles = [line for axes in grid[:, 0] for line in axes.get_lines()]
+        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=8, handlelength=1.4, borderaxespad=0.2)
+        grid[-1, 0].set_xlabel(noun)
+    return figure
+
+
+def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
+    """Errors (n, f) in the band by pass or period, lengths above angles; dotted: what does not repeat (f,), where it is known.
+
+    >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
+    1
+    """
+    kinds = list(dict.fromkeys(units))
+    with style_context():
+        figure = canvas(FULL * 0.62, 0.65 + 1.5 * len(kinds))
+        grid = panels(figure, len(kinds), 1, Margins(left=0.62, top=0.3, down=0.14))
+        for axes, unit in zip(grid[:, 0], kinds, strict=True):
+            chosen = [index for index, each in enumerate(units) if each == unit]
+            form = display_unit_of(unit, float(np.max(rms[:, chosen])))
+            for index in chosen:
+                axes.semilogy(range(len(rms)), form.factor * rms[:, index], color=SERIES[index % 7], linewidth=1.0, label=names[index])
+                if floor is not None:
+                    axes.axhline(form.factor * float(floor[index]), color=SERIES[index % 7], linewidth=0.7, linestyle=":")
+            axes.set_ylabel(to_typography(f"rms error [{form.unit}]"))
+            axes.set_xlim(0.0, len(rms) - 1.0)
+            axes.xaxis.get_major_locator().set_params(integer=True)
+            plain_ticks(axes.yaxis, steps=(1.0, 2.0, 5.0) if np.ptp(np.log10(rms[:, chosen])) < _FEW else (1.0,))
+        handles = [line for axes in grid[:, 0] for line in axes.get_lines() if not line.get_label().startswith("_")]
+        figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=6, handlelength=1.4, borderaxespad=0.2)
+        grid[-1, 0].set_xlabel(noun)
+    return figure
+
+
+def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
+    """The path in plan: commanded, and followed with its error magnified so that it can be seen; the factor stands in the title.
+
+    >>> from flexstage.show.figures.style import canvas
+    """
+    names = [channel.name for channel in test.coordinates]
+    places = [names.index(name) for name in axes_shown]
+    asked, error = test.reference[:, places], test.true_error[:, places]
+    size = float(np.max(np.ptp(asked, axis=0), initial=0.0))
+    factor = magnification(size, error)
+    forms = [display_unit_of(test.coordinates[place].unit, size) for place in places]
+    factors = np.array([form.factor for form in forms])
+    followed = asked - factor * error
+    label = "followed" if factor == 1.0 else f"followed, its error {factor:g} times"
+    with style_context():
+        figure = canvas(FULL * 0.62, _height(followed))
+        plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
+        plan.plot(*_decimate(factors * asked), color=MUTED, linewidth=0.9, label="commanded")
+        plan.plot(*_decimate(factors * followed), color=SERIES[0], linewidth=0.9, label=label)
+        plan.set_aspect("equal", adjustable="datalim")
+        plan.set_xlabel(to_typography(f"{axes_shown[0]} [{forms[0].unit}]"))
+        plan.set_ylabel(to_typography(f"{axes_shown[1]} [{forms[1].unit}]"))
+        plan.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, borderaxespad=0.2)
+    return figure
+
+
+def _height(path: Array) -> float:
+    """Of a figure that shows a path to scale."""
+    across, up = np.ptp(path, axis=0)
+    return float(np.clip(0.85 + (0.62 * FULL - 0.7) * up / max(across, 1e-12), 2.0, 5.2))
+
+
+def magnification(size: float, error: Array) -> float:
+    """The factor, 1, 2 or 5 times a power of ten and no less than 1, that makes the largest error some twentieth of a size.
+
+    >>> magnification(1.0, np.array([[0.001, 0.0]]))
+    50.0
+    """
+    largest = float(np.max(np.linalg.norm(error, axis=1), initial=0.0))
+    if largest == 0.0 or size == 0.0:
+        return 1.0
+    wanted = max(_OF_SIZE * size / largest, 1.0)
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
+
+
+def curve(x: Array, y: Array) -> tuple[Array, Array]:
+    """A curve over even times with so few points as a picture can show: of each bin its least and its largest value.
+
+    >>> len(curve(np.arange(10000.0), np.zeros(10000))[0]) < 1000
+    True
+    """
+    if len(x) <= 2 * _POINTS:
+        return x, y
+    kept = {0, len(x) - 1}
+    for part in np.array_split(np.arange(len(x)), _POINTS):
+        kept |= {int(part[np.argmin(y[part])]), int(part[np.argmax(y[part])])}
+    places = np.array(sorted(kept))
+    return x[places], y[places]
+
+
+def _decimate(path: Array) -> tuple[Array, Array]:
+    """A path in plan with some thousand points."""
+    step = max(1, len(path) // 2500)
+    return path[::step, 0], path[::step, 1]
+
+
+def _clock(times: Array) -> tuple[Array, str]:
+    return (1e3 * times, "time [ms]") if times[-1] < 1.0 else (times, "time [s]")

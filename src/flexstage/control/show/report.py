@@ -1,0 +1,75 @@
+"""The report of a loop: one HTML file that stands alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.storage.digest import digest
+from flexstage.base.version import __version__
+from flexstage.control.show.figures.front import FrontLine, front_figure
+from flexstage.control.show.playing import response_motions
+from flexstage.control.show.sections import error_section, frequency_section, headline, loop_section, measured_section, time_section
+from flexstage.control.show.tables import comparison_table, kind_name, rivals_table
+from flexstage.control.study.compare import Comparison
+from flexstage.control.study.setup import LoopSetup
+from flexstage.control.study.study import LoopStudy
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Head, Headline, Picture, page, section
+from flexstage.show.scene.stage import scene
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.motions import Group
+
+
+@check_arguments
+def loop_report(found: LoopStudy) -> str:
+    """A loop as a page of HTML: verdict, block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
+    mechanism = found.settled.mechanism
+    origin = (
+        ("physics", digest(mechanism, physics=True)[:16]),
+        ("model", found.model_name),
+        ("rate", f"{found.settled.rate:g} Hz"),
+        ("flexstage", __version__),
+    )
+    data = stage_data(mechanism)
+    data = replace(data, motions=(*response_motions(found, data), *data.motions))
+    played = next((f"{each.group.value} {each.name}" for each in data.motions if each.group is Group.RESPONSE), "")
+    sections = (
+        stage_section(scene(mechanism), motion=played or first_motion(data)),
+        loop_section(found),
+        caveat_section(mechanism, found.cautions),
+        frequency_section(found),
+        measured_section(found),
+        time_section(found),
+        error_section(found),
+    )
+    head = Head(mechanism.name or "stage", f"Control loop, {found.settled.model_name.partition(',')[0]} model", origin, headline(found))
+    return page(head, [each for each in sections if each is not None], {"stage": data})
+
+
+def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
+    """Controllers side by side as a page of HTML: which wins for what, the front between what they trade, motion by motion."""
+    origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
+    data = stage_data(mechanism)
+    best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
+    lines = [
+        FrontLine(kind_name(name), name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
+        for name, each in found.controllers.items()
+        if (one := each.turned) is not None and len(one.gains)
+    ]
+    caption = (
+        "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "
+        "linear loop; of noise the geometric mean, rotations times the stage's length. Full dots: no other is better at once in all four."
+    )
+    drawn = Picture(to_svg(front_figure(lines), "front", "What controllers trade: rejection, noise, settling, delay margin"), caption)
+    sections = (
+        stage_section(scene(mechanism), motion=first_motion(data)),
+        section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
+        caveat_section(mechanism, found.cautions),
+        section("Motion by motion", [rivals_table(found)]),
+    )
+    head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
+    return page(head, [each for each in sections if each is not None], {"stage": data})

@@ -1,0 +1,303 @@
+"""Sections of a loop: what it is, over frequency, over time, its noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.control.plant_models.electronics import Amplifier, Sensor
+from flexstage.control.show.error_tables import hysteresis_table, noise_table, rest_table
+from flexstage.control.show.figures.diagram import Block as Box
+from flexstage.control.show.figures.diagram import Diagram, loop_diagram
+from flexstage.control.show.figures.frequency import Curves, Measured, measured_figure, open_loop_figure, pole_figure, sensitivity_figure
+from flexstage.control.show.figures.hysteresis import HysteresisLoop, hysteresis_figure
+from flexstage.control.show.figures.noise import Densities, Shares, noise_share_figure, noise_spectrum_figure
+from flexstage.control.show.figures.time import error_figure, lesson_figure, path_figure, step_figure
+from flexstage.control.show.tables import (
+    charge_table,
+    count_modes,
+    damping_table,
+    heat_table,
+    law_table,
+    learning_table,
+    leg_table,
+    loop_table,
+    margin_table,
+    measured_table,
+    repetition_table,
+    step_table,
+    tracking_table,
+)
+from flexstage.control.study.choices import Compensation, ControllerKind
+from flexstage.control.study.runs import Run
+from flexstage.control.study.stacks import Sweep
+from flexstage.control.study.study import LoopStudy
+from flexstage.show.display import format_value, number
+from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.reading import Spot, reading
+from flexstage.show.page import Block, Fact, Facts, Headline, Picture, Prose, Section, fold, section
+from flexstage.show.table import matrix_table
+
+_GOAL = 2.0
+_NOISELESS = 1e-16
+
+
+def loop_section(found: LoopStudy) -> Section | None:
+    """The loop at a glance: facts, block diagram, what it is made of."""
+    drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
+    caption = "Block diagram of the loop. Shaded: what the computer does, sample by sample."
+    blocks = [Facts(tuple(_facts(found))), Picture(drawn, caption), loop_table(found)]
+    blocks += [charge_table(found), damping_table(found), law_table(found)]
+    return section("The loop", blocks)
+
+
+def headline(found: LoopStudy) -> Headline:
+    """Whether the loop is stable, and how much room it has."""
+    if found.margins is None:
+        return Headline("Open loop.")
+    stable = found.stability.stable
+    phases = {each.channel: float(np.rad2deg(each.phase.value)) for each in found.margins.channels}
+    least = min(phases, key=lambda name: phases[name])
+    return Headline(
+        f"The loop is {'stable' if stable else 'unstable'}; the least phase margin is {number(phases[least], 3)} deg, of {least}.", stable
+    )
+
+
+def _facts(found: LoopStudy) -> Iterator[Fact]:
+    yield Fact("stability", "stable" if found.stability.stable else "unstable", f"slowest decay {number(-found.growth_all_modes, 3)} 1/s")
+    if found.controller.tuning is not None:
+        yield Fact("loop gains pass 1 at", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all of them")
+    if found.peaks is not None:
+        yield Fact(
+            "peak of S, modes as modelled", f"{number(20.0 * np.log10(found.peaks.sensitivity.value), 3)} dB", "6 dB or less is usual"
+        )
+    settled = [test.figures.settling[test.index] for test in found.runs if test.figures is not None]
+    if settled:
+        slowest = float(np.max(settled))
+        shown = f"{number(1e3 * slowest, 3)} ms" if np.isfinite(slowest) else "not"
+        yield Fact("steps settle within", shown, "to 2 %, the slowest of them")
+    for test in found.runs:
+        if test.figures is None:
+            yield _error_fact(test)
+
+
+def _error_fact(test: Run) -> Fact:
+    unit = test.tracking.unit[test.index][2]
+    value = float(test.tracking.values[test.index][2])
+    return Fact(f"{test.course.name}, {test.course.moved[0]}", format_value(value, unit, 3), "rms true error")
+
+
+def diagram_of(found: LoopStudy) -> Diagram:
+    """The block diagram of a loop, in the words of its set-up."""
+    setup, plant = found.setup, found.plant
+    rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
+    stage = Box("stage", f"{found.model_name.partition(',')[0]}\n{count_modes(len(plant.frequencies))}")
+    back = (
+        Box("gauges", f"{len(plant.gauges)}"),
+        *_filters(found),
+        Box("sampler", _sampler(found, rate)),
+        Box("R_s^-1", _TO_POSE, digital=True),
+    )
+    power = tuple(plant.hardware.amplifiers.values())
+    analogue = (
+        Box("hold", f"{rate}\nafter {number(1e6 * plant.hardware.delay, 4)} us"),
+        Box("amplifier", _bandwidth_text(power) if found.charge is None else f"charge\n{_bandwidth_text(power)}"),
+        Box("coils", "linear") if found.settled.kinematics.thrusts else Box("PZT", _stacks(found)),
+    )
+    onto = [("floor", "stage")] if found.settled.floor else []
+    closed = setup.controller.law is not ControllerKind.NONE
+    onto += [("noise", "gauges")] if closed and any(each.noise_density for each in plant.hardware.sensors.values()) else []
+    onto += [("load", "gains")] if Compensation.LOAD in setup.compensate else []
+    return Diagram(
+        forward=(*_digital(found), *analogue, stage),
+        back=back,
+        onto=tuple(onto),
+        fed_forward=Compensation.REFERENCE in setup.compensate and closed,
+        closed=closed,
+    )
+
+
+_TO_POSE = "readings\nto pose"
+
+
+def _digital(found: LoopStudy) -> Iterator[Box]:
+    setup = found.setup
+    if setup.controller.law is not ControllerKind.NONE:
+        bandwidth = f"\n{number(found.controller.tuning.bandwidth, 3)} Hz" if found.controller.tuning is not None else ""
+        notched = ", notches" if found.controller.notches else ""
+        kind = setup.controller.law.value
+        yield Box(
+            "controller",
+            f"{kind.upper() if len(kind) < 4 else kind}{notched}\n{setup.controller.coordinates.value}{bandwidth}",
+            digital=True,
+        )
+    forced = bool(found.settled.kinematics.thrusts)
+    yield Box("W^-1", "pose to\nforces", digital=True) if forced else Box("R_a", "pose to\nstrokes", digital=True)
+    if Compensation.LOST_MOTION in setup.compensate or Compensation.LOAD in setup.compensate:
+        yield Box("gains", "lost motion", digital=True)
+    if Compensation.HYSTERESIS in setup.compensate:
+        yield Box("inverse", "of hysteresis", digital=True)
+
+
+def _filters(found: LoopStudy) -> Iterator[Box]:
+    gauges = found.setup.gauges
+    if gauges.filter_order and gauges.filter_corner is not None:
+        yield Box("filter", f"order {gauges.filter_order}\n{number(gauges.filter_corner, 4)} Hz")
+
+
+def _sampler(found: LoopStudy, rate: str) -> str:
+    steps = {each.resolution for each in found.plant.hardware.sensors.values() if each.resolution}
+    return f"{rate}\nsteps {format_value(max(steps), 'm', 3)}" if steps else rate
+
+
+def _bandwidth_text(items: tuple[Amplifier | Sensor, ...]) -> str:
+    slowest = min((each.bandwidth for each in items), default=np.inf)
+    return "ideal" if np.isinf(slowest) else f"{number(slowest, 4)} Hz"
+
+
+def _stacks(found: LoopStudy) -> str:
+    return "hysteresis" if found.setup.hysteresis is not None else "linear"
+
+
+def frequency_section(found: LoopStudy) -> Section | None:
+    """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
+    if found.curves is None:
+        return None
+    seen, plant = found.curves, found.plant
+    own = np.diagonal(seen.sensitivity, axis1=1, axis2=2)
+    modes = plant.frequencies[: 2 * len(plant.coordinates.names)]
+    spots = tuple(margin_spots(found))
+    opened = open_loop_figure(Curves(seen.frequencies, seen.loops, seen.names), modes, spots=spots)
+    loops = to_svg(opened, "open-loops", "Open loops over frequency")
+    goal = found.controller.tuning.goal.sensitivity if found.controller.tuning is not None else _GOAL
+    pair = sensitivity_figure(Curves(seen.frequencies, own, seen.names), Curves(seen.frequencies, 1.0 - own, seen.names), goal)
+    sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
+    poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
+    caption = (
+        "Each loop opened alone at the pose, the others closed; dotted: modes of the stage; circles: margins, of gain where the phase is "
+        "−180°, of phase where the gain is 1. Every second curve is dashed."
+    )
+    return section(
+        "Over frequency",
+        [
+            margin_table(found),
+            Picture(loops, caption, reading=reading(opened, spots)),
+            Picture(
+                sensitivities,
+                "What is left of a disturbance, and what is followed; dashed: the highest peak of S that was allowed.",
+                reading=reading(pair),
+            ),
+            Picture(
+                poles, "Closed-loop poles, delay and hold included, beside those of the stage alone; dotted: damping ratios 0.1, 0.3, 0.6."
+            ),
+            fold("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
+        ],
+    )
+
+
+def measured_section(found: LoopStudy) -> Section | None:
+    """The loop on the responses of a test themselves, beside fit and model; `None` without a test."""
+    if found.measured is None:
+        return None
+    seen = found.measured.sensitivities
+    drawn = measured_figure(
+        Measured(seen.frequencies, found.plant.coordinates.names, seen.measured, seen.low, seen.high, seen.fitted, seen.predicted)
+    )
+    picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
+    sure = "shaded: 95 % of every line" if seen.low is not None else "the test does not say how sure its responses are"
+    caption = f"What every loop leaves of a disturbance along its axis, hold and delay included; {sure}."
+    return section("On the measured responses", [measured_table(found), Picture(picture, caption, reading=reading(drawn))])
+
+
+def margin_spots(found: LoopStudy) -> Iterator[Spot]:
+    """Where the margins of the single loops stand in the picture of the open loops."""
+    for each in () if found.margins is None else found.margins.channels:
+        for edge in (each.gain_low, each.gain_high):
+            if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # at rest nothing is drawn
+                decibel = number(20.0 * float(np.log10(edge.value)), 3)
+                yield Spot(edge.frequency, f"{each.channel}: gain margin {decibel} dB at {number(edge.frequency)} Hz", 1.0 / edge.value)
+        if np.isfinite(each.phase.value):
+            turn = number(float(np.rad2deg(each.phase.value)), 3)
+            yield Spot(each.phase.frequency, f"{each.channel}: phase margin {turn}° at {number(each.phase.frequency)} Hz", 1.0)
+
+
+def time_section(found: LoopStudy) -> Section | None:
+    """Steps and trajectories."""
+    blocks = [each(found.runs) for each in (step_table, tracking_table, learning_table, repetition_table, heat_table, leg_table)]
+    stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
+    pictures = []
+    if stepped:
+        figure = step_figure(stepped)
+        drawn = to_svg(figure, "steps", "Steps of every motion")
+        caption = "Dashed: the reference; blue: the true motion; grey: the other coordinates of the same unit."
+        pictures.append(Picture(drawn, caption, reading=reading(figure)))
+    for number_, test in enumerate(test for test in found.runs if test.figures is None):
+        pictures += _trajectory_pictures(test, f"trajectory{number_}")
+    small = None if found.second_order is None else Prose(found.second_order.text)
+    return section("Over time", [small, *blocks, *pictures])
+
+
+def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
+    if test.course.plane is not None:
+        drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
+        yield Picture(drawn, f"The {test.course.name} in plan, to scale, its true error as many times as stands above.")
+    drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
+    yield Picture(drawn, "Reference less true pose over time.")
+    if test.learned is not None:
+        taught = test.learned
+        figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "passes learned from", taught.noise)
+        caption = f"Error in the band up to {number(taught.band, 4)} Hz, pass by pass; dotted: what of it does not repeat."
+        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
+    if test.repeated is not None:
+        seen = test.repeated
+        figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "periods before")
+        caption = f"Error in the band up to {number(seen.band, 4)} Hz, period by period."
+        yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
+
+
+def error_section(found: LoopStudy) -> Section | None:
+    """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
+    blocks: list[Block | None] = [
+        None if found.static_errors is None else rest_table(found.static_errors),
+        noise_table(found),
+        *_noise_pictures(found),
+    ]
+    if found.hysteresis is not None:
+        drawn = to_svg(
+            hysteresis_figure(_worst_loops(found.hysteresis)), "hysteresis", "Hysteresis of a stack with and without its inverse"
+        )
+        name = found.hysteresis.actuators[_worst_stack(found.hysteresis)]
+        blocks += [hysteresis_table(found.hysteresis), Picture(drawn, f"Stack of {name} alone, driven to and fro in open loop.")]
+    return section("Errors and noise", blocks)
+
+
+def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
+    budget = found.noise
+    if not np.any(budget.rms > _NOISELESS):
+        return
+    shares = noise_shares(found)
+    drawn = to_svg(noise_share_figure(shares), "noise-shares", "Shares of the noise by source")
+    yield Picture(drawn, "Whose the noise is: shares of the mean square of each motion at rest, and its rms.")
+    densities = Densities(shares.coordinates, shares.units, budget.frequencies, np.sum(budget.density, axis=2))
+    drawn = to_svg(noise_spectrum_figure(densities), "noise-spectrum", "Noise over frequency")
+    yield Picture(drawn, "Where it lies: amplitude densities of the true motion, and its rms summed up from the lowest frequency.")
+
+
+def noise_shares(found: LoopStudy) -> Shares:
+    """Mean squares of the motions at rest by kind of source."""
+    budget = found.noise
+    names = tuple(channel.name.removeprefix("relative.") for channel in budget.outputs)
+    kinds = tuple(kind.value for kind in budget.kinds)
+    return Shares(names, tuple(each.unit for each in budget.outputs), kinds, np.asarray(budget.by_kind.values))
+
+
+def _worst_stack(sweep: Sweep) -> int:
+    return int(np.argmax(sweep.rms_error))
+
+
+def _worst_loops(sweep: Sweep) -> list[HysteresisLoop]:
+    """The stack that is furthest off."""
+    index = _worst_stack(sweep)
+    pairs = (("without inverse", sweep.bare), ("with inverse", sweep.inverse))
+    return [HysteresisLoop(name, sweep.wanted[:, index], came[:, index]) for name, came in pairs]

@@ -1,0 +1,1 @@
+"""Amplifiers and floor vibration of a set-up."""

@@ -1,0 +1,72 @@
+"""Vibration of the floor: generic criteria by name and stated densities, as spectra."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+
+from flexstage.analysis.dynamics.random_response import Rate, Spectrum
+from flexstage.control.study.choices import Criterion
+from flexstage.control.study.setup import Floor, VibrationSetup
+
+_THIRD_OCTAVE = np.log(2.0) / 3.0
+_VELOCITIES = MappingProxyType(
+    {
+        Criterion.WORKSHOP: 800e-6,
+        Criterion.OFFICE: 400e-6,
+        Criterion.RESIDENTIAL: 200e-6,
+        Criterion.THEATRE: 100e-6,
+        Criterion.VC_A: 50e-6,
+        Criterion.VC_B: 25e-6,
+        Criterion.VC_C: 12.5e-6,
+        Criterion.VC_D: 6.25e-6,
+        Criterion.VC_E: 3.12e-6,
+        Criterion.VC_F: 1.56e-6,
+        Criterion.VC_G: 0.78e-6,
+    }
+)
+_FROM_ONE_HERTZ = (Criterion.VC_C, Criterion.VC_D, Criterion.VC_E, Criterion.VC_F, Criterion.VC_G)
+_LOWEST, _CORNER, _HIGHEST = 4.0, 8.0, 80.0
+
+
+def criterion_spectrum(criterion: Criterion) -> Spectrum:
+    """The spectrum of a floor that just meets a generic vibration criterion in every third-octave band.
+
+    The criteria state the rms velocity v in bands of a third of an octave: constant from 8 to 80 Hz, and below, down to 4 Hz, rising as 1/f
+    (constant acceleration); from VC-C on constant from 1 to 80 Hz (Gordon 1999; Amick et al. 2005, Table 1). A density
+    v^2/(f ln(2)/3) has exactly v in each band. Outside these frequencies the criteria say nothing, and the spectrum is zero.
+
+    >>> spectrum = criterion_spectrum(Criterion.VC_D)
+    >>> band = np.geomspace(10.0 * 2.0 ** (-1.0 / 6.0), 10.0 * 2.0 ** (1.0 / 6.0), 2001)
+    >>> velocity = spectrum.at(band) * (2.0 * np.pi * band) ** 2
+    >>> round(1e6 * float(np.sqrt(np.trapezoid(velocity, band))), 4)
+    6.25
+    """
+    velocity = _VELOCITIES[criterion]
+    if criterion in _FROM_ONE_HERTZ:
+        frequencies, velocities = np.array([1.0, _HIGHEST]), np.array([velocity, velocity])
+    else:
+        frequencies = np.array([_LOWEST, _CORNER, _HIGHEST])
+        velocities = velocity * np.array([_CORNER / _LOWEST, 1.0, 1.0])
+    return Spectrum(velocities**2 / (_THIRD_OCTAVE * frequencies), frequencies, Rate.VELOCITY)
+
+
+def floor_spectra(floor: Floor) -> dict[str, Spectrum]:
+    """Spectra by input (`ground.x`, ...) of a set-up's floor.
+
+    >>> sorted(floor_spectra(Floor(z=VibrationSetup(criterion=Criterion.VC_C))))
+    ['ground.z']
+    """
+    by_axis = {axis: getattr(floor, axis) for axis in ("x", "y", "z")}
+    return {f"ground.{axis}": _spectrum(shaking) for axis, shaking in by_axis.items() if shaking is not None}
+
+
+def _spectrum(shaking: VibrationSetup) -> Spectrum:
+    if shaking.criterion is not None:
+        return criterion_spectrum(shaking.criterion)
+    kinds = ((Rate.ACCELERATION, shaking.acceleration), (Rate.VELOCITY, shaking.velocity), (Rate.VALUE, shaking.displacement))
+    rate, table = next((rate, table) for rate, table in kinds if table)
+    if not shaking.frequencies:
+        return Spectrum(table[0] ** 2, rate=rate)
+    return Spectrum(np.array(table) ** 2, np.array(shaking.frequencies), rate)

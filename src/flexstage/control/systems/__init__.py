@@ -1,0 +1,1 @@
+"""Linear systems of a loop: interconnection, sampling, norms."""

@@ -1,0 +1,213 @@
+"""Closed loops: plant and controller wired, and cut open where margins are asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.control.plant_models.plants import Plant, zero_order_hold
+from flexstage.control.systems.system import System, connect, rename, select, static
+from flexstage.models.linear.model import Channel
+
+
+class Cut(Enum):
+    """Where a loop is cut open: at the pose (the plant's output, in the error) or at the commands (the plant's input)."""
+
+    POSE = "pose"
+    COMMAND = "command"
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A plant with its controller, wired: what margins, verdicts, budgets and simulations start from.
+
+    `plant` is the continuous plant, `held` the same between hold and sampler, `controller` as given without what is not wired in a linear
+    loop (`applied.<actuator>`). `states` names the states of `system`.
+
+    `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
+    command; `ground.<c>`, `platform.fx` ... (held over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...
+    readings with their noise; `pose.<c>` the pose estimated from them; `error.<c>` = reference - pose; `command.<actuator>` as the
+    controller gives it; `<actuator>` with its noise, as the hold gives it on.
+    """
+
+    plant: Plant
+    held: System
+    controller: System
+    system: System
+    states: tuple[str, ...]
+
+    @property
+    def step(self) -> float | None:
+        """Time between samples [s]; None for a continuous loop."""
+        return self.system.step
+
+
+@check_arguments
+def loop(given: Plant, controller: System) -> Loop:
+    """Wire a controller to a plant.
+
+    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>` (left open here: nothing saturates
+    in a linear loop); its outputs all `command.<actuator>`. Its step must be the hardware's (continuous: none). Raises `DesignError`
+    otherwise, and for a loop without lag or delay whose equations have no solution.
+
+    >>> from flexstage.control.plant_models.electronics import hardware
+    >>> from flexstage.control.plant_models.plants import plant
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.ideal import ideal
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> one = plant(lumped(stage), ideal(stage), hardware(stage, rate=10e3, delay=50e-6), modes=3)
+    >>> channels = (Channel("error.x", "m"),), (Channel("command.B", "m"),)
+    >>> integral = System(np.eye(1), np.eye(1), 0.05 * np.eye(1), np.zeros((1, 1)), *channels, step=1e-4)
+    >>> found = loop(one, integral)
+    >>> gain = select(found.system, ["reference.x"], ["error.x"]).transfer(np.array([0.0]))
+    >>> found.system.growth < 0.0, float(abs(gain[0, 0, 0])) < 1e-9  # stable, and without error at rest
+    (True, True)
+    """
+    require(_findings(given, controller))
+    wanted = [name for name in controller.input_names if not name.startswith("applied.")]
+    wired = select(controller, wanted, _commands(given))
+    plant_held = zero_order_hold(given)
+    inputs = (*_channels("reference", given), *_noises(given), *_disturbances(given))
+    outputs = (*plant_held.output_names[len(given.gauges) :], *given.gauges, *_names("pose", given), *_names("error", given))
+    system = connect(*_wiring(given, plant_held, wired), inputs, (*outputs, *_commands(given), *given.actuators))
+    return Loop(given, plant_held, wired, system, _states(given, plant_held, wired))
+
+
+def open_at(closed: Loop, cut: Cut, channel: str | None = None) -> System:
+    """The open loop L of a negative feedback: S = (I + L)^-1, from what goes into the cut to minus what comes back.
+
+    Cut at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or one
+    `channel` alone with the others closed (loop at a time). Raises `DesignError` for a channel that the cut does not have.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> one = integral_loop()
+    >>> at_pose, at_command = open_at(one, Cut.POSE), open_at(one, Cut.COMMAND)
+    >>> at_pose.input_names, at_pose.output_names
+    (('cut.x',), ('pose.x',))
+    >>> far = np.array([10.0, 500.0])
+    >>> bool(np.allclose(at_pose.transfer(far), at_command.transfer(far)))  # one input, one output: the same loop from both places
+    True
+    """
+    given = closed.plant
+    outer = _names("pose", given) if cut is Cut.POSE else _commands(given)
+    short = [name.removeprefix(f"{cut.value}.") for name in outer]
+    if channel is not None and channel not in short:
+        require([Finding(channel, f"the loop has no such {cut.value}", suggest_nearest(channel, short))])
+    return _loop_cut(closed, [name for name, each in zip(outer, short, strict=True) if channel is None or channel == each])
+
+
+def open_everywhere(closed: Loop) -> System:
+    """The loop cut open at all poses and all commands at once, in this order: for what acts at both its ends together.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = open_everywhere(integral_loop())
+    >>> found.input_names, found.output_names
+    (('cut.x', 'cut.B'), ('pose.x', 'command.B'))
+    """
+    return _loop_cut(closed, [*_names("pose", closed.plant), *_commands(closed.plant)])
+
+
+def _loop_cut(closed: Loop, chosen: list[str]) -> System:
+    """Open at these signals, the sign turned: what comes back is subtracted."""
+    given = closed.plant
+    systems, links = _wiring(given, closed.held, closed.controller)
+    outer = dict(zip((*_names("pose", given), *_commands(given)), (*_units(given, Cut.POSE), *_units(given, Cut.COMMAND)), strict=True))
+    swapped = {name: f"cut.{name.partition('.')[2]}" for name in chosen}
+    zero = {channel.name for channel in (*_channels("reference", given), *_noises(given), *_disturbances(given))}
+    changed = {
+        entry: {swapped.get(term, term): factor for term, factor in terms.items() if term not in zero} for entry, terms in links.items()
+    }
+    found = connect(systems, changed, tuple(Channel(swapped[name], outer[name]) for name in chosen), chosen)
+    return replace(found, C=-found.C, D=-found.D)
+
+
+def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
+    """Plant, estimate and controller with every input's terms; nothing but a pose and a command crosses between them."""
+    entry = rename(controller, {name: f"to.{name}" for name in controller.input_names})
+    entry = replace(entry, outputs=controller.outputs)
+    links: dict[str, dict[str, float]] = {name: {name: 1.0} for name in plant.input_names if name not in given.actuators}
+    links |= {f"entry.{name}": {f"command.{name}": 1.0, f"noise.{name}": 1.0} for name in given.actuators}
+    links |= {f"gap.{name}": {f"gap.{name}": 1.0, f"noise.{name}": 1.0} for name in given.gauges}
+    for name in given.coordinates.names:
+        terms = {f"reference.{name}": 1.0, f"pose.{name}": -1.0}
+        links[f"difference.{name}"] = terms
+        links |= {f"to.error.{name}": terms} if f"error.{name}" in controller.input_names else {}
+    for name in controller.input_names:
+        links |= {} if name.startswith("error.") else {f"to.{name}": {name: 1.0}}
+    return (plant, _estimate(given), _sums(given), entry), links
+
+
+def _estimate(given: Plant) -> System:
+    """Readings with their noise, and the pose from them; the error."""
+    gauges, entry = given.coordinates.readings(), given.coordinates.readings("gap.")
+    gain = np.vstack([np.eye(len(gauges)), given.coordinates.pose])
+    return static(gain, entry, (*gauges, *_channels("pose", given)), given.hardware.step)
+
+
+def _sums(given: Plant) -> System:
+    """What a hold gives on, and the error."""
+    entry = (*given.coordinates.commands("entry."), *_channels("difference", given))
+    exit_ = (*given.coordinates.commands(), *_channels("error", given))
+    return static(np.eye(len(entry)), entry, exit_, given.hardware.step)
+
+
+def _names(kind: str, given: Plant) -> tuple[str, ...]:
+    return tuple(f"{kind}.{name}" for name in given.coordinates.names)
+
+
+def _channels(kind: str, given: Plant) -> tuple[Channel, ...]:
+    return tuple(Channel(name, unit) for name, unit in zip(_names(kind, given), given.coordinates.units, strict=True))
+
+
+def _commands(given: Plant) -> tuple[str, ...]:
+    return tuple(f"command.{name}" for name in given.actuators)
+
+
+def _units(given: Plant, cut: Cut) -> tuple[str, ...]:
+    return given.coordinates.units if cut is Cut.POSE else tuple(channel.unit for channel in given.coordinates.commands())
+
+
+def _noises(given: Plant) -> tuple[Channel, ...]:
+    return (*given.coordinates.readings("noise."), *given.coordinates.commands("noise."))
+
+
+def _disturbances(given: Plant) -> tuple[Channel, ...]:
+    return tuple(channel for channel in given.system.inputs if channel.name not in given.actuators)
+
+
+def _states(given: Plant, plant: System, controller: System) -> tuple[str, ...]:
+    """Those of the plant, strokes under way (newest first), those of the controller."""
+    late = len(plant.A) - len(given.states)
+    width = len(given.actuators)
+    registers = (f"held.{given.actuators[number % width]}.{number // width + 1}" for number in range(late))
+    return (*given.states, *registers, *(f"controller.{number + 1}" for number in range(len(controller.A))))
+
+
+def _findings(given: Plant, controller: System) -> list[Finding]:
+    found = []
+    if controller.step is None or given.hardware.step is None:
+        if controller.step is not given.hardware.step:
+            kinds = ["continuous" if step is None else f"sampled every {step:g} s" for step in (controller.step, given.hardware.step)]
+            found.append(Finding("controller", f"it is {kinds[0]}, the hardware {kinds[1]}", "Give both one rate"))
+    elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
+        what = f"its step is {controller.step:g} s, the hardware's {given.hardware.step:g} s"
+        found.append(Finding("controller", what, "Give both one rate"))
+    known = [*_names("error", given), *_names("reference", given), *_names("pose", given), *(f"applied.{name}" for name in given.actuators)]
+    return [
+        *found,
+        *(
+            Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            for name in controller.input_names
+            if name not in known
+        ),
+        *(
+            Finding("controller", f"it has no output {name}", "Give a command to every actuator, zero if need be")
+            for name in _commands(given)
+            if name not in controller.output_names
+        ),
+    ]

@@ -1,0 +1,86 @@
+"""Systems to and from python-control (the extra `control`)."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.control.systems.system import System
+from flexstage.models.linear.model import Channel
+
+
+@check_arguments
+def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
+    """A system as `control.StateSpace`, with the names of its inputs and outputs, points turned to underscores (`error_x`).
+
+    `states` name its states (those of a `Loop`, for instance). A continuous system has dt = 0. Raises `DesignError` where python-control
+    is not installed, and where two names become one.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> found = to_control(integral_loop().controller)
+    >>> found.input_labels, found.output_labels, found.dt
+    (['error_x'], ['command_B'], 0.0001)
+    """
+    control = _control()
+    names = [[_python_names(name) for name in group] for group in (system.input_names, system.output_names, states or ())]
+    for group in names:
+        require(
+            Finding(name, f"{group.count(name)} names become this one", "Rename them")
+            for name in dict.fromkeys(group)
+            if group.count(name) > 1
+        )
+    step = 0 if system.step is None else system.step
+    matrices = (system.A, system.B, system.C, system.D)
+    return control.ss(*matrices, step, inputs=names[0], outputs=names[1], **({"states": names[2]} if states else {}))
+
+
+@check_arguments
+def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs: tuple[Channel, ...] | None = None) -> System:
+    """A `control.StateSpace`, or a transfer function of one input and one output, as a system.
+
+    `inputs` and `outputs` name its channels with their units (absent: by its own labels, without unit); a controller made elsewhere takes
+    `error.x` ... and `command.B1` ... so. Raises `DesignError` for a sampled system whose step is not stated, for what is no linear
+    system, and for channels that are not as many.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> one = integral_loop().controller
+    >>> there = from_control(to_control(one), one.inputs, one.outputs)
+    >>> bool(np.array_equal(there.A, one.A)), there.input_names, there.step
+    (True, ('error.x',), 0.0001)
+    """
+    control = _control()
+    if not isinstance(system, control.StateSpace | control.TransferFunction):
+        raise refuse("system", f"it is {type(system).__name__}, no StateSpace or TransferFunction", "Linearise or convert it first")
+    if isinstance(system, control.TransferFunction) and (system.ninputs, system.noutputs) != (1, 1):
+        what = f"a transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
+        raise refuse("system", what, "Convert it to a StateSpace: a realisation of several channels is a choice")
+    found = control.ss(system)
+    if found.dt is True or found.dt is None:
+        raise refuse("system", f"its dt is {found.dt}: no step is stated", "Give dt in seconds, or 0 for a continuous system")
+    channels = [_channels(given, found, kind) for given, kind in ((inputs, "input"), (outputs, "output"))]
+    matrices = (np.array(matrix, dtype=float) for matrix in (found.A, found.B, found.C, found.D))
+    return System(*matrices, inputs=channels[0], outputs=channels[1], step=float(found.dt) or None)
+
+
+def _control() -> Any:
+    try:
+        return importlib.import_module("control")
+    except ImportError:
+        raise refuse("python-control", "it is not installed", "Install it with: pip install 'flexstage[control]'") from None
+
+
+def _python_names(name: str) -> str:
+    return name.replace(".", "_")
+
+
+def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tuple[Channel, ...]:
+    labels = system.input_labels if kind == "input" else system.output_labels
+    if given is None:
+        return tuple(Channel(label, "1") for label in labels)
+    if len(given) != len(labels):
+        require([Finding(f"{kind}s", f"{len(given)} are named, the system has {len(labels)}", "Name each of them")])
+    return given

@@ -1,0 +1,156 @@
+"""Peaks of frequency responses (H-infinity norms), by the eigenvalues of a Hamiltonian matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.control.systems.resolvent import Resolvent, resolvent
+from flexstage.control.systems.system import System
+
+_NEAR_AXIS = 1e-3
+"""Real over imaginary part of an eigenvalue that may stand for one on the axis: generous, for all are looked at."""
+_ACCURACY = 1e-11
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest value of a response (of its largest singular value) and the frequency [Hz] where it stands."""
+
+    value: float
+    frequency: Annotated[float, FREQUENCY]
+
+
+def peak(system: System) -> Peak:
+    """sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 of its value.
+
+    Bruinsma and Steinbuch (Systems & Control Letters 14, 1990): a singular value of H equals gamma where the Hamiltonian matrix of gamma
+    has an eigenvalue on the imaginary axis, so that no peak can hide between frequencies; sampled systems by z = (1 + s)/(1 - s), which
+    keeps the norm. Raises `DesignError` for an unstable system, whose response is not what it does.
+
+    >>> from flexstage.models.linear.model import Channel
+    >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
+    >>> resonance = System(np.array([[0.0, 1.0], [-1.0, -0.2]]), np.eye(2)[:, 1:], np.eye(2)[:1], np.zeros((1, 1)), *metre)
+    >>> round(peak(resonance).value, 9), round(0.5 / (0.1 * 0.99**0.5), 9)  # 1/(2 zeta (1 - zeta^2)^(1/2))
+    (5.025189076, 5.025189076)
+    """
+    if system.growth >= 0.0:
+        raise refuse("peak", f"the system grows by {system.growth:.3g} 1/s", "Stabilise it first")
+    response, plane = resolvent(system), to_plane(system)
+    frequencies = _first_frequencies(system)
+    best = _highest_of(response, frequencies)
+    for _ in range(30):
+        crossings = level_crossings(plane, best.value * (1.0 + _ACCURACY)) if best.value > 0.0 else np.zeros(0)
+        between = 0.5 * (crossings[1:] + crossings[:-1])
+        found = _climb(response, _highest_of(response, np.concatenate([crossings, between, [best.frequency]])))
+        if found.value <= best.value * (1.0 + _ACCURACY):
+            return found if found.value > best.value else best
+        best = found
+    return best
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A system in the plane s of a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) of a sampled one."""
+
+    system: System
+    unit: float
+    step: float | None
+
+    def frequencies(self, numbers: Array) -> Array:
+        """Frequencies [Hz] of nu."""
+        if self.step is None:
+            return numbers * self.unit / (2.0 * np.pi)
+        return np.arctan(numbers) / (np.pi * self.step)
+
+
+def to_plane(system: System) -> Plane:
+    """A system with its states balanced, sampled ones by z = (1 + s)/(1 - s), continuous ones with a unit of time of their own.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> one = integral_loop().system
+    >>> plane, far = to_plane(one), np.array([70.0])
+    >>> there = plane.system.transfer(np.tan(np.pi * far * one.step) / (2.0 * np.pi))
+    >>> bool(np.allclose(there, one.transfer(far)))
+    True
+    """
+    if system.step is None:
+        unit = float(np.sqrt(np.mean(np.abs(system.poles) ** 2))) or 1.0 if len(system.A) else 1.0
+        moved = replace(system, A=system.A / unit, B=system.B / unit)
+    else:
+        unit, inverse = 1.0, np.linalg.inv(system.A + np.eye(len(system.A)))
+        B, C = np.sqrt(2.0) * inverse @ system.B, np.sqrt(2.0) * system.C @ inverse
+        A = inverse @ (system.A - np.eye(len(system.A)))
+        moved = replace(system, A=A, B=B, C=C, D=system.D - system.C @ inverse @ system.B, step=None)
+    return Plane(_balance(moved), unit, system.step)
+
+
+def _balance(system: System) -> System:
+    """States scaled so that rows and columns are alike in size, the inputs and outputs among them."""
+    size = len(system.A)
+    if not size:
+        return system
+    entry, exit_ = (np.max(np.abs(each), axis=axis, initial=0.0) for each, axis in ((system.B, 1), (system.C, 0)))
+    whole = np.block([[system.A, entry[:, None]], [exit_[None], np.zeros((1, 1))]])
+    _, (scale, _) = scipy.linalg.matrix_balance(whole, permute=False, separate=True)
+    scale = scale[:size] / scale[size]
+    return replace(system, A=system.A * scale / scale[:, None], B=system.B / scale[:, None], C=system.C * scale)
+
+
+def level_crossings(plane: Plane, level: float) -> Array:
+    """Frequencies [Hz] ascending at which a singular value may equal `level`; those that do are among them, and more may be.
+
+    >>> from flexstage.models.linear.model import Channel
+    >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
+    >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)  # 1/(1 + s) has the size 1/2 at omega = 3^(1/2)
+    >>> (2.0 * np.pi * level_crossings(to_plane(lag), 0.5)).round(9).tolist()
+    [1.732050808]
+    """
+    A, B, C, D = plane.system.A, plane.system.B, plane.system.C, plane.system.D
+    inner = level**2 * np.eye(D.shape[1]) - D.T @ D
+    outer = level**2 * np.eye(D.shape[0]) - D @ D.T
+    mixed = A + B @ np.linalg.solve(inner, D.T @ C)
+    upper, lower = B @ np.linalg.solve(inner, B.T), level**2 * C.T @ np.linalg.solve(outer, C)
+    found = np.linalg.eigvals(np.block([[mixed, upper], [-lower, -mixed.T]]))
+    near = np.abs(np.real(found)) <= _NEAR_AXIS * np.abs(found)
+    return plane.frequencies(np.unique(np.abs(np.imag(found))[near]))
+
+
+def _first_frequencies(system: System) -> Array:
+    """Where a peak may stand: 0, the end, and at each pole."""
+    poles = system.poles
+    if system.step is None:
+        return np.concatenate([[0.0, np.inf], np.abs(poles) / (2.0 * np.pi)])
+    return np.concatenate([[0.0, 0.5 / system.step], np.abs(np.angle(poles)) / (2.0 * np.pi * system.step)])
+
+
+def _sizes(response: Resolvent, frequencies: Array) -> Array:
+    return np.linalg.svd(response.at(frequencies), compute_uv=False)[:, 0]
+
+
+def _highest_of(response: Resolvent, frequencies: Array) -> Peak:
+    sizes = _sizes(response, frequencies)
+    place = int(np.argmax(sizes))
+    return Peak(float(sizes[place]), float(frequencies[place]))
+
+
+def _climb(response: Resolvent, start: Peak) -> Peak:
+    """The same peak, followed up by parabolas of shrinking width."""
+    if not np.isfinite(start.frequency) or start.frequency == 0.0:
+        return start
+    best, width = start, 1e-3 * start.frequency
+    end = np.inf if response.system.step is None else 0.5 / response.system.step
+    for _ in range(12):
+        places = best.frequency + width * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+        sizes = _sizes(response, np.clip(places, 0.0, end))
+        bend, slope, _ = np.polyfit(np.arange(-2, 3), sizes / sizes[2], 2)
+        top = best.frequency - 0.25 * width * slope / bend if bend < 0.0 else best.frequency
+        found = _highest_of(response, np.clip(np.append(places, top), 0.0, end))
+        best, width = (found if found.value > best.value else best), 0.3 * width
+    return best

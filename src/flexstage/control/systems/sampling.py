@@ -1,0 +1,160 @@
+"""Sampled systems: what a continuous system is between a digital-to-analogue converter and a sampler."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.control.systems.system import System
+from flexstage.models.linear.model import Channel
+
+
+def discretise(system: System, step: float, delay: float = 0.0) -> System:
+    """A continuous system whose inputs are held over each `step` [s] and arrive `delay` [s] late; exact at the samples.
+
+    With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d],
+    Gamma_0 = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled
+    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value. All inputs are delayed alike. Raises
+    `DesignError` for a system that is sampled already, and for times that cannot be.
+
+    >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
+    >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
+    >>> found = discretise(lag, np.log(2.0))
+    >>> found.A.round(12).tolist(), found.B.round(12).tolist()
+    ([[0.5]], [[0.5]])
+    >>> len(discretise(lag, 0.1, delay=0.25).A)  # the state, and three past inputs
+    4
+    """
+    require(_findings(system, step, delay))
+    whole, part = split_delay(delay / step)
+    early, start = _hold_matrices(system, (1.0 - part) * step)
+    late, before = _hold_matrices(system, part * step)
+    direct = system.D if part == 0.0 else np.zeros_like(system.D)
+    held = np.zeros_like(system.D) if part == 0.0 else system.D
+    count = whole + (part > 0.0)
+    if not count:
+        return replace(system, A=early, B=start, step=step)
+    found = _add_registers(system, early @ late, early @ before, start, held=held, direct=direct, count=count, between=part > 0.0)
+    return replace(found, step=step)
+
+
+def first_order_hold(system: System, step: float) -> System:
+    """A continuous system whose inputs go straight from sample to sample, each `step` [s]; exact at the samples.
+
+    x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and
+    Workman, Digital Control of Dynamic Systems, 1998, section 6.3.2); its states are x[k] - Gamma_1 u[k], so that no input is wanted ahead
+    of its time. What is known as a series but moves smoothly, as a floor does, is met without the jumps of a hold, to (omega T)^2/12;
+    motion relative to it to (omega_0 T)^2/12, omega_0 the resonance (1e-3 for a tenth of a radian a sample). Raises `DesignError` for a
+    system that is sampled already, and for times that cannot be.
+
+    >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
+    >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
+    >>> found = first_order_hold(integrator, 0.1)
+    >>> found.B.round(12).tolist(), found.D.round(12).tolist()  # the trapezoidal rule
+    ([[0.1]], [[0.05]])
+    """
+    require(_findings(system, step, 0.0))
+    size, width = system.B.shape
+    joined = np.zeros((size + 2 * width, size + 2 * width))
+    joined[:size, :size], joined[:size, size : size + width] = system.A * step, system.B * step
+    joined[size : size + width, size + width :] = np.eye(width)
+    moved = scipy.linalg.expm(joined)
+    whole, early, late = moved[:size, :size], moved[:size, size : size + width], moved[:size, size + width :]
+    entry = early - late + whole @ late
+    return replace(system, A=whole, B=entry, D=system.D + system.C @ late, step=step)
+
+
+def split_delay(samples: float) -> tuple[int, float]:
+    """Whole samples and the rest; what is within rounding of a whole sample is one."""
+    nearest_whole = round(samples)
+    if abs(samples - nearest_whole) < 1e-9:
+        return nearest_whole, 0.0
+    return int(np.floor(samples)), samples - np.floor(samples)
+
+
+def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
+    """e^{At} and int_0^t e^{As} ds B."""
+    size, width = system.B.shape
+    joined = np.zeros((size + width, size + width))
+    joined[:size, :size], joined[:size, size:] = system.A, system.B
+    result = scipy.linalg.expm(joined * time)
+    return result[:size, :size], result[:size, size:]
+
+
+def _add_registers(
+    system: System, whole: Array, older: Array, newer: Array, *, held: Array, direct: Array, count: int, between: bool
+) -> System:
+    """The states, then the inputs of the last `count` samples, newest first."""
+    size, width = system.B.shape
+    registers = count * width
+    A = np.zeros((size + registers, size + registers))
+    B = np.zeros((size + registers, width))
+    C = np.hstack([system.C, np.zeros((len(system.C), registers))])
+    A[:size, :size] = whole
+    slots = [slice(size + number * width, size + (number + 1) * width) for number in range(count)]
+    B[slots[0]] = np.eye(width)
+    for earlier, later in pairwise(slots):
+        A[later, earlier] = np.eye(width)
+    A[:size, slots[-1]] += older if between else newer
+    C[:, slots[-1]] += held if between else direct
+    if between and count > 1:
+        A[:size, slots[-2]] += newer
+    elif between:
+        B[:size] += newer
+    return System(A, B, C, np.zeros_like(system.D), system.inputs, system.outputs)
+
+
+def bilinear(system: System, step: float, prewarp: float | None = None) -> System:
+    """A continuous controller turned digital by Tustin's rule, s = c (z - 1)/(z + 1), c = 2/T.
+
+    With `prewarp` f [Hz], c = 2 pi f / tan(pi f T): the response at f is kept exactly. Poles in the left half plane stay stable. Raises
+    `DesignError` for a system that is sampled already, and for `prewarp` above half the sampling rate.
+
+    >>> metre = (Channel("e", "m"),), (Channel("u", "m"),)
+    >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
+    >>> found = bilinear(integrator, 0.1)
+    >>> found.A.tolist(), found.D.round(12).tolist()  # the trapezoidal rule: half a step at once
+    ([[1.0]], [[0.05]])
+    """
+    require(_findings(system, step, 0.0))
+    if prewarp is not None and not 0.0 < prewarp < 0.5 / step:
+        what = f"{prewarp:g} Hz is not between 0 and half the sampling rate, {0.5 / step:g} Hz"
+        require([Finding("prewarp", what, "Choose a frequency in between, or sample faster")])
+    factor = 2.0 / step if prewarp is None else 2.0 * np.pi * prewarp / np.tan(np.pi * prewarp * step)
+    identity = np.eye(len(system.A))
+    inverse = np.linalg.inv(factor * identity - system.A)
+    return replace(
+        system,
+        A=inverse @ (factor * identity + system.A),
+        B=2.0 * factor * inverse @ system.B,
+        C=system.C @ inverse,
+        D=system.D + system.C @ inverse @ system.B,
+        step=step,
+    )
+
+
+def registers(channels: tuple[Channel, ...], outputs: tuple[Channel, ...], samples: int, step: float) -> System:
+    """y[k] = u[k - samples]: values passed on whole samples late.
+
+    >>> found = registers((Channel("u", "m"),), (Channel("y", "m"),), 2, 0.1)
+    >>> np.abs(found.transfer(np.array([1.0, 3.0]))).ravel().round(12).tolist(), len(found.A)
+    ([1.0, 1.0], 2)
+    """
+    none = System(np.zeros((0, 0)), np.zeros((0, len(channels))), np.zeros((len(outputs), 0)), np.eye(len(channels)), channels, outputs)
+    return discretise(none, step, samples * step)
+
+
+def _findings(system: System, step: float, delay: float) -> list[Finding]:
+    found = []
+    if system.step is not None:
+        found.append(Finding("system", f"it is sampled already, every {system.step:g} s", "Sample the continuous system"))
+    if not 0.0 < step < np.inf:
+        found.append(Finding("step", f"it is {step:g} s", "Give a positive time"))
+    if not 0.0 <= delay < np.inf:
+        found.append(Finding("delay", f"it is {delay:g} s", "Give a time of 0 or more"))
+    return found

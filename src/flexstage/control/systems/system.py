@@ -1,0 +1,267 @@
+"""Linear systems with named inputs and outputs, continuous or sampled: what a loop is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+import scipy
+
+from flexstage.base.arguments import CheckedFields
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW, Called
+from flexstage.base.units.quantity import TIME
+from flexstage.models.linear.model import Channel
+from flexstage.models.linear.state_space import StateSpace
+
+_SINGULAR = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class System(CheckedFields):
+    """x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
+
+    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` carry names and units, and no name stands twice among either. Raises
+    `DesignError` where shapes and names do not fit.
+    """
+
+    A: Annotated[Array, VIEW]
+    B: Annotated[Array, VIEW]
+    C: Annotated[Array, VIEW]
+    D: Annotated[Array, VIEW]
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    step: Annotated[float | None, TIME] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        """Refuse what does not fit together."""
+        if not _fits(self):
+            require(_findings(self))
+
+    @property
+    def input_names(self) -> Annotated[tuple[str, ...], Called("inputs")]:
+        """Names of the inputs."""
+        return tuple(channel.name for channel in self.inputs)
+
+    @property
+    def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
+        """Names of the outputs."""
+        return tuple(channel.name for channel in self.outputs)
+
+    @cached_property
+    def poles(self) -> Array:
+        """Eigenvalues (n,) of A: in 1/s, or in the z plane where the system is sampled."""
+        return np.linalg.eigvals(self.A)
+
+    @property
+    def growth(self) -> float:
+        """Largest rate of growth [1/s] of the free motion: max Re(p), or max ln|z| / T; negative for a stable system."""
+        poles = self.poles
+        if not len(poles):
+            return -np.inf
+        return float(np.max(np.real(poles)) if self.step is None else np.log(max(np.max(np.abs(poles)), 1e-300)) / self.step)
+
+    def transfer(self, frequencies: Array) -> Array:
+        """H = C (lambda I - A)^-1 B + D, complex (f, p, m), at `frequencies` (f,) in Hz; lambda = j omega, or e^{j omega T}.
+
+        States are balanced first: rates of modes are thousands of times their motions, and a solve would lose as many digits.
+        """
+        turning = 2j * np.pi * np.asarray(frequencies, dtype=float)
+        points = turning if self.step is None else np.exp(turning * self.step)
+        if not len(self.A):
+            return np.broadcast_to(self.D.astype(complex), (len(points), *self.D.shape)).copy()
+        balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
+        entry = (self.B / scale[:, None]).astype(complex)
+        shifted = points[:, None, None] * np.eye(len(balanced)) - balanced
+        return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
+
+
+def _fits(system: System) -> bool:
+    """Whether there is nothing to find: a search makes ten thousand systems."""
+    states, width, height = len(system.A), len(system.inputs), len(system.outputs)
+    shapes = (np.shape(system.A), np.shape(system.B), np.shape(system.C), np.shape(system.D))
+    if shapes != ((states, states), (states, width), (height, states), (height, width)):
+        return False
+    named = len({each.name for each in system.inputs}) == width and len({each.name for each in system.outputs}) == height
+    return named and (system.step is None or 0.0 < system.step < np.inf)
+
+
+def _findings(system: System) -> Iterable[Finding]:
+    states = len(system.A)
+    wanted = {
+        "A": (states, states),
+        "B": (states, len(system.inputs)),
+        "C": (len(system.outputs), states),
+        "D": (len(system.outputs), len(system.inputs)),
+    }
+    for name, shape in wanted.items():
+        found = np.shape(getattr(system, name))
+        if found != shape:
+            yield Finding(f"matrix {name}", f"it is {found}, where states, inputs and outputs make it {shape}", "Give matrices that fit")
+    for kind, names in (("input", system.input_names), ("output", system.output_names)):
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield Finding(name, f"{names.count(name)} {kind}s have this name", "Give each its own")
+    if system.step is not None and not 0.0 < system.step < np.inf:
+        yield Finding("step", f"it is {system.step:g} s", "Give a positive time, or none for a continuous system")
+
+
+def from_state_space(space: StateSpace) -> System:
+    """A stage's state space as a system.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.linear.port import ports
+    >>> from flexstage.models.linear.state_space import state_space
+    >>> from flexstage.models.lumped import lumped
+    >>> model = lumped(parallelogram())
+    >>> found = from_state_space(state_space(model, ports(model, ["S"], ["B"]), model.damping, modes=2))
+    >>> found.output_names, found.A.shape, found.growth < 0.0
+    (('S',), (4, 4), True)
+    """
+    return System(space.A, space.B, space.C, space.D, space.inputs, space.outputs)
+
+
+def static(gain: Array, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], step: float | None = None) -> System:
+    """y = `gain` u, gain (p, m).
+
+    >>> volt, metre = (Channel("u", "V"),), (Channel("y", "m"),)
+    >>> static(np.array([[3.0]]), volt, metre).transfer(np.array([1.0])).real.tolist()
+    [[[3.0]]]
+    """
+    return System(np.zeros((0, 0)), np.zeros((0, len(inputs))), np.zeros((len(outputs), 0)), np.asarray(gain), inputs, outputs, step)
+
+
+def lag(channels: tuple[Channel, ...], bandwidths: Array, outputs: tuple[Channel, ...]) -> System:
+    """First-order lags y = u / (1 + s / (2 pi f)) side by side, -3 dB at `bandwidths` (m,) [Hz]; infinite ones pass all.
+
+    >>> found = lag((Channel("u", "m"),), np.array([100.0]), (Channel("y", "m"),))
+    >>> np.abs(found.transfer(np.array([0.0, 100.0]))).ravel().round(4).tolist()
+    [1.0, 0.7071]
+    """
+    bandwidths = np.asarray(bandwidths, dtype=float)
+    slow = np.flatnonzero(np.isfinite(bandwidths))
+    rates = 2.0 * np.pi * bandwidths[slow]
+    entry = np.zeros((len(slow), len(channels)))
+    entry[range(len(slow)), slow] = rates
+    exit_ = np.zeros((len(channels), len(slow)))
+    exit_[slow, range(len(slow))] = 1.0
+    return System(-np.diag(rates), entry, exit_, np.diag(1.0 * np.isinf(bandwidths)), channels, outputs)
+
+
+def rename(system: System, names: Mapping[str, str]) -> System:
+    """The same system with some of its inputs and outputs called otherwise.
+
+    >>> one = static(np.eye(1), (Channel("u", "m"),), (Channel("y", "m"),))
+    >>> rename(one, {"u": "stroke"}).input_names
+    ('stroke',)
+    """
+    changed = [tuple(replace(each, name=names.get(each.name, each.name)) for each in group) for group in (system.inputs, system.outputs)]
+    return replace(system, inputs=changed[0], outputs=changed[1])
+
+
+def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> System:
+    """The same states with only these inputs and outputs, in this order. Raises `DesignError` for names that it does not have.
+
+    >>> two = static(np.array([[1.0, 2.0]]), (Channel("a", "m"), Channel("b", "m")), (Channel("y", "m"),))
+    >>> select(two, ["b"], ["y"]).D.tolist()
+    [[2.0]]
+    """
+    columns, rows = _indices(inputs, system.input_names, "input"), _indices(outputs, system.output_names, "output")
+    return replace(
+        system,
+        B=system.B[:, columns],
+        C=system.C[rows],
+        D=system.D[np.ix_(rows, columns)],
+        inputs=tuple(system.inputs[each] for each in columns),
+        outputs=tuple(system.outputs[each] for each in rows),
+    )
+
+
+def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
+    names = tuple(names)
+    require(Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in names if name not in known)
+    return [known.index(name) for name in names]
+
+
+Terms = Mapping[str, float]
+"""A sum of named signals, each with its factor."""
+
+
+def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
+    """Systems wired by name: every input in `links` is the stated sum of outputs and of the new system's `inputs`.
+
+    An input that is not in `links` is fed by what has its own name: a new input, or an output; one that nothing feeds is refused. With
+    u = F y + G w: u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for unknown names, mixed steps, and an algebraic loop (I - F D
+    singular).
+
+    >>> unit = Channel("r", "m")
+    >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))
+    >>> closed = connect([integrator], {"e": {"r": 1.0, "y": -1.0}}, (unit,), ["y"])
+    >>> closed.A.tolist(), closed.B.tolist()
+    ([[-1.0]], [[1.0]])
+    """
+    parts = tuple(systems)
+    whole = _append(parts)
+    require(_link_findings(whole, links, inputs))
+    wired = {name: links.get(name, {name: 1.0}) for name in whole.input_names}
+    rows, external = whole.output_names, tuple(channel.name for channel in inputs)
+    feedback = np.array([[terms.get(name, 0.0) if name not in external else 0.0 for name in rows] for terms in wired.values()])
+    entry = np.array([[terms.get(name, 0.0) for name in external] for terms in wired.values()])
+    feedback, entry = feedback.reshape(len(wired), len(rows)), entry.reshape(len(wired), len(external))
+    solve = np.eye(len(wired)) - feedback @ whole.D
+    if np.min(np.abs(np.linalg.eigvals(solve)), initial=1.0) < _SINGULAR:
+        require([Finding("loop", "an algebraic loop of gain 1 has no solution", "Put a delay or a lag into it")])
+    states, driven = np.linalg.solve(solve, feedback @ whole.C), np.linalg.solve(solve, entry)
+    closed = System(
+        whole.A + whole.B @ states, whole.B @ driven, whole.C + whole.D @ states, whole.D @ driven, inputs, whole.outputs, whole.step
+    )
+    return select(closed, external, outputs)
+
+
+def _append(parts: tuple[System, ...]) -> System:
+    steps = {part.step for part in parts}
+    if len(steps) != 1:
+        shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
+        require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
+    return System(
+        *(side_by_side([getattr(part, name) for part in parts]) for name in "ABCD"),
+        inputs=tuple(channel for part in parts for channel in part.inputs),
+        outputs=tuple(channel for part in parts for channel in part.outputs),
+        step=parts[0].step,
+    )
+
+
+def side_by_side(blocks: Sequence[Array]) -> Array:
+    """The block-diagonal matrix of some blocks, of which each may lack rows or columns.
+
+    >>> side_by_side([np.ones((1, 2)), np.zeros((0, 1)), 3.0 * np.ones((1, 0))]).tolist()
+    [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0]]
+    """
+    found = np.zeros((sum(len(each) for each in blocks), sum(each.shape[1] for each in blocks)))
+    row = column = 0
+    for each in blocks:
+        below, right = row + len(each), column + each.shape[1]
+        found[row:below, column:right] = each
+        row, column = below, right
+    return found
+
+
+def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Channel, ...]) -> Iterable[Finding]:
+    external = tuple(channel.name for channel in inputs)
+    sources = (*external, *whole.output_names)
+    for name in links:
+        if name not in whole.input_names:
+            yield Finding(name, "no system has an input of this name", suggest_nearest(name, whole.input_names))
+        for term in links[name]:
+            if term not in sources:
+                yield Finding(f"link to {name}", f"nothing is called '{term}'", suggest_nearest(term, sources))
+    for name in whole.input_names:
+        if name not in links and name not in sources:
+            yield Finding(name, "nothing feeds this input", "Link it, or name it among the inputs")
+    for name in external:
+        if name in whole.output_names:
+            yield Finding(name, "an input and an output have this name", "Rename one of them")

@@ -1,0 +1,1 @@
+"""Diagnosis of an identification: adequacy, delay, unexplained peaks and warnings."""

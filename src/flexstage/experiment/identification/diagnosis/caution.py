@@ -1,0 +1,80 @@
+"""What the evidence cannot tell of modes, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.diagnosis.adequacy import Reach, coarse_lines, no_mode_caution, unsearched_band
+from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.records.record import Channel
+from flexstage.experiment.records.unit import same_dimension, unit_problem
+
+_MOST_ELSEWHERE = 0.5
+_MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes found: `poles` (k,) in Hz, which lie `close` together, their share (k,) of motion from `elsewhere`, `widening` of intervals."""
+
+    poles: Array
+    close: tuple[tuple[int, ...], ...]
+    elsewhere: Array
+    widening: Array
+
+
+def _is_motion(channel: Channel) -> bool:
+    """Whether a channel measures a velocity or an acceleration: a stroke drives, those do not."""
+    return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
+
+
+def warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
+    """Cautions about modes found: few or coarse lines, none found, repeated ones that few channels cannot show, forces from elsewhere.
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import POLE, one_mode_record
+    >>> one = Modes(np.array([POLE]), (), np.zeros(1), np.ones(1))
+    >>> warnings(evidence(one_mode_record(), None), one, Reach(1.0, 26.0))[0][:20]
+    'only u was driven: o'
+    """
+    poles, close = modes.poles, modes.close
+    limits = (unsearched_band(known, reach), coarse_lines(known, poles), None if len(poles) else no_mode_caution(known, reach))
+    found = [each for each in limits if each is not None]
+    outputs, inputs = known.responses.values.shape[1:]
+    listed = ", ".join(f"{abs(pole):.4g}" for pole in poles[:8]) + (" ..." if len(poles) > 8 else "")
+    if inputs == 1 and len(poles):
+        found.append(
+            f"only {known.responses.inputs[0].name} was driven: of a repeated pair it shows one combination only, so that each mode found "
+            f"({listed} Hz) may stand for several. Add records with other inputs driven."
+        )
+    if outputs == 1 and len(poles):
+        found.append(f"{known.responses.outputs[0].name} is the only output: shapes cannot be told, nor repeated modes apart.")
+    for group in close:
+        if inputs > 1 and len(group) >= min(inputs, outputs):
+            near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
+            found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
+    systematic = np.flatnonzero(modes.widening > 1.0)
+    if len(systematic):
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
+        window = " The responses do not say their window: if there was one, damping is too large." if known.unstated else ""
+        found.append(
+            f"the fit leaves a systematic residual near {listed}: parts of the data do not give the same mode. It is not linear, not "
+            f"alone, shaken by other forces, or changes during the test: smaller or longer drives, or finer lines, tell.{window}"
+        )
+    moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
+    if moved:
+        listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)
+        found.append(
+            f"taken as input, and a motion: {listed}. What follows a motion shows the modes of a stage held there, not its own: "
+            "right only where the ground was shaken. Record forces, or strokes."
+        )
+    shaken = np.flatnonzero(modes.elsewhere > _MOST_ELSEWHERE)
+    if len(shaken):
+        listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({1.0 - modes.elsewhere[index]:.0%})" for index in shaken)
+        found.append(
+            f"recorded inputs explain less than half of the motion in a mode: of {listed}. Record what else drives, or drive more."
+        )
+    return tuple(found)

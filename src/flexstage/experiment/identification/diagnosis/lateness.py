@@ -1,0 +1,191 @@
+"""How late all outputs together come: the pure delay of a test's converters and filters, told by the phase of the modes' residues."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.evidence import Evidence
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.records.record import Channel, Role
+from flexstage.experiment.records.unit import same_dimension, unit_problem
+from flexstage.experiment.spectral.lines import Lines
+
+_LEAST_REAL, _SURE = 0.9, 5.0
+_UNSURE, _KNOWN = 0.01, 0.2
+_CLEAR, _NOTICED = 6.0, 0.1
+_ONE, _FEW, _ENOUGH = 0.45, 3.0, 3
+_FINE = 40.0
+_TURNED, _BESIDE = 0.05, 24.0
+
+
+@dataclass(frozen=True)
+class Delay:
+    """How much later [s] outputs come than the modes alone would have it, with its standard deviation."""
+
+    value: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class _Single:
+    """A channel by its place among the inputs or the outputs."""
+
+    role: Role
+    number: int
+
+
+@dataclass(frozen=True)
+class _Residue:
+    """Of a group: residues' mean `square` over their mean power (1 where all are imaginary), mean `pole`, `spread` of their phase."""
+
+    square: complex
+    pole: complex
+    spread: float
+
+
+def common_delay(found: Identified) -> Delay | None:
+    """The delay that makes the modes those of a stage whose damping is proportional: shapes and participations all in phase or opposite.
+
+    A mode's residue R in H = R/(s - p) + ... is imaginary then (real where a velocity is read; Heylen, Lammens & Sas, Modal Analysis
+    Theory and Testing, 1997, A.1), and e^{-p tau} times that with a delay: the phase falls with frequency. Lags and filters that turn
+    phase alike count as delay. Signs of residues are unknown, so three modes determine delays up to 3 periods of the lowest, fewer up to
+    0.45; of delays that explain the phases equally well the shortest is returned. `None` where no delay makes the residues imaginary, or
+    where it does not differ from zero significantly.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> from flexstage.experiment.records.record import in_memory
+    >>> made = one_mode_record()
+    >>> late = in_memory(made.channels, made.rate, np.stack([made.values[2:, 0], made.values[:-2, 1]], axis=1))  # by 2 / 64 s
+    >>> round(identify(late).delay, 3)
+    0.031
+    """
+    return _fit_delay(found, None)
+
+
+def late_channels(found: Identified) -> Iterator[str]:
+    """Single channels that come later than the others of their side: what would make their part in the modes that of a real stage.
+
+    Each channel's residues have a delay of their own, by three modes or more; it is named where it is 6 deviations from the others'
+    median and turns the highest mode by a tenth of a turn or more, and the others agree. Residues must be less real by as much at the
+    median: half-turns of all modes in which a channel moves are changes of sign, not delays.
+    """
+    if len(_groups(found)) < _ENOUGH:
+        return
+    for role, channels in ((Role.OUTPUT, found.outputs), (Role.INPUT, found.inputs)):
+        if len(channels) < _ENOUGH:
+            continue
+        first = [_fit_delay(found, _Single(role, number), least=-np.inf) for number in range(len(channels))]
+        known = [each.value for each in first if each is not None]
+        if len(known) < len(channels):
+            continue
+        usual = float(np.median(known))
+        own = [_fit_delay(found, _Single(role, number), usual, -np.inf) for number in range(len(channels))]
+        apart = [(channel, each.value - usual, each.deviation) for channel, each in zip(channels, own, strict=True) if each is not None]
+        turns = float(np.max(found.frequencies))
+        late = [each for each in apart if abs(each[1]) > _CLEAR * each[2] and abs(each[1]) * turns > _NOTICED]
+        if 2 * len(late) < len(channels):
+            for channel, by, _ in late:
+                word = "late" if by > 0.0 else "early"
+                yield (
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {role.value}s: with that taken out, its part "
+                    f"in the modes is in phase with theirs."
+                )
+
+
+def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, least: float = _SURE) -> Delay | None:
+    """The delay of the residues, all or those of one channel; `None` where it is not `least` deviations from zero.
+
+    Of delays that explain the phases equally well, the one nearest to `near` [s]: signs are free, half-turns explain nothing.
+    """
+    terms = [_residue(found, group, channel) for group in _groups(found)] if len(found.frequencies) else []
+    if not terms:
+        return None
+    squares, poles = np.array([each.square for each in terms]), np.array([each.pole for each in terms])
+    spreads = np.array([each.spread for each in terms])
+    turning = np.abs(np.imag(poles))
+    weights = 1.0 / (spreads**2 + _UNSURE**2)
+    longest = (_FEW if np.sum(spreads < _KNOWN) >= _ENOUGH else _ONE) * 2.0 * np.pi / np.min(turning)
+    step = 2.0 * np.pi / (_FINE * np.max(turning))
+    count = int(np.ceil(longest / step))
+    first = near - (0.0 if channel is None else longest)
+    tried = first + step * np.arange(count if channel is None else 2 * count)
+
+    def phases(delays: Array) -> Array:
+        return -0.5 * np.angle(squares[:, None] * np.exp(2j * np.outer(turning, delays)))
+
+    curvature = float(np.sum(weights * turning**2))
+    for _ in range(3):
+        tried = tried + (weights * turning) @ phases(tried) / curvature
+    tried = tried[tried >= first - step]
+    if not len(tried):
+        return None
+    misfit = weights @ phases(tried) ** 2
+    scatter = max(1.0, float(np.min(misfit)) / max(1, len(terms) - 1))
+    equal = tried[misfit <= np.min(misfit) + _CLEAR**2 * scatter]
+    value = float(equal[np.argmin(np.abs(equal - near))])
+    real = float(np.real(np.exp(2j * turning * value) @ (weights * squares)) / np.sum(weights))
+    deviation = float(np.sqrt(scatter / curvature))
+    return Delay(value, deviation) if real >= _LEAST_REAL and value > least * deviation else None
+
+
+def bends_modes(found: Identified, delay: Delay) -> bool:
+    """Whether a delay turns phase within a mode's band by so much (0.05 rad) that modes without it do not fit."""
+    widths = found.frequencies * found.damping
+    return bool(2.0 * np.pi * delay.value * _BESIDE * float(np.max(widths)) > _TURNED)
+
+
+def take_out_delay(known: Evidence, seconds: float) -> Evidence:
+    """The evidence with outputs as much earlier: multiplied by e^{j omega tau}, line by line."""
+
+    def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
+        for each in known.lines(number, parts):
+            yield replace(each, outputs=each.outputs * _turn(each.frequencies, seconds)[:, None])
+
+    responses = known.responses
+    earlier = responses.values * _turn(responses.frequencies, seconds)[:, None, None]
+    return replace(known, responses=replace(responses, values=earlier), lines=lines)
+
+
+def _turn(frequencies: Array, seconds: float) -> Array:
+    return np.exp(2j * np.pi * frequencies * seconds)
+
+
+def _groups(found: Identified) -> list[tuple[int, ...]]:
+    """Modes that lie too close to be told apart together, each other by itself."""
+    together = set(chain.from_iterable(found.close))
+    return [*found.close, *((index,) for index in range(len(found.frequencies)) if index not in together)]
+
+
+def _residue(found: Identified, group: tuple[int, ...], channel: _Single | None) -> _Residue:
+    """All residues of a group, or those of one channel, whose phase is less sure where it has little of the mode."""
+    chosen = list(group)
+    pole = complex(np.mean(found.poles[chosen]))
+    rates, driven = _rates(found.outputs, pole), _rates(found.inputs, pole)
+    residues = (found.shapes[:, chosen] / rates[:, None]) @ (found.participation[chosen] * driven)
+    size = np.max(np.abs(found.shapes[:, :, None] * found.participation), axis=1)
+    scaled = residues / np.where(size > 0.0, size, 1.0)
+    scaled = scaled if channel is None else np.take(scaled, [channel.number], axis=0 if channel.role is Role.OUTPUT else 1)
+    power = float(np.sum(np.abs(scaled) ** 2))
+    square = complex(np.sum((scaled / 1j) ** 2)) / power if power else 0.0
+    spread = float(np.min(found.frequency_deviations[chosen] / (found.damping[chosen] * found.frequencies[chosen])))
+    part = 1.0 if channel is None else np.sqrt(power / scaled.size) + np.finfo(float).eps
+    return _Residue(square, pole, spread / part)
+
+
+def _rates(channels: tuple[Channel, ...], pole: complex) -> Array:
+    """Velocities or accelerations of a free decay over its motions, up to a positive factor: (p/|p|)^n; 1 for all else."""
+    return np.array([(pole / abs(pole)) ** _derivative(channel.unit) for channel in channels])
+
+
+def _derivative(unit: str) -> int:
+    """Order of the derivative of a motion that is measured: 1 for velocities, 2 for accelerations, 0 for all else."""
+    if not unit or unit_problem(unit) is not None:
+        return 0
+    units = (("m/s", "rad/s"), ("m/s^2", "rad/s^2"))
+    return next((order for order, each in enumerate(units, 1) if any(same_dimension(unit, name) for name in each)), 0)

@@ -1,0 +1,219 @@
+"""Peaks that are seen and are no modes yet: what they may be, and what it would take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated
+
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+from flexstage.base.record import VIEW
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.experiment.identification.evidence import Evidence, is_even
+from flexstage.experiment.identification.group import Lost
+from flexstage.experiment.identification.outputs.tones import Tone
+from flexstage.experiment.records.record import Channel, Responses
+
+_MAINS = (50.0, 60.0)
+_HARMONICS = 12
+_REACH = 12
+_FREE = 2 * (_REACH - 1) - 4
+_ONE_IN = 0.05
+_NOTICED = 1e-3
+_WIDTHS = 4.0
+_PART, _LITTLE = 0.3, 0.03
+_MOST = 20
+
+
+class Doubt(Enum):
+    """Why a peak is not called a mode."""
+
+    TONE = "tone"
+    """A sinusoid in outputs that no input holds: taken out."""
+    UNDRIVEN = "not driven"
+    """A resonance that the recorded inputs do not drive: something else does."""
+    WEAK = "weak"
+    """A resonance that noise might be."""
+    UNSURE = "unsure"
+    """A resonance in outputs alone whose width does not differ from zero as surely as a mode's must."""
+    FREE = "free"
+    """An oscillation that was seen to fade, but by too little to tell its damping, nor whether an input began it."""
+    NARROW = "narrow"
+    """One line that stands out of its neighbours: there are no lines to tell a resonance from a tone."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A peak at `frequency` in Hz, `width` Hz wide at half power (absent: no wider than a line).
+
+    It is seen in the `outputs`, whose lines are `resolution` Hz apart. `chance` is how likely there would be as much without a mode: noise
+    as pure as a tone, or as strong as a weak peak or a narrow one; inputs that explain as much of an undriven one. Modes need 1e-9, and
+    lines within their width.
+    """
+
+    frequency: Annotated[float, FREQUENCY]
+    doubt: Doubt
+    chance: float
+    width: Annotated[float | None, FREQUENCY]
+    resolution: Annotated[float, FREQUENCY]
+    outputs: tuple[str, ...]
+
+    @property
+    def reason(self) -> Annotated[str, VIEW]:
+        """Why it is no mode, in words.
+
+        >>> Peak(120.0, Doubt.NARROW, 1e-6, None, 0.3125, ("y",)).reason
+        'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
+        """
+        if self.doubt is Doubt.TONE:
+            return f"a tone that no input holds{_mains(self)}, or an oscillation that does not fade in the record. It is taken out."
+        if self.doubt is Doubt.FREE:
+            return "an oscillation left to itself that fades too little in the record to tell its damping. Record longer."
+        if self.doubt is Doubt.UNDRIVEN:
+            return "the recorded inputs do not drive it: another force does, or an unsteady tone. Record what else shakes the stage."
+        if self.doubt is Doubt.UNSURE:
+            return "its damping is not determined surely enough: noise or a neighbour might make it. Record longer."
+        if self.doubt is Doubt.WEAK:
+            return "noise might be as strong. Record longer, or drive more."
+        lines = f"one line, {self.resolution:.4g} Hz from the next"
+        return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What modes at `poles` (k,) in Hz leave of responses, `rest` (f, p, m), at `lines` (f,) in Hz."""
+
+    lines: Array
+    rest: Array
+    poles: Array
+
+
+def peaks(known: Evidence, left: Left, refused: Sequence[Lost], lost: Sequence[Lost]) -> tuple[Peak, ...]:
+    """All that is seen and is no mode, by rising frequency.
+
+    Tones taken out; resonances `refused` for they are not driven; those `lost` for noise might be as strong, where it would be in one of a
+    thousand tries at most; single lines of stored responses (in records those are tones, or none).
+
+    >>> from flexstage.experiment.identification.evidence import evidence
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> known, nothing = evidence(one_mode_record(), None), np.zeros(0)
+    >>> weak = Lost(-0.1 + 20.0j, np.ones(1), 1e-6)
+    >>> [peak.doubt.value for peak in peaks(known, Left(nothing, nothing, nothing), (), (weak, weak))]
+    ['weak']
+    """
+    step = known.resolution
+    free = [tone for tone in known.tones if not (tone.fades and _is_listed(complex(0.0, tone.frequency), left.poles, (), step))]
+    found = tone_peaks(free, step, known.responses.outputs, known.output_scale)
+    for doubt, group in ((Doubt.UNDRIVEN, refused), (Doubt.WEAK, sorted(lost, key=lambda each: each.chance))):
+        for each in group:
+            modes = () if doubt is Doubt.UNDRIVEN else left.poles
+            if (doubt is Doubt.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
+                size = np.abs(each.shape)
+                seen = _names(known.responses.outputs, size > _PART * np.max(size))
+                found.append(Peak(abs(each.pole), doubt, each.chance, -2.0 * each.pole.real, step, seen))
+    for peak in narrow_peaks(known.responses, left) if known.stored else ():
+        if not _is_listed(complex(0.0, peak.frequency), (), found, peak.resolution):
+            found.append(peak)
+    return tuple(sorted(found, key=lambda each: each.frequency))
+
+
+def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], step: float) -> bool:
+    """Whether it lies within four half-widths, or three lines, of a mode or a peak that is listed."""
+    reach = max(-_WIDTHS * pole.real, 3.0 * step)
+    return any(abs(pole.imag - abs(each)) < max(reach, -_WIDTHS * each.real) for each in poles) or any(
+        abs(pole.imag - each.frequency) < max(reach, 0.5 * _WIDTHS * (each.width or 0.0)) for each in found
+    )
+
+
+def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Channel], size: Array) -> list[Peak]:
+    """Tones taken out of records, those nearer than a line together, with the outputs that hold most, beside their rms `size` (p,).
+
+    >>> outputs = (Channel("S1"), Channel("S2"))
+    >>> hums = [Tone(50.0 + 1e-4 * each, np.array([0.3, 1e-6]), 0, 1000, 1e-12) for each in range(2)]
+    >>> [(peak.frequency, peak.outputs) for peak in tone_peaks(hums, 0.1, outputs, np.ones(2))]
+    [(50.0, ('S1',))]
+    """
+    found: list[tuple[Tone, Array]] = []
+    for tone in sorted(tones, key=lambda each: each.frequency):
+        if found and tone.frequency - found[-1][0].frequency < resolution:
+            found[-1] = found[-1][0], np.maximum(found[-1][1], np.abs(tone.amplitudes))
+        else:
+            found.append((tone, np.abs(tone.amplitudes)))
+    return [
+        Peak(
+            tone.frequency,
+            Doubt.FREE if tone.fades else Doubt.TONE,
+            tone.chance,
+            None,
+            resolution,
+            _names(outputs, amplitude / size > _LITTLE * np.max(amplitude / size)),
+        )
+        for tone, amplitude in found
+    ]
+
+
+def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
+    """Single lines of what modes leave of responses that stand out of their neighbours.
+
+    Each line is held against a cubic through its neighbours from the 2nd to the 12th on both sides, the variance being what that leaves
+    (an F-test); it stands out if one of twenty such data sets would show any by chance. Lines within four half-widths of a mode, or three
+    lines, belong to it. Lines that lie unevenly have no such neighbours.
+
+    >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
+    >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]
+    >>> here = Responses(lines, (Channel("S1"),), (Channel("u"),), rest)
+    >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, Left(lines, rest, np.zeros(0)))]
+    [(60.0, ('S1',))]
+    """
+    lines, rest, poles = left.lines, left.rest, left.poles
+    step = float(responses.frequencies[1] - responses.frequencies[0])
+    if len(lines) <= 2 * _REACH or not is_even(lines):
+        return []
+    ratio = _prominence(rest)
+    chance = scipy.special.fdtrc(2, 2 * _FREE, ratio) * ratio.size
+    near = np.any(np.abs(lines[:, None] - np.abs(poles)) < np.maximum(-_WIDTHS * np.real(poles), 3.0 * step), axis=1)
+    least = np.where(near, 1.0, np.min(chance, axis=(1, 2)))
+    found: list[Peak] = []
+    for line in np.argsort(least):
+        if least[line] > _ONE_IN or len(found) == _MOST:
+            break
+        if all(abs(lines[line] - other.frequency) > 1.5 * step for other in found):
+            seen = _names(responses.outputs, np.min(chance[line], axis=1) < _ONE_IN)
+            found.append(Peak(float(lines[line]), Doubt.NARROW, float(least[line]), None, step, seen))
+    return found
+
+
+def _prominence(rest: Array) -> Array:
+    """Squared distance of every line (f, p, m) from the cubic through its neighbours, over its variance; nought at the ends."""
+    offsets = np.r_[-_REACH:-1, 2 : _REACH + 1]
+    basis, _ = np.linalg.qr(np.vander(offsets / _REACH, 4, increasing=True))
+    at_nought = np.linalg.lstsq(np.vander(offsets / _REACH, 4, increasing=True), basis, rcond=None)[0][0]
+    count = len(rest) - 2 * _REACH
+    power, parts = np.zeros((count, *rest.shape[1:])), np.zeros((4, count, *rest.shape[1:]), dtype=complex)
+    for place, offset in enumerate(offsets):
+        shifted = rest[_REACH + offset : _REACH + offset + count]
+        power += np.abs(shifted) ** 2
+        parts += basis[place, :, None, None, None] * shifted
+    left = np.maximum(power - np.sum(np.abs(parts) ** 2, axis=0), 1e-9 * power + 1e-300) / _FREE
+    away = rest[_REACH:-_REACH] - np.tensordot(at_nought, parts, axes=1)
+    found = np.zeros(rest.shape)
+    found[_REACH:-_REACH] = np.abs(away) ** 2 / (1.0 + np.sum(at_nought**2)) / left
+    return found
+
+
+def _names(outputs: Sequence[Channel], chosen: Array) -> tuple[str, ...]:
+    return tuple(channel.name for channel, each in zip(outputs, chosen, strict=True) if each)
+
+
+def _mains(peak: Peak) -> str:
+    """Whether the peak is at a multiple of the mains' frequency, within half a line or a part in a thousand."""
+    for mains in _MAINS:
+        times = round(peak.frequency / mains)
+        within = max(min(0.5 * peak.resolution, 1.0), 1e-3 * peak.frequency)
+        if 1 <= times <= _HARMONICS and abs(peak.frequency - times * mains) <= within:
+            return f" ({times} x {mains:g} Hz: the mains?)" if times > 1 else f" ({mains:g} Hz: the mains?)"
+    return ""

@@ -1,0 +1,1 @@
+"""Modes from outputs without recorded inputs."""

@@ -1,0 +1,303 @@
+"""Tones in outputs that no input holds, the mains' or a pump's: found by Thomson's test, and taken out of records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.records.record import Record, Samples
+from flexstage.experiment.spectral.cross_spectra import Tell
+from flexstage.experiment.spectral.lines import block_count
+
+_TAPERS = 8
+_HALF, _LEAST = 64, 16
+_CHUNK, _TOGETHER = 64, 256
+_LOUD, _HELD = 8.0, 30.0
+_ONCE_IN, _HELD_ONCE_IN, _SEEN_ONCE_IN = 1e-9, 1e-7, 1e-4
+_MOST, _ROUNDS = 64, 4
+_ZOOMS = 7
+_SURELY = 5.0
+_DEGREE, _CLOSE = 2, 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Tone:
+    """A sinusoid of constant `frequency` in Hz in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), t from `start` on.
+
+    `amplitudes` (p,) are those a of the outputs, nought where it is not seen; `chance` is how likely noise would be as pure;
+    `fades` the share of it that fades from begin to end: then it is an oscillation left to itself, and stays in the record.
+    """
+
+    frequency: float
+    amplitudes: Array
+    start: int
+    stop: int
+    chance: float = 0.0
+    fades: float = 0.0
+
+
+def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
+    """Those that do not fade.
+
+    >>> len(steady_tones([Tone(1.0, np.ones(1), 0, 8), Tone(2.0, np.ones(1), 0, 8, fades=0.2)]))
+    1
+    """
+    return tuple(tone for tone in tones if not tone.fades)
+
+
+@dataclass(frozen=True, eq=False)
+class Quieted:
+    """Other samples less tones in the channels of the numbers `columns`, sampled at `rate`."""
+
+    samples: Samples
+    tones: tuple[Tone, ...]
+    columns: tuple[int, ...]
+    rate: float
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, without the tones.
+
+        >>> from flexstage.experiment.records.record import InMemory
+        >>> hum = Tone(0.25, np.array([0.5]), 0, 4)
+        >>> Quieted(InMemory(np.array([[1.0], [0.0], [-1.0], [0.0]])), (hum,), (0,), 1.0).read(0, 2).round(12).ravel().tolist()
+        [0.0, -0.0]
+        """
+        found = np.array(self.samples.read(start, stop), dtype=float)
+        for tone in self.tones:
+            low, high = max(start, tone.start), min(start + len(found), tone.stop)
+            if low < high:
+                turned = np.exp(2j * np.pi * tone.frequency / self.rate * (np.arange(low, high) - tone.start))
+                for column, amplitude in zip(self.columns, tone.amplitudes, strict=True):
+                    if amplitude:
+                        found[low - start : high - start, column] -= 2.0 * np.real(amplitude * turned)
+        return found
+
+
+def remove_tones(record: Record, tell: Tell | None = None) -> tuple[Record, tuple[Tone, ...]]:
+    """The record without steady tones in its outputs, and all tones seen.
+
+    A tone is a line of what the inputs do not explain that stands eight times above those around it, and that by Thomson's harmonic F-test
+    (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine tapers, Riedel & Sidorenko 1995) is a sinusoid of constant amplitude and phase, which
+    neither noise nor a resonance that noise drives would be once in 1e9. One that the same test sees in an input is none from outside. One
+    that fades by more than five deviations is an oscillation left to itself: it stays. A resonance that does not fade within the record is
+    a tone too: no record tells them apart.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.records.record import InMemory
+    >>> made = one_mode_record(seconds=16.0)
+    >>> hum = np.sin(2.0 * np.pi * 15.03 * np.arange(made.length) / made.rate)
+    >>> noisy = replace(made, samples=InMemory(made.values + np.array([0.0, 20.0]) * hum[:, None]))
+    >>> quiet, found = remove_tones(noisy)
+    >>> [round(tone.frequency, 2) for tone in found], bool(np.std(quiet.values - made.values) < 0.05), remove_tones(made)[1]
+    ([15.03], True, ())
+    """
+    inputs, outputs = (record.columns(channel.name for channel in each) for each in (record.inputs, record.outputs))
+    parts = block_count(record)
+    size = record.length // parts
+    found: list[Tone] = []
+    for start in range(0, parts * size, size):
+        found += _tones_of_block(record, inputs, outputs, start, start + size)
+        if tell is not None:
+            tell((start + size) / (parts * size))
+    if not steady_tones(found):
+        return record, tuple(found)
+    return replace(record, samples=Quieted(record.samples, steady_tones(found), outputs, record.rate)), tuple(found)
+
+
+def _tones_of_block(record: Record, inputs: tuple[int, ...], outputs: tuple[int, ...], start: int, stop: int) -> list[Tone]:
+    found: list[Tone] = []
+    line = record.rate / (stop - start)
+    for _ in range(_ROUNDS):
+        block = Quieted(record.samples, steady_tones(found), outputs, record.rate).read(start, stop)[:, [*inputs, *outputs]]
+        lines = np.fft.rfft(block - np.mean(block, axis=0), axis=0) / np.sqrt(stop - start)
+        more = [
+            Tone(seen.place * line, seen.amplitudes / np.sqrt(stop - start), start, stop, seen.chance, seen.fades)
+            for seen in _block_tones(lines, len(inputs))
+            if all(abs(seen.place * line - other.frequency) > _TAPERS * line for other in found if other.fades)
+        ]
+        found += more
+        if not steady_tones(more):
+            break
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """A tone at `place`, in lines."""
+
+    place: float
+    amplitudes: Array
+    chance: float
+    fades: float
+
+
+def _block_tones(lines: Array, inputs: int) -> Iterator[_Seen]:
+    """Tones that outputs hold and inputs do not."""
+    for line in _prominent_lines(_unexplained_power(lines, inputs)):
+        half = min(_HALF, line, len(lines) - 1 - line)
+        if half < _LEAST:
+            continue
+        near = lines[line - half : line + half]
+        if _is_in_inputs(np.abs(near[:, :inputs]) ** 2):
+            continue
+        rest = _local_residual(near[None, :, :inputs], near[None, :, inputs:])[0]
+        both = [_test(np.concatenate([near[:, :inputs], each], axis=1), inputs) for each in (near[:, inputs:], rest)]
+        test = min(both, key=lambda each: np.min(each.chance[inputs:]))
+        chance, held = test.chance[inputs:], test.chance[:inputs]
+        seen = chance < _SEEN_ONCE_IN
+        if np.min(chance) < _ONCE_IN and np.all(held > _HELD_ONCE_IN):
+            offset, fades = _refine_offset(test.slow[:, inputs:][:, seen], test.offset)
+            offset, amplitudes = _fit_beside_drive(near[:, :inputs], rest[:, seen], offset)
+            every = np.zeros(len(seen), dtype=complex)
+            every[seen] = amplitudes
+            yield _Seen(line + offset, every, float(np.min(chance)), fades)
+
+
+def _is_in_inputs(power: Array) -> bool:
+    """Whether the middle of powers (f, m) of inputs stands out in one of them: they are made of tones themselves."""
+    middle = len(power) // 2
+    level = np.median(power, axis=0) / np.log(2.0)
+    return bool(np.any(np.max(power[middle - 1 : middle + 2], axis=0) > _HELD * level))
+
+
+def _unexplained_power(lines: Array, inputs: int) -> Array:
+    """Powers (f, p) of what inputs do not explain of outputs, in stretches of lines by a local polynomial each."""
+    count = len(lines) // (2 * _HALF)
+    if count < 1:
+        return np.abs(lines[:, inputs:]) ** 2
+    found = np.empty((len(lines), lines.shape[1] - inputs))
+    for start in range(0, count, _TOGETHER):
+        stop = min(count, start + _TOGETHER)
+        part = lines[start * 2 * _HALF : stop * 2 * _HALF].reshape(stop - start, 2 * _HALF, -1)
+        rest = _local_residual(part[:, :, :inputs], part[:, :, inputs:])
+        found[start * 2 * _HALF : stop * 2 * _HALF] = np.abs(rest.reshape(-1, rest.shape[2])) ** 2
+    last = lines[-2 * _HALF :][None]
+    found[-2 * _HALF :] = np.abs(_local_residual(last[:, :, :inputs], last[:, :, inputs:])[0]) ** 2
+    return found
+
+
+def _local_residual(drive: Array, outputs: Array) -> Array:
+    """What polynomials in frequency times the drive (w, f, m) and 1 leave of the outputs (w, f, q): a local response and transient.
+
+    The local polynomial method (Pintelon & Schoukens 2012, ch. 7); where there are too few lines for the inputs, the outputs as they are.
+    """
+    lines = drive.shape[1]
+    powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, lines), _DEGREE)
+    full = np.concatenate([drive, np.ones((len(drive), lines, 1))], axis=2)
+    rows = (full[:, :, :, None] * powers[:, None, :]).reshape(len(drive), lines, -1)
+    if rows.shape[2] > lines // 2:
+        return outputs
+    rows = rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300)
+    turned = np.conj(np.swapaxes(rows, 1, 2))
+    gram = turned @ rows + 1e-13 * np.eye(rows.shape[2])
+    return outputs - rows @ np.linalg.solve(gram, turned @ outputs)
+
+
+def _prominent_lines(power: Array) -> list[int]:
+    """Numbers of lines that stand out in one of the powers (f, p), the loudest first, none beside another.
+
+    The level is interpolated between chunks of lines: a step in it would rank a neighbour of a tone before the tone.
+    """
+    count = len(power) // _CHUNK
+    if count < 1:
+        return []
+    level = np.median(power[: count * _CHUNK].reshape(count, _CHUNK, -1), axis=1) / np.log(2.0)
+    middles = (np.arange(count) + 0.5) * _CHUNK
+    smooth = [np.interp(np.arange(len(power)), middles, column) for column in np.log(np.maximum(level, 1e-300)).T]
+    ratio = np.max(power / np.exp(np.stack(smooth, axis=1)), axis=1)
+    chosen: list[int] = []
+    for line in np.argsort(-ratio)[: 8 * _MOST]:
+        if ratio[line] < _LOUD or len(chosen) == _MOST:
+            break
+        if all(abs(line - other) > _TAPERS for other in chosen):
+            chosen.append(int(line))
+    return chosen
+
+
+@dataclass(frozen=True, eq=False)
+class _Test:
+    """Lines as a slow motion in time (t, q), and how likely (q,) noise would be a sinusoid as sure, `offset` lines from the middle."""
+
+    slow: Array
+    offset: float
+    chance: Array
+
+
+def _test(lines: Array, inputs: int) -> _Test:
+    """Thomson's harmonic F-test of lines (f, q), inputs first."""
+    slow = np.fft.ifft(np.fft.ifftshift(lines, axes=0), axis=0) * len(lines)
+    offsets, sums, tapers = _tapers(len(slow))
+    own = (tapers @ slow).reshape(len(offsets), _TAPERS, -1)
+    mean = np.einsum("k,dkq->dq", sums, own) / np.sum(sums**2)
+    rest = np.sum(np.abs(own - sums[None, :, None] * mean[:, None]) ** 2, axis=1)
+    ratio = np.abs(mean) ** 2 * np.sum(sums**2) / np.maximum(rest, 1e-300)
+    best = int(np.argmax(np.max(ratio[:, inputs:], axis=1)))
+    near = slice(max(0, best - 4), best + 5)
+    chance = (1.0 + ratio) ** (1.0 - _TAPERS)
+    return _Test(slow, float(offsets[best]), np.concatenate([np.min(chance[near, :inputs], axis=0), chance[best, inputs:]]))
+
+
+@cache
+def _tapers(size: int) -> tuple[Array, Array, Array]:
+    """Offsets (d,) in lines, sums (k,) of sine tapers, and the tapers turned back by the offsets (d k, t)."""
+    time, order = np.arange(size), np.arange(1, _TAPERS + 1)
+    tapers = np.sqrt(2.0 / (size + 1.0)) * np.sin(np.pi * np.outer(order, time + 1.0) / (size + 1.0))
+    offsets = np.linspace(-1.0, 1.0, 33)
+    turned = np.exp(-2j * np.pi * np.outer(offsets, time) / size)
+    return offsets, np.sum(tapers, axis=1), (turned[:, None] * tapers).reshape(-1, size)
+
+
+def _refine_offset(slow: Array, offset: float) -> tuple[float, float]:
+    """The offset in lines at which the spectra under Hann's window are largest, and the share that fades."""
+    time = np.arange(len(slow))
+    window = np.hanning(len(slow) + 1)[:-1]
+    level = np.var(slow, axis=0)
+    step = 1.0 / 16.0
+    for _ in range(_ZOOMS):
+        offsets = offset + step * np.linspace(-1.0, 1.0, 17)
+        size = np.exp(-2j * np.pi * np.outer(offsets, time) / len(slow)) @ (window[:, None] * slow)
+        offset = float(offsets[np.argmax(np.sum(np.abs(size) ** 2 / level, axis=1))])
+        step /= 6.0
+    turned = np.exp(-2j * np.pi * offset * time / len(slow))[:, None] * slow
+    return offset, _fading_share(turned)
+
+
+def _fit_beside_drive(drive: Array, rest: Array, offset: float) -> tuple[float, Array]:
+    """The offset and the amplitudes (q,) that fit what inputs do not explain: the stage's response there is no part of the tone."""
+    place = np.arange(-(len(rest) // 2), len(rest) // 2)
+    amplitudes = np.zeros(rest.shape[1], dtype=complex)
+    for _ in range(_ZOOMS):
+        kernels = np.stack([_line_shape(offset - place, order) for order in range(2)], axis=1)
+        kernels = _local_residual(drive[None], kernels[None])[0]
+        amplitudes, slopes = np.linalg.lstsq(kernels, rest, rcond=None)[0]
+        offset += float(np.clip(np.real(np.vdot(amplitudes, slopes)) / np.sum(np.abs(amplitudes) ** 2), -0.25, 0.25))
+    return offset, amplitudes
+
+
+def _line_shape(away: Array, order: int) -> Array:
+    """Integral over 0..1 of exp(2 pi j x t), or its derivative by x: what a sinusoid x lines away gives a line."""
+    x = 2j * np.pi * np.where(np.abs(away) < _CLOSE, _CLOSE, away)
+    turn = np.exp(x)
+    return (turn - 1.0) / x if order == 0 else 2j * np.pi * (turn * (x - 1.0) + 1.0) / x**2
+
+
+def _fading_share(turned: Array) -> float:
+    """The share of amplitudes that fades from begin to end, nought where it is not five deviations from none."""
+    ends = len(turned) // 16
+    kept = turned[ends:-ends]
+    time = (np.arange(len(kept)) - 0.5 * (len(kept) - 1.0)) / len(turned)
+    mean, slope = np.mean(kept, axis=0), time @ kept / np.sum(time**2)
+    rest = np.mean(np.abs(kept - mean - time[:, None] * slope) ** 2, axis=0)
+    weights = np.abs(mean) ** 2 / np.maximum(rest, 1e-300)
+    rate = -float(np.sum(weights * np.real(slope / mean)) / np.sum(weights))
+    deviation = 1.0 / np.sqrt(2.0 * np.sum(weights) * np.sum(time**2))
+    return rate if rate > _SURELY * deviation else 0.0

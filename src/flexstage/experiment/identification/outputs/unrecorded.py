@@ -1,0 +1,182 @@
+"""Modes of stages whose inputs nobody recorded: shaken by the floor all along, or left to themselves after a blow or a release."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy
+
+from flexstage.base.finding import Finding, require
+from flexstage.experiment.identification.cluster import vector_assurance
+from flexstage.experiment.identification.diagnosis.peaks import Doubt, Peak, tone_peaks
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.identify import Search, close_groups, identify
+from flexstage.experiment.identification.outputs.subspace import BLOCKS, Shaken, band_covariances, searched_from, shaken_modes
+from flexstage.experiment.identification.outputs.tones import remove_tones
+from flexstage.experiment.records.record import Channel, Record, Responses, Role
+from flexstage.experiment.spectral.cross_spectra import Tell
+
+_EVIDENT, _WEAK = 6.1, 4.0
+"""Deviations by which a mode's width must differ from nought: noise reaches the first once in 1e9."""
+_HIGHEST, _LOWEST = 0.42, 6.0
+_FEWEST = 400
+_SAME, _LOCATED = 0.95, 0.1
+_UNSCALED = (
+    "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes are over their largest component; "
+    "scaling them takes a record with a known force or stroke."
+)
+
+
+def identify_floor(records: Sequence[Record], search: Search, tell: Tell | None = None) -> Identified:
+    """Modes of a stage that the floor shakes all along, from outputs alone: `shaken_modes`, band by band, with 95 % intervals.
+
+    Forces on the stage need a density that is smooth within a band of 1.4 from end to end, in as many independent directions as modes lie
+    together. A mode is reported if its width is 6.1 standard deviations from zero, which noise reaches once in 1e9. Steady tones are taken
+    out before; a resonance narrower than the lines of a block are apart is not distinguished from one. Participations are not known: there
+    are no inputs in what is found. Raises `DesignError` for several records, and for a record too short.
+    """
+    require(_floor_findings(records))
+    record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
+    resolution = BLOCKS / record.duration
+    low = max(_LOWEST * resolution, search.band[0] if search.band else 0.0)
+    high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
+    where = record.source or record.name or "record"
+    if low >= high:
+        what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
+        require([Finding(where, what, "Ask for another band, or record longer")])
+    began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
+    if low == np.inf:
+        what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
+        require([Finding(where, what, "Record longer: modes in the floor's noise take minutes; or ask for a wider band")])
+    bands, density = band_covariances(record, low, high, tell)
+    every = [shaken_modes(band, search.highest_damping) for band in bands]
+    modes = [
+        mode
+        for mode in _without_doubles(mode for _, found in every for mode in found)
+        if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
+    ]
+    narrow = [mode for mode in modes if -2.0 * mode.pole.real < resolution and mode.deviation < _LOCATED * resolution]
+    wide = [mode for mode in modes if -2.0 * mode.pole.real >= resolution]
+    unsure = [mode for mode in wide if _WEAK <= _certainty(mode) < _EVIDENT]
+    found = _result(record, [mode for mode in wide if _certainty(mode) >= _EVIDENT], density, (low, high))
+    size = np.sqrt(found.noise * (high - low))
+    peaks = [
+        *tone_peaks(tones, 1.0 / record.duration, record.outputs, np.where(size > 0.0, size, 1.0)),
+        *(_peak(mode, Doubt.NARROW, record.outputs, resolution) for mode in narrow),
+        *(_peak(mode, Doubt.UNSURE, record.outputs, resolution) for mode in unsure),
+    ]
+    return replace(found, stabilisation=tuple(each for each, _ in every), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
+
+
+def _without_doubles(modes: Iterable[Shaken]) -> list[Shaken]:
+    """Modes by rising frequency; of one that was found twice, in two bands or beside itself, the surer."""
+    kept: list[Shaken] = []
+    for mode in sorted(modes, key=_certainty, reverse=True):
+        if not any(_is_double(mode, other) for other in kept):
+            kept.append(mode)
+    return sorted(kept, key=lambda each: abs(each.pole))
+
+
+def _is_double(first: Shaken, second: Shaken) -> bool:
+    near = abs(first.pole - second.pole) < max(-first.pole.real, -second.pole.real)
+    return near and vector_assurance(first.shape, second.shape) > _SAME
+
+
+def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None = None) -> Identified:
+    """Modes of free decays, from outputs alone: the transform of a decay is a response with the stage's poles, to which modes are fitted.
+
+    Of y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}): each decay is a column as
+    an input is, its amplitudes in the place of participations. It is taken from where the outputs are largest, relative to their root
+    mean squares, to the end. Several records are several decays; of repeated modes one shows one combination only.
+    """
+    if tell is not None:
+        tell(0.0)
+    starts = [_largest(record) for record in records]
+    size = min(record.length - start for record, start in zip(records, starts, strict=True))
+    first = records[0]
+    where = first.source or first.name or "record"
+    parts = [
+        record.select([each.name for each in first.outputs]).values[start : start + size]
+        for record, start in zip(records, starts, strict=True)
+    ]
+    lines = np.fft.rfftfreq(size, 1.0 / first.rate)
+    values = np.stack([np.fft.rfft(part - np.mean(part[-max(1, size // 10) :], axis=0), axis=0) for part in parts], axis=2) / first.rate
+    inside = lines <= _HIGHEST * first.rate
+    decays = tuple(Channel(f"decay {number + 1}", "s^-1", Role.INPUT) for number in range(len(records)))
+    found = identify(Responses(lines[inside], first.outputs, decays, values[inside], source=where), search, tell)
+    began = ", ".join(f"{start / record.rate + record.start:.5g} s" for record, start in zip(records, starts, strict=True))
+    said = f"a free decay is taken from where outputs are largest: {began}."
+    return replace(
+        found,
+        warnings=(_UNSCALED, said, *found.warnings),
+        provenance=f"identified from free decays in {where}: pLSCF, then maximum likelihood",
+    )
+
+
+def _floor_findings(records: Sequence[Record]) -> list[Finding]:
+    where = records[0].source or records[0].name or "record"
+    if len(records) > 1:
+        return [
+            Finding(
+                "--excitation floor",
+                f"there are {len(records)} records",
+                "Give one record: directions of the floor are not the same in others",
+            )
+        ]
+    if records[0].length < BLOCKS * _FEWEST:
+        what = f"it has {records[0].length} samples, {BLOCKS} blocks of {_FEWEST} are needed"
+        return [Finding(where, what, "Record longer: modes in the floor's noise take minutes")]
+    return []
+
+
+def _largest(record: Record) -> int:
+    values = record.select([each.name for each in record.outputs]).values
+    values = values - np.mean(values[-max(1, len(values) // 10) :], axis=0)
+    size = np.sqrt(np.mean(values**2, axis=0))
+    return int(np.argmax(np.sum((values / np.where(size > 0.0, size, 1.0)) ** 2, axis=1)))
+
+
+def _certainty(mode: Shaken) -> float:
+    return -mode.pole.real / max(mode.width_deviation, 1e-300)
+
+
+def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: tuple[float, float]) -> Identified:
+    outputs = record.outputs
+    poles = np.array([mode.pole for mode in modes], dtype=complex)
+    sizes = np.abs(poles)
+    shapes = np.array([mode.shape for mode in modes], dtype=complex).reshape(-1, len(outputs)).T
+    inside = (density.frequencies >= band[0]) & (density.frequencies <= band[1])
+    return Identified(
+        frequencies=sizes,
+        damping=-np.real(poles) / sizes,
+        shapes=shapes,
+        participation=np.zeros((len(modes), 0), dtype=complex),
+        frequency_deviations=np.array([mode.deviation for mode in modes]),
+        damping_deviations=np.array([mode.width_deviation for mode in modes]) / sizes,
+        shape_deviations=np.array([mode.shape_deviation for mode in modes]).reshape(-1, len(outputs)).T,
+        widening=np.ones(len(modes)),
+        significance=np.array([(_certainty(mode) / _EVIDENT) ** 2 for mode in modes]),
+        outputs=outputs,
+        inputs=(),
+        close=close_groups(poles),
+        residuals=np.zeros((2, len(outputs), 0)),
+        responses=density,
+        stabilisation=(),
+        band=band,
+        noise=np.median(np.abs(density.values[inside, :, 0]) ** 2, axis=0),
+        warnings=(_UNSCALED, *_none(modes)),
+        provenance=f"identified from outputs alone, in {record.source or record.name or 'record'}: covariance-driven stochastic subspace",
+    )
+
+
+def _none(modes: Sequence[Shaken]) -> list[str]:
+    return [] if len(modes) else ["no mode stands out of what the floor and the gauges make: record longer, or shake more."]
+
+
+def _peak(mode: Shaken, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
+    largest = np.abs(mode.shape) > 0.5
+    named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
+    chance = float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
+    return Peak(abs(mode.pole), doubt, chance, None if doubt is Doubt.NARROW else -2.0 * mode.pole.real, resolution, named)

@@ -1,0 +1,1 @@
+"""Records of tests: channels, units, clocks and their health."""

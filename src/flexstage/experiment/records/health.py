@@ -1,0 +1,330 @@
+"""Health of a record: what is wrong with it, by channel, and what is left of it when the user allows to go on.
+
+Everything is looked at in one pass; all that is found is told at once. Nothing is left out or cut off unless `Allow` says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.arguments import CheckedFields, check_arguments
+from flexstage.base.finding import DesignError, Finding, suggest_nearest
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.experiment.records.numbers import Numbers, RecordNumbers, explained_share, gather
+from flexstage.experiment.records.options import Allow, matches
+from flexstage.experiment.records.record import Channel, Record, Responses, Role, rising_problem
+from flexstage.experiment.records.unit import same_dimension, unit_problem
+
+_STILL, _STILL_SHARE = 32, 0.05
+_DEAD_BESIDE_OTHERS = 1e-5
+_PILE, _PILE_RATIO, _LEVELS = 8, 2.5, 16
+"""A quantised sine, not clipped, has at most 2.4 times as many samples on its highest level as on the next."""
+_EXPLAINED, _TIE = 0.9, 1e-6
+_SEGMENTS_AN_INPUT = 5
+_BROKEN_SHARE = 0.5
+_HAMMERS = ("hammer*", "force*", "impact*", "f", "f[0-9]*", "f[xyz]")
+_UNWINDOWED = (
+    'If only noise was cut off, allow "windowed" to use it as it is; outputs must not have been weighted by an exponential window, which '
+    "adds to damping: save those as recorded"
+)
+
+
+@dataclass(frozen=True)
+class Needs(CheckedFields):
+    """What is asked: `resolution` in Hz with so many `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
+
+    `unrecorded` where nothing that drove the stage was recorded: there are no inputs then.
+    """
+
+    resolution: float | None = None
+    averages: int = 8
+    highest: float | None = None
+    inputs: tuple[tuple[str, str], ...] | None = None
+    outputs: tuple[tuple[str, str], ...] | None = None
+    unrecorded: bool = False
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with a record: what allows to go on (None: nothing does), the channel it is about, and what is told of it."""
+
+    kind: Allow | None
+    channel: str
+    finding: Finding
+
+
+@dataclass(frozen=True, eq=False)
+class Examination(InNotebook):
+    """What was found: all faults, and the numbers of every channel by name."""
+
+    faults: tuple[Fault, ...]
+    numbers: Mapping[str, Numbers]
+    stretch: tuple[int, int]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is told of all faults."""
+        return tuple(fault.finding for fault in self.faults)
+
+    def channels(self, kinds: Iterable[Allow]) -> frozenset[str]:
+        """Channels with faults of those kinds."""
+        known = frozenset(kinds)
+        return frozenset(fault.channel for fault in self.faults if fault.kind in known and fault.channel)
+
+
+_NEEDS = Needs()
+
+
+@check_arguments
+def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
+    """All faults of a record.
+
+    Samples that are no numbers; channels that are dead, constant, standing still, clipped or coarsely quantised; missing and unknown units;
+    inputs that others explain; roles and names that do not fit; too short, too slowly sampled.
+
+    >>> from flexstage.experiment.records.record import in_memory
+    >>> noise = np.random.default_rng(1).normal(size=(4096, 2)) * [1.0, 0.0]
+    >>> shaken = in_memory([Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT)], 2048.0, noise)
+    >>> [str(finding) for finding in examine(shaken).findings]
+    ['record: S1: it is zero throughout. Check cable and range, or allow "dead" to leave it out.']
+    """
+    found = gather(record)
+    where = record.source or record.name or "record"
+    numbers = dict(zip(record.names, found.channels, strict=True))
+    faults = [
+        *_samples(record, found, where),
+        *_units(record.channels, where),
+        *_dependent(record, found, where),
+        *_roles(record, needs, where),
+    ]
+    return Examination((*faults, *_extent(record, needs, where)), numbers, found.stretch)
+
+
+def usable_record(record: Record, allow: frozenset[Allow] = frozenset(), needs: Needs = _NEEDS) -> Record:
+    """The record as it can be used: as it is where it is sound, else without what `allow` allows to leave out.
+
+    Dead, dependent and unfitting channels go; of a record with gaps the longest whole stretch stays. Raises `DesignError` with every fault
+    that is not allowed.
+
+    >>> from flexstage.experiment.records.record import in_memory
+    >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
+    >>> three = [Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT), Channel("S2", "um", Role.OUTPUT)]
+    >>> usable_record(in_memory(three, 2048.0, noise), frozenset({Allow.DEAD})).names
+    ('u1', 'S2')
+    """
+    found = examine(record, needs)
+    refused = [fault.finding for fault in found.faults if fault.kind not in allow]
+    if refused:
+        raise DesignError(refused)
+    dropped = found.channels({Allow.DEAD, Allow.DEPENDENT, Allow.NAMES})
+    kept = record.select([name for name in record.names if name not in dropped]) if dropped else record
+    where = record.source or record.name or "record"
+    left = [fault.finding for fault in _roles(kept, Needs(unrecorded=needs.unrecorded), where)]
+    if left:
+        raise DesignError(left)
+    if not any(found.numbers[name].broken for name in kept.names):
+        return kept
+    return kept.part(*(gather(kept).stretch if dropped else found.stretch))
+
+
+def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Fault]:
+    """Faults of stored responses: units, names, frequencies that do not rise or do not reach the highest mode, a coherence above one.
+
+    >>> one = Responses(np.array([1.0, 2.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.ones((2, 1, 1), complex))
+    >>> [fault.finding.what for fault in responses_findings(one, Needs(highest=5.0))]
+    ['its responses end at 2 Hz, the highest mode is at 5 Hz']
+    """
+    where = responses.source or responses.name or "responses"
+    faults = [*_units((*responses.outputs, *responses.inputs), where), *_name_faults(responses.inputs, responses.outputs, needs, where)]
+    frequencies = responses.frequencies
+    if (falling := rising_problem(frequencies)) is not None:
+        faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
+    elif needs.highest is not None and needs.highest > frequencies[-1]:
+        what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
+        faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or allow "slow" to use what there is')))
+    if responses.coherence is not None:
+        faults += _coherence(responses.coherence, where)
+    return faults
+
+
+def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
+    """Some analysers write values above 1 where they averaged little."""
+    outside = int(np.sum(~((coherence >= 0.0) & (coherence <= 1.0 + 1e-6))))
+    if outside:
+        low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
+        what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
+        advice = 'Check what was exported, or allow "clipped" to cut it off there'
+        yield Fault(Allow.CLIPPED, "", Finding(where, what, advice))
+
+
+def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
+    for channel, numbers in zip(record.channels, found.channels, strict=True):
+        place = f"{where}: {channel.name}"
+        if numbers.broken:
+            yield from _broken_samples(record, channel, numbers, place, found.stretch)
+        if numbers.broken < record.length:
+            dead = _dead(record, channel, numbers) or _faint(record, found, channel, numbers)
+            windowed = _force_window(record, channel, numbers)
+            if windowed:
+                yield Fault(Allow.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
+            elif dead:
+                yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or allow "dead" to leave it out'))
+            else:
+                yield from _clipped(record, channel, numbers, place)
+
+
+def _broken_samples(record: Record, channel: Channel, numbers: Numbers, place: str, stretch: tuple[int, int]) -> Iterator[Fault]:
+    start, stop = stretch
+    share = numbers.broken / max(1, record.length)
+    first = record.start + numbers.first_broken / record.rate
+    what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
+    if share > _BROKEN_SHARE:
+        yield Fault(Allow.DEAD, channel.name, Finding(place, what, 'Record it anew, or allow "dead" to leave it out'))
+    else:
+        advice = (
+            f'The longest stretch without has {stop - start} samples ({(stop - start) / record.rate:.4g} s): allow "gaps" to use it alone'
+        )
+        yield Fault(Allow.GAPS, channel.name, Finding(place, what, advice))
+
+
+def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
+    unit = f" {channel.unit}" if channel.unit else ""
+    if numbers.low == numbers.high:
+        return "it is zero throughout" if numbers.low == 0.0 else f"it is constant at {numbers.low:.6g}{unit}"
+    if numbers.still >= max(_STILL, _STILL_SHARE * record.length):
+        start = record.start + numbers.still_from / record.rate
+        return (
+            f"it stands still from {start:.6g} s to {start + numbers.still / record.rate:.6g} s, {numbers.still} of {record.length} samples"
+        )
+    return None
+
+
+def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
+    """Whether a force is exactly nought after a blow, as analysers make it: what it did then was cut off."""
+    still = numbers.still >= max(_STILL, _STILL_SHARE * record.length) and numbers.low != numbers.high
+    known = channel.unit and unit_problem(channel.unit) is None
+    force = same_dimension(channel.unit, "N") if known else matches(channel.name, _HAMMERS)
+    if not still or numbers.still_at != 0.0 or numbers.still_from == 0 or not force or channel.role is Role.OUTPUT:
+        return None
+    start = record.start + numbers.still_from / record.rate
+    share, zeros = 100.0 * numbers.still_from / record.length, f"{numbers.still} of {record.length} samples"
+    return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, for {zeros}"
+
+
+def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numbers) -> str | None:
+    """A channel that is far weaker than all others of its kind."""
+    pairs = zip(record.channels, found.channels, strict=True)
+    others = [
+        each.rms
+        for other, each in pairs
+        if other is not channel and (other.unit, other.role) == (channel.unit, channel.role) and each.rms > 0.0
+    ]
+    if not others or numbers.rms >= _DEAD_BESIDE_OTHERS * float(np.median(others)):
+        return None
+    return f"its rms is {numbers.rms:.3g} {channel.unit}, that of the others of its kind {float(np.median(others)):.3g} {channel.unit}"
+
+
+def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> Iterator[Fault]:
+    unit = f" {channel.unit}" if channel.unit else ""
+    if numbers.levels == 1.0 and channel.role is Role.INPUT:
+        return  # a random binary sequence
+    if 0.0 < numbers.levels < _LEVELS:
+        span = f"{numbers.low:.6g} and {numbers.high:.6g}{unit}"
+        what = f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
+        yield Fault(Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a smaller range, or allow "clipped" to use it as it is'))
+        return
+    ends = (
+        ("highest", numbers.at_high if numbers.flat_high else 0, numbers.next_high, numbers.high),
+        ("least", numbers.at_low if numbers.flat_low else 0, numbers.next_low, numbers.low),
+    )
+    for end, at, after, value in ends:
+        if at >= _PILE and at > _PILE_RATIO * after:
+            what = f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {value:.6g}{unit}"
+            yield Fault(
+                Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a wider range, or allow "clipped" to use it as it is')
+            )
+
+
+def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
+    for channel in channels:
+        problem = unit_problem(channel.unit)
+        if problem is not None:
+            advice = 'State it (units, by names or patterns, such as "S*=um"), or allow "units" to use the numbers as they are'
+            yield Fault(Allow.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
+
+
+def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
+    """Inputs that the others explain, one after another, until those left are independent."""
+    names = [channel.name for channel in record.inputs]
+    alive = [number for number in range(len(names)) if np.real(found.input_spectra[:, number, number]).sum() > 0.0]
+    while len(alive) > 1 and found.segments >= _SEGMENTS_AN_INPUT * len(alive):
+        shares = _remove_bias(explained_share(found.input_spectra[:, alive][:, :, alive]), len(alive), found.segments)
+        worst = int(np.flatnonzero(shares >= shares.max() - _TIE)[-1])  # of those alike the last
+        if shares[worst] < _EXPLAINED:
+            return
+        name = names[alive.pop(worst)]
+        what = f"{100.0 * shares[worst]:.3g} % of it is explained by the other inputs, {', '.join(names[number] for number in alive)}"
+        advice = 'Drive the inputs with independent noise, or allow "dependent" to leave it out: its effect is then counted with the others'
+        yield Fault(Allow.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
+
+
+def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
+    """Multiple coherence less what independent signals show with so few averages."""
+    lost = (inputs - 1) / segments
+    return np.maximum(0.0, (shares - lost) / (1.0 - lost))
+
+
+def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
+    for channel in record.channels:
+        if channel.role is Role.UNKNOWN:
+            advice = 'Say what it is (inputs, outputs), or allow "names" to leave it out'
+            yield Fault(
+                Allow.NAMES, channel.name, Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice)
+            )
+    for kind, channels in (("input", record.inputs), ("output", record.outputs)):
+        if kind == "input" and needs.unrecorded:
+            if channels:
+                what = f"{', '.join(each.name for each in channels)}: taken for inputs, where none is said to have been recorded"
+                yield Fault(None, "", Finding(where, what, "Name the channels that count (only), or say that inputs were recorded"))
+            continue
+        if not channels:
+            what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
+            other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
+            yield Fault(None, "", Finding(where, what, f"Name the {kind}s ({kind}s), by names or patterns{other}"))
+    yield from _name_faults(record.inputs, record.outputs, needs, where)
+
+
+def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], needs: Needs, where: str) -> Iterator[Fault]:
+    """Channels the stage does not have, and units that cannot be those of the stage's channels."""
+    for kind, channels, expected in (("input", inputs, needs.inputs), ("output", outputs, needs.outputs)):
+        known = dict(expected or ())
+        for channel in channels if expected is not None else ():
+            place = f"{where}: {channel.name}"
+            if channel.name not in known:
+                advice = f'{suggest_nearest(channel.name, known)}; rename it, or allow "names" to leave it out'
+                yield Fault(Allow.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
+            elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
+                what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
+                yield Fault(
+                    Allow.UNITS, channel.name, Finding(place, what, 'State its unit, or allow "units" to use the numbers as they are')
+                )
+
+
+def _extent(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
+    if needs.resolution is not None and record.duration * needs.resolution < needs.averages:
+        count = record.duration * needs.resolution
+        what = (
+            f"{record.duration:.4g} s give {count:.3g} averages at a resolution of {needs.resolution:g} Hz, {needs.averages} are asked for"
+        )
+        coarser = needs.averages / record.duration
+        yield Fault(
+            Allow.SHORT, "", Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or allow "short" to use fewer averages')
+        )
+    if needs.highest is not None and record.rate <= 2.0 * needs.highest:
+        what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {needs.highest:g} Hz"
+        advice = f'Sample at {2.56 * needs.highest:.4g} Hz or more, or allow "slow" to find what lies below {0.5 * record.rate:g} Hz'
+        yield Fault(Allow.SLOW, "", Finding(where, what, advice))

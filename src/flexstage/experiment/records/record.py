@@ -1,0 +1,361 @@
+"""Records: sampled channels of a test, and the frequency responses an analyser made of one.
+
+A record's samples are read in blocks from wherever they lie, so that a file larger than memory is a record like any other. Numbers stay in
+the units their channels state, bit by bit as the file has them.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Annotated, Protocol
+
+import numpy as np
+
+from flexstage.base.arguments import GAPS, CheckedFields, check_arguments
+from flexstage.base.finding import Finding, require, suggest_nearest
+from flexstage.base.labelled import ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import FREQUENCY, TIME
+
+RATES = (1e-12, 1e15)
+"""Sampling rates there can be [Hz]."""
+
+
+class Role(Enum):
+    """What a channel was in the test."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Channel(CheckedFields):
+    """A recorded channel: its name, the unit of its numbers (empty: not stated) and what it was in the test."""
+
+    name: str
+    unit: str = ""
+    role: Annotated[Role, INNER] = Role.UNKNOWN
+
+
+class Samples(Protocol):
+    """Samples wherever they lie: `length` samples of every channel, read in any range."""
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        ...
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, as floats (n, channels)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class InMemory:
+    """Samples held as one array (n, channels)."""
+
+    values: Array
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return len(self.values)
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded.
+
+        >>> InMemory(np.array([[1.0], [2.0], [3.0]])).read(1, 3).tolist()
+        [[2.0], [3.0]]
+        """
+        return self.values[start:stop]
+
+
+@dataclass(frozen=True, eq=False)
+class ChosenChannels:
+    """Some channels of other samples, by their numbers and in their order."""
+
+    samples: Samples
+    columns: tuple[int, ...]
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, of the chosen channels.
+
+        >>> ChosenChannels(InMemory(np.array([[1.0, 2.0]])), (1,)).read(0, 1).tolist()
+        [[2.0]]
+        """
+        return self.samples.read(start, stop)[:, self.columns]
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A stretch of other samples."""
+
+    samples: Samples
+    start: int
+    length: int
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop` of the stretch, the latter excluded.
+
+        >>> Stretch(InMemory(np.array([[1.0], [2.0], [3.0]])), 1, 2).read(0, 5).tolist()
+        [[2.0], [3.0]]
+        """
+        return self.samples.read(self.start + min(start, self.length), self.start + min(stop, self.length))
+
+
+@dataclass(frozen=True, eq=False)
+class WatchedSamples:
+    """Other samples; `tell` is called with how far they were read, after each block."""
+
+    samples: Samples
+    tell: Callable[[int], None]
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded; tells `stop`."""
+        found = self.samples.read(start, stop)
+        self.tell(min(stop, self.length))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Record(InNotebook, CheckedFields):
+    """Channels sampled together at a constant rate.
+
+    `rate` in Hz; `start` is the time of the first sample in s; `samples` hold (n, channels) numbers in the channels' own units; `name` and
+    `source` say what was recorded and where it was read from. Raises `DesignError` for a rate that is none, for no or unnamed channels and
+    for names that occur twice.
+
+    >>> both = (Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT))
+    >>> shaken = Record(both, 2048.0, InMemory(np.zeros((4096, 2))))
+    >>> shaken.duration, [channel.name for channel in shaken.outputs]
+    (2.0, ['S1'])
+    """
+
+    channels: Annotated[tuple[Channel, ...], INNER]
+    rate: Annotated[float, FREQUENCY]
+    samples: Annotated[Samples, INNER]
+    start: Annotated[float, INNER] = 0.0
+    name: Annotated[str, INNER] = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        where = self.source or self.name or "record"
+        require([*_rate_findings(where, self.rate), *name_findings(where, self.channels)])
+
+    @property
+    def kind(self) -> Annotated[str, VIEW]:
+        """`record`, beside `responses`."""
+        return "record"
+
+    @property
+    def length(self) -> Annotated[int, VIEW]:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    @property
+    def duration(self) -> Annotated[float, TIME]:
+        """Length in seconds: number of samples over rate."""
+        return self.length / self.rate
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all channels."""
+        return tuple(channel.name for channel in self.channels)
+
+    @property
+    def inputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
+        """Channels that were inputs."""
+        return tuple(channel for channel in self.channels if channel.role is Role.INPUT)
+
+    @property
+    def outputs(self) -> Annotated[tuple[Channel, ...], VIEW]:
+        """Channels that were outputs."""
+        return tuple(channel for channel in self.channels if channel.role is Role.OUTPUT)
+
+    @property
+    def values(self) -> Array:
+        """All samples at once, (n, channels)."""
+        return self.samples.read(0, self.length)
+
+    def columns(self, names: Iterable[str]) -> tuple[int, ...]:
+        """Numbers of the named channels; raises `DesignError` for every name that is none's."""
+        chosen, known = tuple(names), self.names
+        where = self.source or self.name or "record"
+        require(
+            Finding(f"{where}: {name}", "the record has no channel of this name", suggest_nearest(name, known))
+            for name in set(chosen) - set(known)
+        )
+        return tuple(known.index(name) for name in chosen)
+
+    def select(self, names: Iterable[str]) -> Record:
+        """The record of the named channels alone, in the order named.
+
+        >>> both = Record((Channel("a"), Channel("b")), 1.0, InMemory(np.array([[1.0, 2.0]])))
+        >>> both.select(["b"]).values.tolist()
+        [[2.0]]
+        """
+        columns = self.columns(names)
+        return replace(self, channels=tuple(self.channels[column] for column in columns), samples=ChosenChannels(self.samples, columns))
+
+    def part(self, start: int, stop: int) -> Record:
+        """The record from sample `start` to sample `stop`, the latter excluded.
+
+        >>> long = Record((Channel("a"),), 2.0, InMemory(np.array([[1.0], [2.0], [3.0]])))
+        >>> long.part(1, 3).start, long.part(1, 3).values.tolist()
+        (0.5, [[2.0], [3.0]])
+        """
+        start, stop, _ = slice(start, stop).indices(self.length)
+        return replace(self, start=self.start + start / self.rate, samples=Stretch(self.samples, start, max(0, stop - start)))
+
+    def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
+        """The samples in blocks (size, channels), each beginning with the last `overlap` samples of the one before; the last may be short.
+
+        >>> five = Record((Channel("a"),), 1.0, InMemory(np.arange(5.0)[:, None]))
+        >>> [block[:, 0].tolist() for block in five.blocks(3, overlap=1)]
+        [[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]]
+        """
+        if not 0 <= overlap < size:
+            raise ValueError(f"blocks of {size} samples cannot overlap by {overlap}")
+        for start in range(0, max(0, self.length - overlap), size - overlap):
+            yield self.samples.read(start, min(start + size, self.length))
+
+
+@dataclass(frozen=True, eq=False)
+class Responses(InNotebook, CheckedFields):
+    """Frequency responses as an analyser stored them: H_ij = output i over input j, for e^{+j omega t}.
+
+    `frequencies` (f,) in Hz, rising; `values` (f, outputs, inputs), complex, in output unit over input unit; `coherence` of the same
+    shape where it was stored with them; `window` and `averages` where the file states them. Raises `DesignError` for names that occur twice
+    on one side and for shapes that do not fit.
+
+    >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
+    >>> one.at("S1", "u1").tolist(), one.units
+    ([2j], (('um/V',),))
+    """
+
+    frequencies: Array
+    outputs: tuple[Channel, ...]
+    inputs: tuple[Channel, ...]
+    values: Annotated[Array, GAPS, INNER]
+    coherence: Annotated[Array | None, GAPS, INNER] = None
+    window: str = ""
+    averages: int | None = None
+    name: Annotated[str, INNER] = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        where = self.source or self.name or "responses"
+        expected = (len(self.frequencies), len(self.outputs), len(self.inputs))
+        shapes = {"values": self.values.shape} | ({} if self.coherence is None else {"coherence": self.coherence.shape})
+        advice = "Give one value a frequency, output and input"
+        wrong = [
+            Finding(f"{where}: {name}", f"shape {shape} where {expected} is expected", advice)
+            for name, shape in shapes.items()
+            if shape != expected
+        ]
+        require([*name_findings(where, self.outputs), *name_findings(where, self.inputs), *wrong])
+
+    @property
+    def kind(self) -> Annotated[str, VIEW]:
+        """`responses`, beside `record`."""
+        return "responses"
+
+    @property
+    def lines(self) -> Annotated[int, VIEW]:
+        """Number of frequencies."""
+        return len(self.frequencies)
+
+    @property
+    def band(self) -> Annotated[tuple[float, float], FREQUENCY]:
+        """The lowest and the highest frequency."""
+        return float(self.frequencies[0]), float(self.frequencies[-1])
+
+    @property
+    def units(self) -> tuple[tuple[str, ...], ...]:
+        """Unit of every entry, outputs x inputs; empty where one side's is not stated."""
+        columns = [channel.unit for channel in self.inputs]
+        ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
+        stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
+        return tuple(tuple(ratio if known else "" for ratio, known in zip(row, both, strict=True)) for row, both in stated)
+
+    def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
+        """One entry over frequency, complex (f,)."""
+        row = [channel.name for channel in self.outputs].index(output)
+        column = [channel.name for channel in self.inputs].index(input)
+        return self.values[:, row, column]
+
+
+def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
+    """The record, telling how many samples were read whenever a block is: for bars of progress.
+
+    >>> told = []
+    >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
+    >>> sum(len(block) for block in long.blocks(2)), told
+    (5, [2, 4, 5])
+    """
+    return replace(record, samples=WatchedSamples(record.samples, tell))
+
+
+@check_arguments
+def in_memory(channels: Iterable[Channel], rate: float, values: Annotated[Array, GAPS]) -> Record:
+    """The record of an array (n, channels), sampled at `rate` in Hz.
+
+    >>> in_memory([Channel("S1", "um")], 10.0, np.zeros((5, 1))).duration
+    0.5
+    """
+    return Record(tuple(channels), float(rate), InMemory(np.asarray(values, dtype=float)))
+
+
+def rising_problem(frequencies: Array) -> str | None:
+    """What keeps frequencies from rising: fewer than two, one that stands twice, one below the one before; None if they rise.
+
+    >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
+    'its frequencies do not rise: 2 Hz stands twice, lines 2 and 3'
+    """
+    if len(frequencies) < 2:
+        return f"it has {len(frequencies)} frequencies"
+    falling = np.flatnonzero(~(np.diff(frequencies) > 0.0))
+    if not len(falling):
+        return None
+    line = int(falling[0])
+    first, second = frequencies[line], frequencies[line + 1]
+    how = f"{first:g} Hz stands twice, lines" if first == second else f"{second:g} Hz follows {first:g} Hz, lines"
+    return f"its frequencies do not rise: {how} {line + 1} and {line + 2}"
+
+
+def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
+    """What is wrong with the names of channels: none at all, empty ones, ones that occur twice.
+
+    >>> [finding.what for finding in name_findings("a.csv", (Channel("S1"), Channel("S1")))]
+    ['2 channels have this name']
+    """
+    if not channels:
+        return [Finding(where, "there is no channel", "Give at least one")]
+    counts = Counter(channel.name for channel in channels)
+    unnamed = [Finding(where, f"{counts['']} of {len(channels)} channels have no name", "Name every channel")] if counts[""] else []
+    twice = [name for name, count in counts.items() if count > 1 and name]
+    return unnamed + [Finding(f"{where}: {name}", f"{counts[name]} channels have this name", "Name each channel once") for name in twice]
+
+
+def _rate_findings(where: str, rate: float) -> list[Finding]:
+    if RATES[0] <= rate <= RATES[1]:
+        return []
+    return [Finding(where, f"the sampling rate is {rate:g} Hz", f"Give a rate between {RATES[0]:g} and {RATES[1]:g} Hz")]

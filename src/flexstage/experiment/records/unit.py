@@ -1,0 +1,120 @@
+"""Units of recorded channels: spellings of other programs, what keeps a unit from being read, and records in SI."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.base.units import quantity as quantities
+from flexstage.base.units.dimension import Dimension, dimension_of
+from flexstage.base.units.quantity import Quantity
+from flexstage.experiment.records.record import Channel, Record, Samples
+
+_ABSENT = {"none", "n/a", "-", "unknown", "unitless", "[]", "()"}
+_SPELLINGS = (
+    *("V volt volts", "N newton newtons", "um micron microns", "s sec secs second seconds", "Hz hertz", "m meters metres", "A amp amps"),
+    *("g0 g gn gs", "deg degrees", "rad radians", "% percent", "Pa pascals"),
+)
+_WORDS = {word: symbols.split()[0] for symbols in _SPELLINGS for word in symbols.split()[1:]}
+_WORD = re.compile(r"[^\W\d_]+")
+_POWER = re.compile(r"(?<=[^\W\d_])(?=[23](?!\d))")
+_FURTHER = ("m/s", "rad/s", "rad/s^2", "A", "C", "W", "J", "N/s", "V/s")
+
+
+def plain_unit(text: str) -> str:
+    """A unit in this package's spelling: words become symbols, `m/s2` a power, brackets go; a lone `g` is the standard gravity.
+
+    >>> [plain_unit(text) for text in ("Volts", "m/s2", "[um]", "NONE", "g", "m/sec^2")]
+    ['V', 'm/s^2', 'um', '', 'g0', 'm/s^2']
+    """
+    text = text.strip()
+    if len(text) > 1 and text[0] + text[-1] in ("[]", "()") and not any(sign in text[1:-1] for sign in "[]()"):
+        text = text[1:-1].strip()
+    if text.lower() in _ABSENT:
+        return ""
+    spelt = _WORD.sub(lambda word: _WORDS.get(word[0] if len(word[0]) == 1 else word[0].lower(), word[0]), text)
+    return _POWER.sub("^", spelt)
+
+
+def unit_problem(unit: str) -> str | None:
+    """Why a unit cannot be used; None if it can.
+
+    >>> unit_problem("um"), unit_problem(""), unit_problem("furlong")
+    (None, 'no unit is stated', '"furlong" is not a known unit')
+    """
+    if not unit:
+        return "no unit is stated"
+    try:
+        dimension_of(unit)
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def same_dimension(unit: str, other: str) -> bool:
+    """Whether two units, both readable, measure the same.
+
+    >>> same_dimension("um", "m"), same_dimension("um", "V")
+    (True, False)
+    """
+    return dimension_of(unit).powers == dimension_of(other).powers
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledSamples:
+    """Other samples with each channel multiplied by a factor."""
+
+    samples: Samples
+    factors: Array
+
+    @property
+    def length(self) -> int:
+        """Number of samples of each channel."""
+        return self.samples.length
+
+    def read(self, start: int, stop: int) -> Array:
+        """Samples `start` to `stop`, the latter excluded, in the new units.
+
+        >>> from flexstage.experiment.records.record import InMemory
+        >>> ScaledSamples(InMemory(np.array([[1.0, 2.0]])), np.array([1.0, 1e-6])).read(0, 1).tolist()
+        [[1.0, 2e-06]]
+        """
+        return self.samples.read(start, stop) * self.factors
+
+
+def in_si(record: Record) -> Record:
+    """The record with numbers and units in SI, scaled as they are read; a channel whose unit is absent or unknown stays as it is.
+
+    >>> from flexstage.experiment.records.record import in_memory
+    >>> metres = in_si(in_memory([Channel("S1", "um"), Channel("u1")], 1.0, np.array([[2.0, 3.0]])))
+    >>> [channel.unit for channel in metres.channels], metres.values.tolist()
+    (['m', ''], [[2e-06, 3.0]])
+    """
+    channels, factors = _convert(record.channels)
+    return replace(record, channels=channels, samples=ScaledSamples(record.samples, np.array(factors)))
+
+
+def _convert(channels: Iterable[Channel]) -> tuple[tuple[Channel, ...], list[float]]:
+    both = [(channel, *_si(channel.unit)) for channel in channels]
+    return tuple(replace(channel, unit=unit) for channel, unit, _ in both), [factor for _, _, factor in both]
+
+
+def _si(unit: str) -> tuple[str, float]:
+    """The coherent SI unit and the factor that leads to it."""
+    if unit_problem(unit) is not None:
+        return unit, 1.0
+    dimension = dimension_of(unit)
+    if dimension.size == 1:
+        return unit, 1.0
+    found = _coherent_unit(dimension)
+    return (unit, 1.0) if found is None else (found, float(dimension.size))
+
+
+def _coherent_unit(dimension: Dimension) -> str | None:
+    known = [each.si for each in vars(quantities).values() if isinstance(each, Quantity) and each.si != "mixed"]
+    return next((unit for unit in (*known, *_FURTHER) if dimension_of(unit) == Dimension(Fraction(1), dimension.powers)), None)

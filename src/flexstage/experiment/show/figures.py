@@ -1,0 +1,308 @@
+"""What a test says, drawn: responses with the fit over the data, coherence, the stabilisation diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.records.record import Channel, Responses
+from flexstage.show.display import to_typography
+from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
+
+LARGEST = 6
+"""Rows and columns of responses that a figure shows at most."""
+
+_BINS, _FINE = 110, 90
+_POINTS = 3500
+_ABOVE, _BELOW = 1.8, 0.4
+_DATA, _FIT = "#9aa5b1", SERIES[0]
+_PERIOD = 360.0
+_MANY = 4000
+
+
+def response_matrix_figure(found: Identified) -> Any:
+    """Every response of the first outputs to the first inputs: magnitude over phase, data grey and fit coloured, as a matplotlib Figure.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> len(response_matrix_figure(identify(one_mode_record())).axes)
+    2
+    """
+    rows, columns = found.outputs[:LARGEST], found.inputs[:LARGEST]
+    band = focus(found)
+    inside = _inside(found.responses.frequencies, band)
+    lines, values = found.responses.frequencies[inside], found.responses.values[inside]
+    fine = _fine_lines(found, band)
+    fitted = found.response(fine).values if len(found.frequencies) else None
+    bins = min(_BINS, max(40, _POINTS // (len(rows) * len(columns))))
+    with style_context():
+        height = 1.35 if len(columns) > 2 else 2.0
+        figure = canvas(FULL, 0.75 + height * len(rows))
+        margins = Margins(left=0.75, top=0.3, bottom=0.42, across=0.1, down=0.06)
+        grid = panels(figure, 2 * len(rows), len(columns), margins, heights=[2.1, 1.0] * len(rows))
+        for row in range(len(rows)):
+            for column in range(len(columns)):
+                pair = grid[2 * row : 2 * row + 2, column]
+                own = None if fitted is None else fitted[:, row, column]
+                _magnitude(pair[0], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
+                _phase(pair[1], lines, values[:, row, column], fine=fine, fit=own, bins=bins)
+            _same_scale(grid[2 * row], values[:, row, : len(columns)])
+        _matrix_labels(grid, rows, columns, band)
+    return figure
+
+
+def density_figure(found: Identified) -> Any:
+    """Amplitude densities of outputs where no input was recorded, and the modes found, as a matplotlib Figure."""
+    lines = found.responses.frequencies
+    inside = _inside(lines, focus(found))
+    with style_context():
+        figure = canvas(FULL, 2.6)
+        axes = panels(figure, 1, 1, Margins(left=0.75, top=0.3))[0, 0]
+        for index, channel in enumerate(found.outputs[:LARGEST]):
+            x, size = _extremes(lines[inside], np.abs(found.responses.values[inside, index, 0]), 4 * _BINS)
+            axes.semilogy(x, size, color=SERIES[index % len(SERIES)], linewidth=0.7, label=channel.name)
+        for frequency in found.frequencies:
+            axes.axvline(float(frequency), color=MUTED, linewidth=0.6, linestyle=":")
+        units = {channel.unit for channel in found.outputs}
+        axes.set_xlim(*focus(found))
+        axes.set_xlabel("frequency [Hz]")
+        axes.set_ylabel(f"density [{to_typography(units.pop())}/√Hz]" if len(units) == 1 else "density")
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=LARGEST, borderaxespad=0.2)
+    return figure
+
+
+def focus(found: Identified) -> tuple[float, float]:
+    """The frequencies that figures show [Hz]: from below the lowest mode to well above the highest one, within the band looked at.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> [round(each, 1) for each in focus(identify(one_mode_record()))]
+    [4.0, 18.0]
+    """
+    low, high = found.band
+    if not len(found.frequencies):
+        return low, high
+    return max(low, _BELOW * float(np.min(found.frequencies))), min(high, _ABOVE * float(np.max(found.frequencies)))
+
+
+def _magnitude(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
+    x, size = _extremes(lines, np.abs(data), bins)
+    axes.semilogy(x, size, color=_DATA, linewidth=1.6)
+    if fit is not None:
+        axes.semilogy(fine, np.abs(fit), color=_FIT, linewidth=0.8)
+
+
+def _phase(axes: Any, lines: Array, data: Array, *, fine: Array, fit: Array | None, bins: int) -> None:
+    step = max(1, len(lines) // bins)
+    axes.plot(lines[::step], np.rad2deg(np.angle(data[::step])), ".", color=_DATA, markersize=2.0, markeredgewidth=0.0)
+    if fit is not None:
+        angle = np.rad2deg(np.angle(fit))
+        jumps = np.flatnonzero(np.abs(np.diff(angle)) > 0.5 * _PERIOD) + 1
+        axes.plot(np.insert(fine, jumps, np.nan), np.insert(angle, jumps, np.nan), color=_FIT, linewidth=0.8)
+    axes.set_ylim(-200.0, 200.0)
+    axes.set_yticks([-180.0, 0.0, 180.0])
+
+
+def _same_scale(row: Any, values: Array) -> None:
+    """One scale of magnitudes for all responses of an output, without what is far below the least of them."""
+    sizes = np.abs(values)
+    sizes = sizes[sizes > 0.0]
+    if not sizes.size:
+        return
+    low, high = max(float(np.quantile(sizes, 0.005)), 1e-6 * float(np.max(sizes))), float(np.max(sizes))
+    for axes in row:
+        axes.set_ylim(0.5 * low, 2.5 * high)
+
+
+def _matrix_labels(grid: Any, rows: Sequence[Channel], columns: Sequence[Channel], band: tuple[float, float]) -> None:
+    for column, channel in enumerate(columns):
+        grid[0, column].set_title(channel.name, fontsize=7.5)
+        grid[-1, column].set_xlabel("frequency [Hz]", fontsize=7.0)
+    for row, channel in enumerate(rows):
+        units = {each.unit for each in columns}
+        unit = (
+            f" [{to_typography(channel.unit)}/{to_typography(units.pop())}]" if len(units) == 1 and channel.unit and "" not in units else ""
+        )
+        for axes, text in zip(grid[2 * row : 2 * row + 2, 0], (f"{channel.name}{unit}", "phase [°]"), strict=True):
+            axes.set_ylabel(text, fontsize=6.5)
+            axes.yaxis.set_label_coords(-0.62 / (FULL / len(columns)), 0.5)
+    for number, line in enumerate(grid):
+        for index, axes in enumerate(line):
+            axes.tick_params(labelsize=6.0, labelleft=index == 0, labelbottom=number == len(grid) - 1)
+            if number % 2 == 0:
+                _decades(axes)
+            axes.set_xlim(*band)
+
+
+def _decades(axes: Any) -> None:
+    """Ticks of a logarithmic axis at few powers of ten, as plain numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+    axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: to_typography(f"{value:g}" if 1e-2 <= value < 1e3 else f"{value:.0e}")))
+    axes.yaxis.set_minor_locator(NullLocator())
+
+
+def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
+    """H1, H2 and the paper's T_ij = G_ij/G_ii of each output from the input that moves it most, as a matplotlib Figure.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> from flexstage.experiment.spectral.transfer import h1, h2
+    >>> len(estimator_figure(h1(example_spectra()), [h2(example_spectra())], (1.0, 8.0)).axes)
+    1
+    """
+    inside = _inside(first.frequencies, band)
+    rows = range(min(LARGEST, len(first.outputs)))
+    with style_context():
+        figure, grid = _grid(len(rows), 1.6, Margins(left=0.6, top=0.5, across=0.45, down=0.4))
+        for row, axes in zip(rows, grid.flat, strict=False):
+            column = int(np.argmax(np.sum(np.abs(first.values[inside, row]) ** 2, axis=0)))
+            for index, each in enumerate((first, *others)):
+                own = _inside(each.frequencies, band)  # estimates may stand on other lines than the first
+                x, size = _extremes(each.frequencies[own], np.abs(each.values[own, row, column]))
+                axes.semilogy(x, size, color=SERIES[index], linewidth=1.6 - 0.5 * index, label=each.name)
+            axes.set_title(f"{first.outputs[row].name} / {first.inputs[column].name}", fontsize=7.5)
+            _decades(axes)
+            axes.set_xlim(*band)
+            axes.tick_params(labelsize=6.5, labelbottom=True)
+        _finish(figure, grid, len(rows))
+    return figure
+
+
+def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
+    """For each of the first outputs the multiple coherence, and the ordinary one with every input, as a matplotlib Figure.
+
+    `multiple` (f, p) is absent where only an analyser's ordinary coherence is known; it stands on `lines` [Hz], by default those of the
+    responses found.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> len(coherence_figure(identify(one_mode_record()), None).axes)
+    1
+    """
+    data = found.responses
+    band = focus(found)
+    inside = _inside(data.frequencies, band)
+    rows = range(min(LARGEST, len(found.outputs)))
+    with style_context():
+        figure, grid = _grid(len(rows), 1.25, Margins(left=0.5, top=0.5, across=0.45, down=0.35))
+        for row, axes in zip(rows, grid.flat, strict=False):
+            for column in range(min(LARGEST, len(found.inputs)) if data.coherence is not None else 0):
+                x, share = _means(data.frequencies[inside], data.coherence[inside, row, column])  # pyright: ignore[reportOptionalSubscript]
+                axes.plot(x, share, color=SERIES[column % len(SERIES)], linewidth=0.7, label=f"with {found.inputs[column].name}")
+            if multiple is not None:
+                own = data.frequencies if lines is None else lines
+                shown = _inside(own, band)
+                x, share = _means(own[shown], multiple[shown, row])
+                axes.plot(x, share, color=INK, linewidth=1.3, label="multiple")
+            axes.set_title(found.outputs[row].name, fontsize=7.5)
+            axes.set_xlim(*band)
+            axes.set_ylim(0.0, 1.04)
+            axes.tick_params(labelsize=6.5)
+        _finish(figure, grid, len(rows))
+    return figure
+
+
+def stabilisation_figure(found: Identified) -> Any:
+    """The stabilisation diagram: poles by order and frequency, how stable each is, the modes found, the size of all responses behind.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> len(stabilisation_figure(identify(one_mode_record())).axes)
+    2
+    """
+    kinds = ((0, "new", ".", "#b8c1cc", 2.0), (1, "frequency stable", "x", SERIES[1], 2.6), (2, "damping too", "^", SERIES[4], 2.6))
+    with style_context():
+        figure = canvas(FULL, 3.1)
+        axes = panels(figure, 1, 1, Margins(left=0.5, right=0.55, top=0.4))[0, 0]
+        _envelope(axes, found)
+        for stable, label, marker, colour, size in (*kinds, (3, "participation too", "o", SERIES[2], 2.6)):
+            x, y = _poles(found, stable)
+            axes.plot(x, y, marker, color=colour, markersize=size, markeredgewidth=0.6, label=label, linestyle="none")
+        for index, frequency in enumerate(found.frequencies):
+            axes.axvline(float(frequency), color=MUTED, linewidth=0.6, linestyle=":", label="mode found" if index == 0 else None)
+        axes.set_xlim(*focus(found))
+        axes.set_xlabel("frequency [Hz]")
+        axes.set_ylabel("order")
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=5, handletextpad=0.3, columnspacing=1.2, borderaxespad=0.2)
+    return figure
+
+
+def _poles(found: Identified, stable: int) -> tuple[Array, Array]:
+    """Frequencies and orders of the poles of one kind within the band."""
+    rows = [
+        (each.frequencies[chosen], each.orders[chosen])
+        for each in found.stabilisation
+        if np.any(chosen := (each.stable == stable) & _inside(each.frequencies, focus(found)))
+    ]
+    if not rows:
+        return np.zeros(0), np.zeros(0)
+    x, y = (np.concatenate(column) for column in zip(*rows, strict=True))
+    step = -(-len(x) // _MANY)
+    return x[::step], y[::step]
+
+
+def _envelope(axes: Any, found: Identified) -> None:
+    """The root sum of squares of all responses, each output over its own mean, on an axis of its own."""
+    data = found.responses
+    inside = _inside(data.frequencies, focus(found))
+    power = np.sum(np.abs(data.values[inside]) ** 2, axis=2)
+    total = np.sqrt(np.sum(power / np.maximum(np.mean(power, axis=0), 1e-300), axis=1))
+    behind = axes.twinx()
+    behind.semilogy(*_extremes(data.frequencies[inside], total), color=_DATA, linewidth=0.9, zorder=0)
+    behind.set_ylabel("all responses, relative", color=MUTED)
+    behind.tick_params(labelsize=6.5, colors=MUTED)
+    _decades(behind)
+    behind.grid(visible=False)
+    axes.set_zorder(behind.get_zorder() + 1)
+
+
+def _inside(frequencies: Array, band: tuple[float, float]) -> Array:
+    return (frequencies >= band[0]) & (frequencies <= band[1])
+
+
+def _fine_lines(found: Identified, band: tuple[float, float]) -> Array:
+    """Frequencies for the fit: evenly over the band, and finely within some half-widths of each mode."""
+    low, high = band
+    offsets = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])
+    around = (found.frequencies[:, None] * (1.0 + offsets * found.damping[:, None])).ravel()
+    lines = np.unique(np.concatenate([np.linspace(low, high, _FINE), around]))
+    return lines[(lines >= low) & (lines <= high)]
+
+
+def _extremes(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
+    """A curve with so few points as a picture can show: of each bin its least and its largest value."""
+    if len(x) <= 3 * bins:
+        return x, y
+    kept: list[int] = []
+    for part in np.array_split(np.arange(len(x)), bins):
+        kept += sorted({int(part[np.argmin(y[part])]), int(part[np.argmax(y[part])])})
+    return x[kept], y[kept]
+
+
+def _means(x: Array, y: Array) -> tuple[Array, Array]:
+    """A curve averaged over bins."""
+    parts = np.array_split(np.arange(len(x)), min(len(x), 2 * _BINS))
+    return np.array([np.mean(x[part]) for part in parts]), np.array([np.mean(y[part]) for part in parts])
+
+
+def _grid(count: int, height: float, margins: Margins) -> tuple[Any, Any]:
+    """A figure with panels so high [in], three abreast."""
+    across = min(3, count)
+    down = -(-count // across)
+    figure = canvas(FULL, 0.75 + height * down)
+    return figure, panels(figure, down, across, margins)
+
+
+def _finish(figure: Any, grid: Any, used: int) -> None:
+    """The legend of the first panel above all, frequencies below; panels beyond those used are not shown."""
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper left", ncols=7, handlelength=1.2, columnspacing=1.2, borderaxespad=0.2, fontsize=7.0)
+    for axes in grid[-1]:
+        axes.set_xlabel("frequency [Hz]")
+    for axes in grid.flat[used:]:
+        axes.set_visible(False)

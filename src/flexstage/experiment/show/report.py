@@ -1,0 +1,107 @@
+"""The reports of tests: modes found in records, and theory beside them; one HTML file each that stands alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from flexstage.analysis.complete import read
+from flexstage.base.storage.digest import digest
+from flexstage.base.version import __version__
+from flexstage.experiment.comparison import Compared
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.records.record import Responses
+from flexstage.experiment.shapes_on_stage import StageShapes
+from flexstage.experiment.show.sections import (
+    coherence_section,
+    compare_section,
+    found_section,
+    measured_motions,
+    measured_shape_section,
+    pair_section,
+    response_data_section,
+    stabilisation_section,
+)
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.display import NO_VALUE, number, percent
+from flexstage.show.page import Head, Headline, Section, page
+from flexstage.show.scene.stage import Scene, scene
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import first_motion, stage_section
+from flexstage.show.viewer.data import StageData, stage_data
+
+
+def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
+    """Modes found in a test as a page of HTML: tables, responses with the fit, coherence, stabilisation; with a stage, shapes on it.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.pipeline import identification
+    >>> identify_report(identification((one_mode_record(),)))[:15]
+    '<!doctype html>'
+    """
+    said = _found_headline(seen)
+    if mechanism is None:
+        return _page("Modes identified in a test", said, None, seen, [None, *_sections(seen)])
+    drawn = scene(mechanism)
+    data = _with_measured(stage_data(mechanism), seen, shapes, drawn)
+    sections = [stage_section(drawn, motion=first_motion(data)), *_sections(seen, _measured(seen, shapes, drawn))]
+    return _page("Modes identified in a test", said, mechanism, seen, sections, data=data)
+
+
+def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
+    """Theory, FEA and experiment as a page of HTML, followed by what the experiment rests on."""
+    drawn = scene(mechanism)
+    data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes, drawn)
+    head = [stage_section(drawn, motion=first_motion(data)), compare_section(found), pair_section(found, data)]
+    sections = [*head, *_sections(seen, _measured(seen, shapes, drawn))]
+    return _page("Theory and experiment", _compared_headline(found), mechanism, seen, sections, data=data)
+
+
+def _with_measured(data: StageData, seen: Identification, shapes: StageShapes | None, drawn: Scene) -> StageData:
+    """The stage's motions, and those measured."""
+    return data if shapes is None else replace(data, motions=(*data.motions, *measured_motions(seen.found, shapes, drawn)))
+
+
+def _measured(seen: Identification, shapes: StageShapes | None, drawn: Scene) -> Section | None:
+    return None if shapes is None else measured_shape_section(seen.found, shapes, drawn)
+
+
+def _found_headline(seen: Identification) -> Headline:
+    """How many modes were found, and between which frequencies."""
+    found = seen.found.frequencies
+    ends = f", {number(float(found[0]), 4)} to {number(float(found[-1]), 4)} Hz" if len(found) else ""
+    return Headline(f"{len(found)} {'mode' if len(found) == 1 else 'modes'} found{ends}.")
+
+
+def _compared_headline(found: Compared) -> Headline:
+    """How many of theory's modes the experiment shows, and how far off theory is at most."""
+    seen = [mode for mode in found.modes if mode.difference is not None]
+    said = f"{len(seen)} of {len(found.modes)} modes of the platform are found in the experiment"
+    if not seen:
+        return Headline(f"{said}.", good=False)
+    worst = max(seen, key=lambda mode: abs(mode.difference or 0.0))
+    off = NO_VALUE if worst.difference is None else percent(worst.difference, 3)
+    return Headline(f"{said}; theory is at most {off} off, in mode {worst.number} ({worst.name}).", len(seen) == len(found.modes))
+
+
+def _sections(seen: Identification, measured: Section | None = None) -> list[Section | None]:
+    return [found_section(seen), measured, response_data_section(seen), coherence_section(seen), stabilisation_section(seen.found)]
+
+
+def _page(
+    kind: str,
+    said: Headline,
+    mechanism: Mechanism | None,
+    seen: Identification,
+    sections: list[Section | None],
+    *,
+    data: StageData | None = None,
+) -> str:
+    sources = [seen.test.source] if isinstance(seen.test, Responses) else [each.source for each in seen.test]
+    named = ", ".join(each for each in sources if each) or "record"
+    origin = [("record", named), ("model", "measured"), ("flexstage", __version__)]
+    if mechanism is not None:
+        origin.insert(1, ("physics", digest(mechanism, physics=True)[:16]))
+    title = (mechanism.name if mechanism is not None else "") or named
+    known = None if mechanism is None else caveat_section(mechanism)
+    shown = [each for each in (*sections[:2], known, *sections[2:]) if each is not None]
+    return page(Head(title, kind, tuple(origin), said), shown, {} if data is None else {"stage": data})

@@ -1,0 +1,168 @@
+"""Sections of tests: what was measured, modes found, responses, coherence, stabilisation, shapes on the stage; theory beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from flexstage.experiment.comparison import Compared
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.pipeline import Identification
+from flexstage.experiment.shapes_on_stage import StageShapes
+from flexstage.experiment.show.comparison_figures import compare_figure
+from flexstage.experiment.show.comparison_tables import compare_table, further_table, repeated_table
+from flexstage.experiment.show.figures import (
+    LARGEST,
+    coherence_figure,
+    density_figure,
+    estimator_figure,
+    focus,
+    response_matrix_figure,
+    stabilisation_figure,
+)
+from flexstage.experiment.show.tables import (
+    identified_table,
+    measured_shape_table,
+    motion_explained_text,
+    peak_table,
+    recorded_table,
+    warning_table,
+)
+from flexstage.show.display import number
+from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.style import THIRD
+from flexstage.show.page import Abreast, Block, Picture, Prose, Section, fold, section
+from flexstage.show.scene.pictures import mode_picture
+from flexstage.show.scene.stage import Scene
+from flexstage.show.sections.dynamics import SHAPES
+from flexstage.show.sections.stage import joined_viewers, platform_modes
+from flexstage.show.table import Table
+from flexstage.show.viewer.data import StageData
+from flexstage.show.viewer.motions import Group, Motion, Skeleton
+
+_FLOOR = (
+    "No input was recorded. Candidates are stable poles of covariance-driven stochastic subspaces, band by band; intervals come from the "
+    "scatter between forty blocks of the record, to first order. Shapes are over their largest component: their scale by mass is unknown."
+)
+
+
+def found_section(seen: Identification) -> Section | None:
+    """The modes found, and what the data cannot tell."""
+    text = (
+        "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator on H1; each group of near "
+        "ones is fitted by maximum likelihood to the transform of the whole record. What the data do not ask for is left out."
+    )
+    found = seen.found
+    text = text if found.inputs else _FLOOR
+    shapes = measured_shape_table(found) if len(found.frequencies) else None
+    blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), peak_table(found.peaks), shapes]
+    return section("Modes found", [*blocks, Prose(text)])
+
+
+def response_data_section(seen: Identification) -> Section | None:
+    """Responses with the fit over the data, estimators beside one another; densities where no input was recorded."""
+    found = seen.found
+    if not found.inputs:
+        picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
+        return section("Densities", [Picture(picture, "Amplitude densities of the outputs. Dotted: modes found.")])
+    drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs, with the fit over the data")
+    caption = "Responses, magnitude over phase: grey the data (H1), blue the fit. Columns: inputs; rows: outputs."
+    cut = max(len(found.outputs), len(found.inputs)) > LARGEST
+    caption += f" The first {LARGEST} of {len(found.outputs)} outputs and {len(found.inputs)} inputs." if cut else ""
+    others = [each for each in (seen.second, seen.ratio) if each is not None]
+    estimators: Block | None = None
+    if others and seen.spectra is not None:
+        picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Estimates of responses beside one another")
+        text = (
+            "Each output with the input that moves it most. H1 for noise at outputs, H2 for noise at inputs; G_ij/G_ii (Eq. 29 of Shin & "
+            "Moon) equals H1 where one input acts alone or inputs are uncorrelated."
+        )
+        estimators = Picture(picture, text)
+    return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the paper's ratio", estimators)])
+
+
+def coherence_section(seen: Identification) -> Section | None:
+    """Ordinary and multiple coherence; `None` where an analyser stored none."""
+    if seen.found.responses.coherence is None and seen.multiple is None:
+        return None
+    lines = None if seen.spectra is None else seen.spectra.frequencies
+    drawn = to_svg(coherence_figure(seen.found, seen.multiple, lines), "coherence", "Coherence of outputs with inputs over frequency")
+    known = seen.spectra
+    cut = ""
+    if known is not None:
+        window = known.segments.window.value.capitalize()
+        cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
+    caption = "Multiple: the share of an output's power that all inputs together explain. Ordinary, with one input: its share alone." + cut
+    return section("Coherence", [Picture(drawn, caption)])
+
+
+def stabilisation_section(found: Identified) -> Section | None:
+    """The stabilisation diagram; `None` where nothing was tried."""
+    if not found.stabilisation:
+        return None
+    drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
+    caption = "Poles of rising order; stable: within 0.2 % in frequency, 5 % in damping, 0.98 in participation of the order below."
+    return section("Stabilisation", [Picture(drawn, caption)])
+
+
+def measured_shape_section(found: Identified, shapes: StageShapes, seen: Scene) -> Section | None:
+    """The measured shapes drawn as motion of the stage, or why they cannot be; `None` where no mode was found."""
+    if not len(found.frequencies):
+        return None
+    if shapes.missing:
+        return section("Shapes on the stage", [Prose(f"Not drawn: {shapes.missing}.")])
+    note = (
+        f"From {', '.join(shapes.used)}, through the inverse of the ideal stage's mapping; bodies move as ideal hinges let them. "
+        f"{motion_explained_text(shapes.explained)} {SHAPES}"
+    )
+    return section("Shapes on the stage", [Abreast(tuple(_pictures(found, shapes, seen)), narrow=True), Prose(note)])
+
+
+def measured_motions(found: Identified, shapes: StageShapes, seen: Scene) -> tuple[Motion, ...]:
+    """The measured shapes as motions of a viewer; none where they cannot be drawn on the stage."""
+    bones = Skeleton(seen.references)
+    return tuple(
+        Motion(
+            Group.MODE,
+            f"measured {index + 1}",
+            f"measured {index + 1}  {number(float(frequency))} Hz",
+            bones.at_origin({name: twist[:, index] for name, twist in shapes.motions.items()}),
+            f"as measured, damping {number(100.0 * float(found.damping[index]), 3)} %",
+            float(frequency),
+        )
+        for index, frequency in enumerate(found.frequencies if not shapes.missing else ())
+    )
+
+
+def pair_section(found: Compared, data: StageData) -> Section | None:
+    """Theory's modes beside those measured, which play together; `None` where none has a partner that can be drawn."""
+    theory, known = platform_modes(data), {each.name for each in data.motions}
+    partners = [
+        (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")
+        for mode in found.modes
+        if mode.experiment is not None and mode.number <= len(theory) and f"measured {mode.experiment.number}" in known
+    ]
+    text = "Left theory, right the experiment: a chosen mode plays beside its partner. Signs are arbitrary; repeated modes mix."
+    joined = joined_viewers(partners)
+    return None if joined is None else section("Side by side", [joined, Prose(text)])
+
+
+def _pictures(found: Identified, shapes: StageShapes, seen: Scene) -> Iterator[Picture]:
+    for index, frequency in enumerate(found.frequencies):
+        twists = {name: twist[:, index] for name, twist in shapes.motions.items() if name in seen.references}
+        picture = mode_picture(seen, twists, width=THIRD)
+        if picture is not None:
+            caption = f"{index + 1}: {number(float(frequency))} Hz, damping {number(100.0 * float(found.damping[index]), 3)} %"
+            yield Picture(picture.svg(f"measured{index + 1}", caption), caption, f"mode measured {index + 1}")
+
+
+def compare_section(found: Compared) -> Section | None:
+    """Theory, FEA and experiment: picture, tables, cautions."""
+    drawn = to_svg(compare_figure(found), "compared", "Frequencies by theory, FEA and experiment")
+    shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
+    caption = f"Frequencies by {shown}; below, how far off the experiment. Whiskers and bands: the experiment's 95 % intervals."
+    return section("Theory and experiment", [Picture(drawn, caption), *compare_tables(found)])
+
+
+def compare_tables(found: Compared) -> tuple[Table | None, ...]:
+    """The tables of a comparison, in order."""
+    return compare_table(found), repeated_table(found), further_table(found), warning_table(found.warnings)

@@ -1,0 +1,1 @@
+"""Spectra, frequency responses and coherences of records."""

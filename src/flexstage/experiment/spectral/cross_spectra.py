@@ -1,0 +1,215 @@
+"""Auto- and cross-spectra of a record by Welch's method, in one pass over its blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.arguments import CheckedFields, check_arguments
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.base.record import INNER
+from flexstage.base.units.quantity import FREQUENCY
+from flexstage.experiment.records.record import Channel, Record
+
+BATCH = 2_000_000
+
+Tell = Callable[[float], None]
+"""Told the share of the work that is done, 0 to 1."""
+
+
+class Window(Enum):
+    """How a segment is faded in and out before it is transformed."""
+
+    HANN = "hann"
+    HAMMING = "hamming"
+    BLACKMAN = "blackman"
+    BOXCAR = "boxcar"
+
+    def samples(self, size: int) -> Array:
+        """The window over a segment of `size` samples, in its periodic form (Harris 1978).
+
+        >>> Window.HANN.samples(4).round(12).tolist()
+        [0.0, 0.5, 1.0, 0.5]
+        """
+        terms = {"hann": (0.5, 0.5), "hamming": (0.54, 0.46), "blackman": (0.42, 0.5, 0.08), "boxcar": (1.0,)}[self.value]
+        phase = 2.0 * np.pi * np.arange(size) / size
+        return sum(((-1) ** order * factor * np.cos(order * phase) for order, factor in enumerate(terms)), np.zeros(size))
+
+
+@dataclass(frozen=True)
+class Segments(CheckedFields):
+    """How a record is cut up: `seconds` of each segment (its inverse is the resolution in Hz), `overlap` as a share, and window."""
+
+    seconds: Annotated[float, INNER]
+    overlap: float = 0.5
+    window: Window = Window.HANN
+
+
+@dataclass(frozen=True, eq=False)
+class Spectra:
+    """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
+
+    yx = E[Y X^H] and so on: entry (i, j) is row i times the conjugate of column j; the paper's G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i].
+    An entry's unit is the product of its channels' units, per Hz. `averages` segments were averaged, worth `independent` ones that do not
+    overlap.
+    """
+
+    frequencies: Array
+    inputs: Annotated[tuple[Channel, ...], INNER]
+    outputs: Annotated[tuple[Channel, ...], INNER]
+    xx: Array
+    yx: Array
+    yy: Array
+    averages: int
+    independent: float
+    segments: Segments
+
+    @property
+    def resolution(self) -> Annotated[float, FREQUENCY]:
+        """How far the lines lie apart."""
+        return float(self.frequencies[1])
+
+    def driven(self, names: Container[str]) -> Spectra:
+        """Without inputs that are not named or were at rest all the time."""
+        power = np.sum(np.real(np.diagonal(self.xx, axis1=1, axis2=2)), axis=0)
+        kept = np.array([index for index, each in enumerate(self.inputs) if each.name in names and power[index] > 0.0], dtype=int)
+        inputs = tuple(self.inputs[index] for index in kept)
+        return replace(self, inputs=inputs, xx=self.xx[:, kept[:, None], kept], yx=self.yx[:, :, kept])
+
+    def band(self, low: float, high: float) -> Spectra:
+        """The lines from `low` to `high` in Hz, both included."""
+        kept = (self.frequencies >= low) & (self.frequencies <= high)
+        lines = (self.frequencies[kept], self.inputs, self.outputs, self.xx[kept], self.yx[kept], self.yy[kept])
+        return Spectra(*lines, averages=self.averages, independent=self.independent, segments=self.segments)
+
+
+@check_arguments
+def spectra(record: Record, segments: Segments, tell: Tell | None = None) -> Spectra:
+    """Spectra of a record's inputs and outputs: Welch's average of windowed, overlapping segments, each freed of its mean.
+
+    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. Memory does not grow with the record's length. Raises `DesignError` for a record
+    without outputs, or shorter than a segment. The estimate is smeared by the window over about two lines: choose segments so long that
+    the sharpest resonance is several lines wide.
+
+    >>> from flexstage.experiment.records.record import Role, in_memory
+    >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))
+    >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 100.0, np.hstack([noise, 3.0 * noise]))
+    >>> found = spectra(both, Segments(1.0))
+    >>> round(float(np.mean(found.xx[5:-5].real)), 3), round(float(found.yx[7, 0, 0].real / found.xx[7, 0, 0].real), 6)
+    (0.02, 3.0)
+    """
+    size = round(segments.seconds * record.rate)
+    inputs, outputs = record.inputs, record.outputs
+    require(_findings(record, size, outputs))
+    chosen = record.select([channel.name for channel in (*inputs, *outputs)])
+    total, averages = _accumulate(chosen, size, segments, tell)
+    weight = segments.window.samples(size)
+    density = total / (averages * record.rate * np.sum(weight**2))
+    density[1 : (size + 1) // 2] *= 2.0
+    count = len(inputs)
+    return Spectra(
+        frequencies=np.fft.rfftfreq(size, 1.0 / record.rate),
+        inputs=inputs,
+        outputs=outputs,
+        xx=density[:, :count, :count],
+        yx=density[:, count:, :count],
+        yy=density[:, count:, count:],
+        averages=averages,
+        independent=independent_averages(averages, weight, _hop(size, segments)),
+        segments=segments,
+    )
+
+
+def example_spectra() -> Spectra:
+    """Spectra of a small record whose one output is three times its input, for examples.
+
+    >>> example_spectra().averages
+    7
+    """
+    from flexstage.experiment.records.record import Role, in_memory
+
+    noise = np.random.default_rng(0).standard_normal((64, 1))
+    channels = [Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)]
+    return spectra(in_memory(channels, 16.0, np.hstack([noise, 3.0 * noise])), Segments(1.0))
+
+
+def independent_averages(averages: int, window: Array, hop: int) -> float:
+    """How many segments without overlap would scatter as little as `averages` windowed ones every `hop` samples (Welch 1967, Eq. 11).
+
+    >>> independent_averages(10, np.ones(8), 8)
+    10.0
+    """
+    own = np.sum(window**2)
+    shifts = range(1, min(averages, -(-len(window) // hop)))
+    shared = [(np.sum(window[hop * k :] * window[: -hop * k]) / own) ** 2 * (1.0 - k / averages) for k in shifts]
+    return float(averages / (1.0 + 2.0 * sum(shared)))
+
+
+def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[Finding]:
+    where = record.source or record.name or "record"
+    found = [] if outputs else [Finding(where, "no channel is an output", "Say which channels are outputs")]
+    if size < 8:
+        found.append(Finding(where, f"a segment has {size} samples", "Ask for segments of 8 samples or more"))
+    elif record.length < size:
+        lasts = f"the record lasts {record.duration:.4g} s and a segment {size / record.rate:.4g} s"
+        found.append(Finding(where, lasts, "Ask for shorter segments, that is a coarser resolution, or record longer"))
+    return found
+
+
+def _hop(size: int, segments: Segments) -> int:
+    if not 0.0 <= segments.overlap < 1.0:
+        raise refuse("segments", f"an overlap of {segments.overlap:g} was asked for", "Give a share of at least 0 and less than 1")
+    return max(1, round(size * (1.0 - segments.overlap)))
+
+
+def _accumulate(record: Record, size: int, segments: Segments, tell: Tell | None) -> tuple[Array, int]:
+    """Sum over segments of the outer products (f, c, c) of their transforms, and the number of segments."""
+    hop, window = _hop(size, segments), segments.window.samples(size)
+    count = len(record.channels)
+    total = np.zeros((size // 2 + 1, count, count), dtype=complex)
+    together = max(1, BATCH // (size * count))
+    averages = 0
+    for block in record.blocks(size + hop * (together - 1), size - hop):
+        if len(block) < size:
+            break
+        pieces = np.lib.stride_tricks.sliding_window_view(block, size, axis=0)[::hop]
+        free = pieces - np.mean(pieces, axis=-1, keepdims=True)
+        lines = np.moveaxis(np.fft.rfft(free * window, axis=-1), -1, 0)
+        total += np.swapaxes(lines, 1, 2) @ np.conj(lines)
+        averages += len(pieces)
+        if tell is not None:
+            tell(min(1.0, averages * hop / max(1, record.length - size + hop)))
+    return total, averages
+
+
+def pool(parts: Sequence[Spectra]) -> Spectra:
+    """Spectra of several records together, weighted by their averages; an input that a record lacks was at rest in it.
+
+    Inputs are put in the order in which they first occur. All must have the same lines and outputs.
+
+    >>> pool([example_spectra(), example_spectra()]).averages
+    14
+    """
+    inputs = tuple({channel.name: channel for part in parts for channel in part.inputs}.values())
+    names = [channel.name for channel in inputs]
+    first = parts[0]
+    count, outputs = len(inputs), len(first.outputs)
+    xx = np.zeros((len(first.frequencies), count, count), dtype=complex)
+    yx = np.zeros((len(first.frequencies), outputs, count), dtype=complex)
+    yy = np.zeros((len(first.frequencies), outputs, outputs), dtype=complex)
+    averages = sum(part.averages for part in parts)
+    for part in parts:
+        places = [names.index(channel.name) for channel in part.inputs]
+        share = part.averages / averages
+        xx[:, np.array(places)[:, None], places] += share * part.xx
+        yx[:, :, places] += share * part.yx
+        yy += share * part.yy
+    independent = sum(part.independent for part in parts)
+    return Spectra(
+        first.frequencies, inputs, first.outputs, xx, yx, yy, averages=averages, independent=independent, segments=first.segments
+    )

@@ -1,0 +1,180 @@
+"""Transform lines of whole records, and their sums over cells of frequency: all that a fit of modes needs to know of the data.
+
+A record's block of N samples, transformed without a window, obeys Y(f) = H(f) U(f) + T(f) + V(f) line by line, where T, the block's
+transient, has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2): carried along as a response to one more
+"input" that is 1 at every line, it leaves no leakage. Within a cell, narrow beside the distance to the nearest pole, H is a polynomial of
+degree 7 to six digits; sums of products of the lines with its powers are sufficient then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.records.record import Record
+from flexstage.experiment.spectral.cross_spectra import Tell
+
+DEGREE = 7
+_FINENESS = 0.25
+BLOCK = 12_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p); white noise has its variance per line.
+
+    The columns of `drive` are the inputs of these numbers, and the transients: `columns` (n,).
+    """
+
+    frequencies: Array
+    drive: Array
+    outputs: Array
+    columns: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Sums over cells of frequency: `low` and `high` (c,) in Hz, the block (c,) and number of lines (c,) of each.
+
+    With Z = P_a(x) U_i, the Legendre polynomials a = 0..7 times the block's drive: `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) =
+    Z^H Y, `power` (c, p, p) = Y^H Y. A block's drive has the columns `columns[block]` of all `width` of them.
+    """
+
+    low: Array
+    high: Array
+    block: Array
+    count: Array
+    own: Array
+    cross: Array
+    power: Array
+    columns: tuple[tuple[int, ...], ...]
+
+    @property
+    def own_power(self) -> Array:
+        """Power (c, p) of every output in every cell."""
+        return np.real(np.diagonal(self.power, axis1=1, axis2=2))
+
+    @property
+    def width(self) -> int:
+        """Number of inputs and transients, those of all blocks together."""
+        return 1 + max(max(columns) for columns in self.columns)
+
+    @property
+    def middle(self) -> Array:
+        """Middles of the cells (c,) in Hz."""
+        return 0.5 * (self.low + self.high)
+
+    def select_cells(self, chosen: Array) -> Cells:
+        """Some of the cells."""
+        names = ("low", "high", "block", "count", "own", "cross", "power")
+        return replace(self, **{name: getattr(self, name)[chosen] for name in names})
+
+
+def record_lines(record: Record, inputs: tuple[int, ...], first: int, tell: Tell | None = None, least: int = 1) -> Iterator[Lines]:
+    """Transforms of a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), the mean taken out.
+
+    There are `least` blocks, or as many as memory asks for.
+
+    Its inputs are the columns `inputs` of the drive, and the transients of its blocks the columns from `first` on.
+
+    >>> from flexstage.experiment.records.record import Channel, Role, in_memory
+    >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])
+    >>> [lines] = record_lines(both, (0,), 1)
+    >>> lines.frequencies.tolist(), abs(lines.drive[1, 0]).round(6).item()
+    ([0.0, 1.0, 2.0, 3.0, 4.0], 0.353553)
+    """
+    chosen = record.select([channel.name for channel in (*record.inputs, *record.outputs)])
+    parts = block_count(record, least)
+    size = record.length // parts
+    for part in range(parts):
+        block = chosen.samples.read(part * size, (part + 1) * size)
+        drive = np.ones((size // 2 + 1, len(inputs) + 1), dtype=complex)
+        outputs = np.empty((size // 2 + 1, block.shape[1] - len(inputs)), dtype=complex)
+        for column, values in enumerate(block.T):
+            place = (drive, column) if column < len(inputs) else (outputs, column - len(inputs))
+            place[0][:, place[1]] = np.fft.rfft(values - np.mean(values)) / np.sqrt(size)
+        yield Lines(np.fft.rfftfreq(size, 1.0 / record.rate), drive, outputs, (*inputs, first + part))
+        if tell is not None:
+            tell((part + 1) / parts)
+
+
+def block_count(record: Record, least: int = 1) -> int:
+    """How many blocks a record is transformed in.
+
+    >>> from flexstage.experiment.records.record import Channel, in_memory
+    >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))
+    1
+    """
+    return max(least, -(-record.length * len(record.channels) // BLOCK))
+
+
+def edges(poles: Array, low: float, high: float) -> Array:
+    """Limits in Hz of cells between `low` and `high`, a fraction of the distance to the nearest of `poles` (in Hz, complex).
+
+    >>> edges(np.array([-1.0 + 10j]), 9.0, 11.0).round(2).tolist()
+    [9.0, 9.57, 10.0, 10.4, 10.83, 11.0]
+    """
+    found = [low]
+    while found[-1] < high:
+        away = float(np.min(np.abs(1j * found[-1] - poles)))
+        found.append(found[-1] + 2.0 * _FINENESS / (1.0 + _FINENESS) * away)
+    return np.array([*found[:-1], high])
+
+
+def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
+    """Cells of every band, whose limits are `bounds` in Hz, gathered from the blocks one after the other.
+
+    >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
+    >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])
+    >>> cells.count.tolist(), cells.cross[:, 0, 0, 0].real.tolist()
+    ([2, 2], [4.0, 4.0])
+    """
+    rows: list[list[tuple[Array, ...]]] = [[] for _ in bounds]
+    columns: list[tuple[int, ...]] = []
+    for number, lines in enumerate(blocks):
+        columns.append(lines.columns)
+        for band, limits in enumerate(bounds):
+            rows[band] += _band_sums(lines, limits, number)
+    return [Cells(*(np.stack(column) for column in zip(*band, strict=True)), columns=tuple(columns)) for band in rows]
+
+
+def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ...]]:
+    places = np.searchsorted(lines.frequencies, limits)
+    found: list[tuple[Array, ...]] = []
+    for low, high, start, stop in zip(limits[:-1], limits[1:], places[:-1], places[1:], strict=True):
+        if stop == start:
+            continue
+        x = (2.0 * lines.frequencies[start:stop] - low - high) / (high - low)
+        polynomials = np.polynomial.legendre.legvander(x, DEGREE)
+        terms = (polynomials[:, :, None] * lines.drive[start:stop, None, :]).reshape(stop - start, -1)
+        outputs = lines.outputs[start:stop]
+        shape = (DEGREE + 1, len(lines.columns))
+        own = (np.conj(terms.T) @ terms).reshape(*shape, *shape)
+        cross = (np.conj(terms.T) @ outputs).reshape(*shape, -1)
+        found.append((low, high, np.array(number), np.array(stop - start), own, cross, np.conj(outputs.T) @ outputs))
+    return found
+
+
+def legendre_coefficients(values: Array) -> Array:
+    """Legendre coefficients (..., 8) of functions known at the cells' `nodes` (..., 10).
+
+    >>> (legendre_coefficients(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
+    [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
+    """
+    return values @ _PROJECTION
+
+
+def nodes(low: Array, high: Array) -> Array:
+    """Frequencies (c, 10) in Hz at which functions are taken in each cell (Gauss's).
+
+    >>> nodes(np.array([1.0]), np.array([3.0])).mean().round(12).item()
+    2.0
+    """
+    return 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * _NODES
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(DEGREE + 3)
+_PROJECTION = _WEIGHTS[:, None] * np.polynomial.legendre.legvander(_NODES, DEGREE) * (np.arange(DEGREE + 1) + 0.5)

@@ -1,0 +1,121 @@
+"""Frequency responses without a window's leakage, and how sure they are: local polynomials on the lines of whole records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.experiment.identification.diagnosis.peaks import Doubt
+from flexstage.experiment.identification.identified import Identified
+from flexstage.experiment.identification.outputs.tones import remove_tones
+from flexstage.experiment.records.record import Record
+from flexstage.experiment.spectral.lines import Lines, block_count, record_lines
+
+_DEGREE, _OVER = 2, 2
+"""Of the polynomials, and how many lines there are for each of their coefficients at least."""
+_SHARE, _WIDEST, _STEP = 0.35, 8.0, 0.25
+"""Half a window beside the distance to the nearest pole, and beside the least; from one window to the next beside half of one."""
+_TOGETHER = 20_000
+_DRIVEN = 1e-4
+"""Share of its median power that every input must have where a response is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class LocalResponses:
+    """Responses (f, p, m) of outputs to inputs at `frequencies` (f,) [Hz], in the channels' units, and how far they are off (rms)."""
+
+    frequencies: Array
+    values: Array
+    deviations: Array
+
+
+def local_responses(records: Sequence[Record], found: Identified) -> LocalResponses:
+    """Responses of the stage that records tell, without leakage and hardly smeared; `found` says where they are smooth.
+
+    Y(f) = H(f) U(f) + T(f) + V(f) on the lines of a whole block, H and the transient T polynomials of second degree over twice as many
+    lines as they have coefficients or more: the local polynomial method (Pintelon & Schoukens, System Identification, 2nd ed., 2012,
+    ch. 7). Windows reach a third of the way to the nearest pole, eight times the least at most. Blocks are weighted by what they leave.
+    Left out are lines at which an input has less than 1e-4 of its median power. Tones are taken out before, as `identify` does. A mode
+    narrower than the least window, 3 (m + 1) lines to either side, is smeared, and what is smeared counts as noise.
+
+    >>> from flexstage.experiment.example import one_mode_record
+    >>> from flexstage.experiment.identification.identify import identify
+    >>> made = one_mode_record()
+    >>> seen = local_responses([made], identify(made))
+    >>> round(float(seen.frequencies[np.argmax(abs(seen.values[:, 0, 0]))]), 1)
+    10.0
+    """
+    hums = any(peak.doubt is Doubt.TONE for peak in found.peaks)
+    names = [each.name for each in (*found.inputs, *found.outputs)]
+    chosen = [record.select([each.name for each in record.channels if each.name in names]) for record in records]
+    least = max(_least_reach(record) * block_count(record) / record.duration for record in chosen)
+    centres, halves = _windows(found.poles / (2.0 * np.pi), found.band, least)
+    values = np.zeros((len(centres), len(found.outputs), len(found.inputs)), dtype=complex)
+    weights = np.zeros(values.shape)
+    for record in chosen:
+        columns = [names.index(each.name) for each in record.inputs]
+        for lines in record_lines(remove_tones(record)[0] if hums else record, tuple(range(len(columns))), len(columns)):
+            for part, response, spread in _block_responses(lines, centres, halves):
+                place = np.ix_(part.tolist(), range(len(found.outputs)), columns)
+                weight = 1.0 / np.maximum(spread, 1e-150) ** 2
+                values[place] += response * weight
+                weights[place] += weight
+    driven = np.all(weights > 0.0, axis=(1, 2))
+    return LocalResponses(centres[driven], values[driven] / weights[driven], 1.0 / np.sqrt(weights[driven]))
+
+
+def _least_reach(record: Record) -> float:
+    """Half of the least window, in lines."""
+    return 0.5 * _OVER * (_DEGREE + 1) * (len(record.inputs) + 1)
+
+
+def _windows(poles: Array, band: tuple[float, float], least: float) -> tuple[Array, Array]:
+    """Middles and half widths [Hz] of the windows, which are the least times powers of two.
+
+    >>> [each.tolist() for each in _windows(np.array([-1.0 + 20.0j]), (0.0, 10.0), 1.0)]
+    [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], [1.0, 2.0, 2.0, 4.0, 4.0, 4.0, 2.0, 2.0, 1.0]]
+    """
+    centre, found = band[0] + least, list[tuple[float, float]]()
+    while centre + least <= band[1]:
+        away = float(np.min(np.abs(1j * centre - poles), initial=np.inf))
+        room = min(_SHARE * away, centre - band[0], band[1] - centre, _WIDEST * least)
+        half = least * 2.0 ** np.floor(np.log2(max(1.0, room / least)))
+        found.append((centre, half))
+        centre += max(least, _STEP * half)
+    centres, halves = np.array(found).reshape(-1, 2).T
+    return centres, halves
+
+
+def _block_responses(lines: Lines, centres: Array, halves: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """Numbers of windows, with their responses (w, p, m) and deviations, infinite where an input is silent."""
+    inputs = lines.drive.shape[1] - 1
+    usual = np.median(np.abs(lines.drive[:, :inputs]) ** 2, axis=0)
+    for half in np.unique(halves):
+        number = int(2.0 * half / lines.frequencies[1])
+        every = np.flatnonzero(halves == half)
+        for part in np.array_split(every, max(1, len(every) * number // _TOGETHER)):
+            first = np.searchsorted(lines.frequencies, centres[part] - half)
+            places = np.minimum(first, len(lines.frequencies) - number)[:, None] + np.arange(number)
+            away = (lines.frequencies[places] - centres[part, None]) / half
+            response, spread = _polynomial_fit(away, lines.drive[places], lines.outputs[places])
+            power = np.mean(np.abs(lines.drive[places, :inputs]) ** 2, axis=1)
+            silent = np.any(power < _DRIVEN * usual, axis=1)
+            yield part, response, np.where(silent[:, None, None], np.inf, spread)
+
+
+def _polynomial_fit(away: Array, drive: Array, outputs: Array) -> tuple[Array, Array]:
+    """Responses (w, p, m) at nought and their deviations: polynomials in `away` (w, l) times the drive (w, l, m+1) with its transient."""
+    inputs, number = drive.shape[2] - 1, away.shape[1]
+    sizes = np.maximum(np.linalg.norm(drive, axis=1), 1e-300)
+    powers = away[:, :, None] ** np.arange(_DEGREE + 1)
+    rows = (powers[:, :, :, None] * (drive / sizes[:, None])[:, :, None, :]).reshape(len(away), number, -1)
+    turned = np.conj(np.swapaxes(rows, 1, 2))
+    inverse = np.linalg.pinv(turned @ rows, rcond=1e-12, hermitian=True)
+    fitted = inverse @ (turned @ outputs)
+    noise = np.sum(np.abs(outputs - rows @ fitted) ** 2, axis=1) / (number - rows.shape[2])
+    own = np.real(np.diagonal(inverse, axis1=1, axis2=2))[:, :inputs]  # the coefficients of nought degree come first
+    scale = sizes[:, None, :inputs]
+    return np.swapaxes(fitted[:, :inputs], 1, 2) / scale, np.sqrt(noise[:, :, None] * own[:, None, :]) / scale

@@ -1,0 +1,145 @@
+"""Frequency responses and coherences from spectra: H1, H2, the paper's ratio, ordinary and multiple coherence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.experiment.records.record import Responses
+from flexstage.experiment.spectral.cross_spectra import Spectra
+
+_DEPENDENT, _NOTHING = 1e-9, 1e-15
+
+
+@check_arguments
+def h1(spectra: Spectra) -> Responses:
+    """H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs, any number of correlated inputs (Bendat & Piersol, ch. 7).
+
+    H_ij = output i over input j. The multiple coherence's share of every entry is given by `ordinary_coherence`. Raises `DesignError` where
+    inputs are not independent of one another: their spectra cannot be told apart then, whatever the estimate.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> h1(example_spectra()).values[3].round(9).real.tolist()
+    [[3.0]]
+    """
+    require(dependent_inputs(spectra))
+    # Lines without any input, such as the mean's, have no response: a trace of power keeps them at nought.
+    trace = _NOTHING * np.real(np.mean(_diagonal(spectra.xx))) * np.eye(spectra.xx.shape[1])
+    values = np.swapaxes(np.linalg.solve(np.swapaxes(spectra.xx + trace, 1, 2), np.swapaxes(spectra.yx, 1, 2)), 1, 2)
+    return _responses(spectra, values, "H1")
+
+
+@check_arguments
+def h2(spectra: Spectra) -> Responses:
+    """H2 = G_yy G_xy^-1, the estimate for noise at the inputs; a least-squares inverse where outputs outnumber inputs.
+
+    With fewer outputs than inputs there is no such estimate: a `DesignError`. It has more variance than H1 and is biased upwards by noise
+    at the outputs.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> h2(example_spectra()).values[3].round(9).real.tolist()
+    [[3.0]]
+    """
+    outputs, inputs = spectra.yx.shape[1:]
+    if outputs < inputs:
+        raise refuse("H2", f"there are {outputs} outputs for {inputs} inputs", "Use H1, or record as many outputs as inputs")
+    crossed = np.conj(np.swapaxes(spectra.yx, 1, 2))
+    return _responses(spectra, spectra.yy @ np.linalg.pinv(crossed), "H2")
+
+
+def spectral_ratio(spectra: Spectra) -> Responses:
+    """The paper's T_ij = G_ij / G_ii (Shin & Moon, Eq. 29), in our order: output over input.
+
+    It equals H1 where one input acts alone or inputs are uncorrelated, and no transfer function elsewhere.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
+    [[3.0]]
+    """
+    return _responses(spectra, spectra.yx / np.real(_diagonal(spectra.xx))[:, None, :], "G_ij/G_ii")
+
+
+def ordinary_coherence(spectra: Spectra) -> Array:
+    """|G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> ordinary_coherence(example_spectra())[3].round(9).tolist()
+    [[1.0]]
+    """
+    both = np.real(_diagonal(spectra.yy))[:, :, None] * np.real(_diagonal(spectra.xx))[:, None, :]
+    return _share(np.abs(spectra.yx) ** 2, both)
+
+
+def multiple_coherence(spectra: Spectra) -> Array:
+    """The share (f, p) of every output's power that all inputs together explain: H1 G_xx H1^H / G_yy (Bendat & Piersol, ch. 7).
+
+    Noise alone gives about the number of inputs over the number of independent averages, not nought.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> multiple_coherence(example_spectra())[3].round(9).tolist()
+    [1.0]
+    """
+    explained = np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
+    return _share(explained, np.real(_diagonal(spectra.yy)))
+
+
+def noise_density(spectra: Spectra) -> Array:
+    """What inputs do not explain of the outputs' power, (f, p), freed of the bias by the number of averages.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)
+    True
+    """
+    explained = np.real(np.sum(h1(spectra).values * np.conj(spectra.yx), axis=-1))
+    left = np.maximum(np.real(_diagonal(spectra.yy)) - explained, 0.0)
+    free = spectra.independent - spectra.yx.shape[2]
+    return left * spectra.independent / max(free, 1.0)
+
+
+def dependent_inputs(spectra: Spectra) -> list[Finding]:
+    """Findings where inputs are linear combinations of one another: the smallest eigenvalue of their coherence matrix is nought.
+
+    >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
+    >>> dependent_inputs(example_spectra())
+    []
+    """
+    count = spectra.xx.shape[1]
+    if not count:
+        return [Finding("inputs", "no channel is an input", "Say which channels are inputs")]
+    mean = np.mean(spectra.xx, axis=0)
+    power = np.real(np.diagonal(mean))
+    dead = [spectra.inputs[index].name for index in range(count) if power[index] <= 0.0]
+    if dead:
+        return [Finding(name, "the input is constant", "Leave it out, or drive it") for name in dead]
+    values, vectors = np.linalg.eigh(mean / np.sqrt(np.outer(power, power)))
+    if values[0] > _DEPENDENT * count and spectra.averages >= count:
+        return []
+    if spectra.averages < count:
+        what = f"{spectra.averages} averages cannot tell {count} inputs apart"
+        return [Finding("inputs", what, "Record longer, or ask for a coarser resolution")]
+    involved = [spectra.inputs[index].name for index in np.flatnonzero(np.abs(vectors[:, 0]) > 0.1)]
+    what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of their coherence {max(values[0], 0.0):.1e})"
+    return [Finding("inputs", what, "Drive them by independent noise, or leave out all but one")]
+
+
+def _diagonal(matrices: Array) -> Array:
+    return np.diagonal(matrices, axis1=1, axis2=2)
+
+
+def _share(part: Array, whole: Array) -> Array:
+    return np.clip(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0), 0.0, 1.0)
+
+
+def _responses(spectra: Spectra, values: Array, name: str) -> Responses:
+    return Responses(
+        frequencies=spectra.frequencies,
+        outputs=spectra.outputs,
+        inputs=spectra.inputs,
+        values=values,
+        coherence=ordinary_coherence(spectra),
+        window=spectra.segments.window.value,
+        averages=spectra.averages,
+        name=name,
+    )

@@ -1,0 +1,1 @@
+"""Addresses of values in a description."""

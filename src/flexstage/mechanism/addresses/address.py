@@ -1,0 +1,291 @@
+"""Addresses of values: one scheme for files, `--set`, findings, studies and sensitivities.
+
+    parts.neck.thickness                     a shared part
+    bodies.platform.mass                     the tree of the description, name by name
+    units.horizontal.links.front.at.x        a link's placement in all copies of its unit; `horizontal/front.at.x` for short
+    horizontal/front.thickness               the part of one link of a unit, in all copies: a departure, kept in `changes`
+    B2/front.thickness                       in one copy: a departure that goes before that of all copies
+    links.strut.thickness                    the part of a link of the stage itself: a departure too
+    numbers.arm                              a named number: what formulas work out of it changes with it
+    B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: a departure, nought if not made
+
+Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
+`parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.finding import DesignError, refuse
+from flexstage.base.number import Number, Table, freeze
+from flexstage.base.units.expression import parse_expression
+from flexstage.base.units.quantity import Quantity
+from flexstage.mechanism.addresses.locate import Place, canonical, link_path, locate
+from flexstage.mechanism.addresses.path import member, replace_member, with_mirror
+from flexstage.mechanism.assembly.expand import apply_changes
+from flexstage.mechanism.assembly.misalignment import misalignment_of
+from flexstage.mechanism.grammar.formulas import NUMBERS, amount_of, dependents, formula_value, is_formula, scope_of, shown_unit
+from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import NumberNode
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber
+from flexstage.parts.part import Part
+
+ASSUMED = "assumed"
+_MOST_NAMES = 8
+
+
+def get(mechanism: Mechanism, address: str) -> Any:
+    """Return the value at an address, departures applied.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
+    0.03
+    """
+    place = locate(mechanism, address)
+    value: Any = mechanism
+    if place.misaligned:
+        value = misalignment_of(mechanism.changes, place.owners[0])
+    elif place.owners:
+        link, part = _link_and_part(mechanism, place)
+        value = link if place.in_link else part
+    for name in place.path:
+        value = member(value, name)
+    return value
+
+
+def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
+    """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
+
+    A departure is written to `changes`. An entry of a 6x6 is written with its mirror image. What formulas work out of a named
+    number is worked out anew; of a value that has a formula the formula is dropped.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
+    >>> get(set_value(stage, "wire.length", 0.04), "wire.length")
+    0.04
+    """
+    place = locate(mechanism, address)
+    fitting = place.node.fit(freeze(value), address)
+    changed, lost = mechanism, [place.address]
+    for path in with_mirror(place.path):
+        written = replace(place, path=path)
+        changed = _without_formulas(_write(changed, written, fitting), written.address)
+    if place.number:
+        moved = dependents(changed, place.number)
+        changed = reduce(_work_out, moved, changed)
+        lost += moved
+    tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) not in lost}
+    return changed if len(tags) == len(mechanism.tags) else replace(changed, tags=Table(tags))
+
+
+def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
+    """Return the mechanism with what a text means at an address: a value, a relative change of a number (`+10%`), or a formula.
+
+    A percentage with a sign is a relative change of every number, of ratios too; without one it is the value of a ratio.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
+    >>> stage = set_text(set_text(stage, "wire.length", "2*arm"), "numbers.arm", "+100 %")
+    >>> stage.parts["wire"].length, stage.formulas["parts.wire.length"]
+    (0.104, '2*arm')
+    """
+    place, where = locate(mechanism, address), address.strip()
+    if not place.node.single:
+        raise _several(mechanism, place, where)
+    if isinstance(place.node, NumberNode) and (share := _SHARE.fullmatch(text.strip())) is not None:
+        return set_value(mechanism, where, _share_of(mechanism, where, 1.0 + float(share[1]) / 100.0))
+    try:
+        return set_value(mechanism, where, place.node.parse(text.strip(), where))
+    except DesignError:
+        if not isinstance(place.node, NumberNode) or not is_formula(text, scope_of(mechanism)):
+            raise
+    return _set_formula(mechanism, place, where, text.strip())
+
+
+_SHARE = re.compile(r"([+-]\d+\.?\d*|[+-]\.\d+)\s*%")
+
+
+def _share_of(mechanism: Mechanism, where: str, factor: float) -> Number:
+    """What a number becomes by a factor."""
+    value = get(mechanism, where)
+    if value is None:
+        raise refuse(where, "the description does not state it, and so no share of it", "Give it a value with its unit")
+    if np.all(np.equal(value, 0.0)):
+        raise refuse(where, "it is 0, of which every share is 0", "Give it a value with its unit")
+    return value * factor  # type: ignore[no-any-return]
+
+
+def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> Mechanism:
+    value = formula_value(text, quantity_of(mechanism, where), scope_of(mechanism), where)
+    circle = {
+        number for number in parse_expression(text).names if f"{NUMBERS}.{number}" in (place.address, *dependents(mechanism, place.number))
+    }
+    if place.number and circle:
+        what = f'"{text}" is worked out of {", ".join(sorted(circle))}, and so of {place.number} itself'
+        raise refuse(where, what, "Give it a number, or a formula of others")
+    changed = set_value(mechanism, where, value)
+    if place.number:
+        own_unit = NamedNumber(value, shown_unit(amount_of(mechanism.numbers[place.number])))
+        changed = replace(changed, numbers=Table({**changed.numbers, place.number: own_unit}))
+    own = {replace(place, path=path).address: text for path in with_mirror(place.path)}
+    return replace(changed, formulas=Table({**changed.formulas, **own}))
+
+
+def _without_formulas(mechanism: Mechanism, address: str) -> Mechanism:
+    """The mechanism without the formulas of a value and of what it holds."""
+    kept = {key: text for key, text in mechanism.formulas.items() if key != address and not key.startswith(f"{address}.")}
+    return mechanism if len(kept) == len(mechanism.formulas) else replace(mechanism, formulas=Table(kept))
+
+
+def _work_out(mechanism: Mechanism, address: str) -> Mechanism:
+    """The mechanism with the value that the formula at an address gives."""
+    value = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope_of(mechanism), address)
+    return _write(mechanism, locate(mechanism, address), value)
+
+
+def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
+    """Return the mechanism after an assignment such as `horizontal/front.thickness=1.4 mm`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
+    >>> get(assign(stage, "wire.length = 40mm"), "wire.length")
+    0.04
+    """
+    address, equals, text = assignment.partition("=")
+    if not equals:
+        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
+    return set_text(mechanism, address, text)
+
+
+def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
+    """That an assignment to what holds several values says which it means."""
+    inner = [name for name, _, _ in place.node.numbers(get(mechanism, where))]
+    if not inner:
+        return refuse(where, "it holds no number that can be set", "Set it in the design file")
+    shown = ", ".join(inner[:_MOST_NAMES]) + (" and more" if len(inner) > _MOST_NAMES else "")
+    return refuse(where, f"it is no single value but holds {shown}", f'Set one, for example "{where}.{inner[0]}=..."')
+
+
+def addresses(mechanism: Mechanism) -> tuple[str, ...]:
+    """Return the address of every number of a description: shared parts, bodies, placements, and the departures that are made.
+
+    Directions and absent values are left out.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
+    ('parts.wire.length', 'parts.wire.diameter')
+    """
+    found = [address for address, _, _ in node_of(Mechanism).numbers(mechanism)]
+    for key, value in mechanism.changes.items():
+        place = locate(mechanism, key)
+        found += [address for address, _, _ in place.node.numbers(value, place.address)]
+    return tuple(dict.fromkeys(found))
+
+
+def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
+    """Return the quantity of the number, vector or direction at an address.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> quantity_of(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").shown
+    'mm'
+    """
+    quantity = locate(mechanism, address).node.measures
+    if quantity is None:
+        raise refuse(address, "this is not a number", "Address one of its numbers")
+    return quantity
+
+
+def tag_of(mechanism: Mechanism, address: str) -> str:
+    """Return the tag (`stated paper 2.2`) of the value at an address, of the vector it belongs to, or of the shared part it comes from.
+
+    Untagged values are `assumed`.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, tags={"parts.wire.length": "stated paper 2.2"})
+    >>> tag_of(stage, "wire.length"), tag_of(stage, "wire.diameter")
+    ('stated paper 2.2', 'assumed')
+    """
+    return _tag(_canonical_tags(mechanism), _origin(mechanism, locate(mechanism, address)))
+
+
+def provenance(mechanism: Mechanism) -> Mapping[str, str]:
+    """Return the tag of every number by its address (see `addresses` and `tag_of`).
+
+    >>> from flexstage.parts.rod import Rod
+    >>> provenance(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))["parts.wire.length"]
+    'assumed'
+    """
+    tags = _canonical_tags(mechanism)
+    return Table({address: _tag(tags, address) for address in addresses(mechanism)})
+
+
+def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
+    link = _link_of(mechanism, place.owners)
+    try:
+        return apply_changes(mechanism, link, place.owners)
+    except KeyError as error:
+        raise refuse(f"change of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
+
+
+def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
+    value: Any = mechanism
+    for step in link_path(mechanism, owners[0]):
+        value = member(value, step)
+    return value
+
+
+def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
+    if not place.owners:
+        return replace_member(mechanism, place.path, value)
+    changes = dict(mechanism.changes)
+    for key, path in _departures(mechanism, place.owners[-1]):
+        depth = len(path)
+        if place.path[:depth] == path:
+            changes[key] = replace_member(changes[key], place.path[depth:], value)
+            return replace(mechanism, changes=Table(changes))
+        if path[: len(place.path)] == place.path:
+            del changes[key]
+    return replace(mechanism, changes=Table(changes | {place.address: value}))
+
+
+def _departures(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The departures made of that owner: key and full path."""
+    for key in mechanism.changes:
+        if not f"links.{key}".startswith((f"{owner}.", f"links.{owner}.")):
+            continue  # found without looking for the place: a batch of copies has a hundred departures
+        place = locate(mechanism, key)
+        if place.owners[-1:] == (owner,):
+            yield key, place.path
+
+
+def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:
+    return {canonical(mechanism, key): tag for key, tag in mechanism.tags.items()}
+
+
+def _origin(mechanism: Mechanism, place: Place) -> str:
+    """The address that a value comes from: the departure that is made, or the shared part or drawn link."""
+    for owner in reversed(place.owners):
+        for _, path in _departures(mechanism, owner):
+            if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
+                return replace(place, owners=(owner,)).address
+    if not place.owners or place.misaligned:
+        return place.address
+    link = _link_of(mechanism, place.owners)
+    if not place.in_link:
+        return ".".join(("parts", link.part, *place.path))
+    return ".".join((*link_path(mechanism, place.owners[0]), *place.path))
+
+
+def _tag(tags: Mapping[str, str], address: str) -> str:
+    steps = address.split(".")
+    for depth in range(len(steps), 0, -1):
+        if (tag := tags.get(".".join(steps[:depth]))) is not None:
+            return tag
+    return ASSUMED

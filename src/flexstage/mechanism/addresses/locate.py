@@ -1,0 +1,216 @@
+"""Where an address points: the grammar of addresses, with skipped levels filled in and mistakes told with their candidates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
+from flexstage.mechanism.addresses.path import completions, has_member, member
+from flexstage.mechanism.assembly.expand import copy_names
+from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
+from flexstage.mechanism.assembly.misalignment import MISALIGNED, Misalignment
+from flexstage.mechanism.grammar.formulas import NUMBERS
+from flexstage.mechanism.grammar.grammar import NumbersNode, RecordNode, node_of
+from flexstage.mechanism.grammar.node import Node
+from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber, posed
+from flexstage.spatial.frame import COMPONENTS
+
+_DOCUMENT = ("tags", "sources", "requirements", "changes", "formulas", "paths")
+_TOPOLOGY = ("joins", "part")
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where an address points.
+
+    `path` is the full path from the description, and `owners` is empty; or a departure is meant: `owners` are those whose changes count,
+    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part; or
+    `owners` is a copy or a gauge, and `path` starts at its misalignment (`shift.x`).
+    """
+
+    owners: tuple[str, ...]
+    path: tuple[str, ...]
+    node: Node
+    in_link: bool = False
+
+    @property
+    def misaligned(self) -> bool:
+        """Whether it says where a copy or a gauge stands."""
+        return bool(self.owners) and not self.in_link and self.path[:1] in [(name,) for name in MISALIGNED]
+
+    @property
+    def address(self) -> str:
+        """The address in full; the part within a restricted part is not named, `part` being the link's own."""
+        inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
+        path = self.path[:2] if self.number else self.path
+        return ".".join((*self.owners[-1:], *path[inside:]))
+
+    @property
+    def number(self) -> str:
+        """The name of the number that it is; empty if it is anything else."""
+        return self.path[1] if not self.owners and self.path[:1] == (NUMBERS,) and len(self.path) > 1 else ""
+
+
+def locate(mechanism: Mechanism, address: str) -> Place:
+    """Return where an address points; raises `DesignError` with the candidates if that is nowhere or ambiguous.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").address
+    'parts.wire.length'
+    """
+    steps = tuple(address.strip().split("."))
+    owner, slash, link = steps[0].rpartition("/")
+    if slash and not _is_whole(mechanism, steps[0]):
+        return _in_unit(mechanism, address, owner.strip(), (link.strip(), *steps[1:]))
+    if steps[0] in _DOCUMENT:
+        raise refuse(address, f'"{steps[0]}" holds no values of the stage', "Address the value itself")
+    if _stands(mechanism, address, steps):
+        return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
+    return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
+
+
+def _is_whole(mechanism: Mechanism, name: str) -> bool:
+    """Whether something of a carried stage is called so (`fine/B1`), which is then no link of a unit or copy."""
+    return name in (*unit_of_copy(mechanism), *(each for key in mechanism.gauges for each in copy_names(key))) or bool(
+        completions(mechanism, name)
+    )
+
+
+def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
+    """Whether the steps say where a copy or a gauge stands."""
+    gauges = [name for key in posed(mechanism.gauges) for name in copy_names(key)]
+    owners = [*unit_of_copy(mechanism), *gauges]
+    if steps[0] not in owners or len(steps) < 2 or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
+        return False
+    if owners.count(steps[0]) > 1:
+        raise refuse(address, f'"{steps[0]}" is a copy of a unit and a gauge', "Rename one of them")
+    return True
+
+
+def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
+    """Return the unit's name by name of each placed copy.
+
+    >>> unit_of_copy(Mechanism(""))
+    {}
+    """
+    return {copy: placement.unit for key, placement in mechanism.place.items() for copy in copy_names(key)}
+
+
+def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:
+    """The path of the link that an owner of departures is: one of a unit (`unit/link`), or of the stage.
+
+    >>> link_path(Mechanism(""), "strut")
+    ('links', 'strut')
+    """
+    unit, _, link = owner.rpartition("/")
+    return ("units", unit, "links", link) if unit in mechanism.units else ("links", owner)
+
+
+def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, ...]) -> Place:
+    copies = unit_of_copy(mechanism)
+    name = owner if owner in mechanism.units else copies.get(owner, "")
+    if name not in mechanism.units:
+        raise refuse(address, f'"{owner}" is no unit and no copy of one', suggest_nearest(owner, [*mechanism.units, *copies]))
+    unit = drawn_units(mechanism)[name]
+    if owner == name and steps[0] in unit.bodies:
+        home = next(each for each in ancestry(mechanism, name) if steps[0] in mechanism.units[each].bodies)
+        if home != name:
+            advice = f"Address {home}/{steps[0]}, or draw the body in units.{name}.bodies"
+            raise refuse(address, f'unit {name} takes its body "{steps[0]}" from {home}', advice)
+        return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), ("units", name, "bodies", *steps))
+    if steps[0] not in unit.links:
+        raise refuse(address, f'unit {name} has no link "{steps[0]}"', suggest_nearest(steps[0], unit.links))
+    lineage = link_lineage(mechanism, name, steps[0])
+    owners = (*lineage, owner) if owner != name else lineage
+    tree = ("units", lineage[0], "links", steps[0])
+    return _in_link(mechanism, address, tree, tuple(f"{each}/{steps[0]}" for each in owners), steps[1:])
+
+
+def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:
+    """A place in the link at path `tree`: one of its own fields, or a departure of its part."""
+    link = _at(mechanism, tree)
+    if not steps or steps[0] in _TOPOLOGY:
+        raise refuse(address, "what a link joins and its part are no departures", "Address a value of the link or of its part")
+    if has_member(link, steps[0]):
+        departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.changes)
+        start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
+        return _descend(link, address, start, steps)
+    if link.part not in mechanism.parts:
+        raise refuse(address, f'there is no part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
+    parts = node_of(Mechanism).fields["parts"].node
+    start = Place(owners, (), parts.child(mechanism.parts, link.part))
+    return _descend(mechanism.parts[link.part], address, start, steps)
+
+
+def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> Place:
+    """Follow the steps from a value that stands at `start`."""
+    mechanism, path, node = value, start.path, start.node
+    for number, step in enumerate(steps):
+        if isinstance(value, Link) and not has_member(value, step):
+            return _in_link(mechanism, address, path, _owners(path), steps[number:])
+        if isinstance(value, NamedNumber):
+            raise refuse(address, f'there is no "{step}": {steps[number - 1]} is one number', "Address the number itself")
+        for name in _complete(value, address, node, step, last=number == len(steps) - 1):
+            node, value = node.child(value, name), member(value, name)
+            path += (name,)
+    if isinstance(value, NamedNumber):
+        return replace(start, path=(*path, "value"), node=node.child(value, "value"))
+    return replace(start, path=path, node=node)
+
+
+def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
+    """Whose changes count for a link drawn at that path (those of a link of the stage may be written short)."""
+    return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
+
+
+def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) -> tuple[str, ...]:
+    """The names that a step stands for; a named number holds nothing, and so is meant by a last step alone."""
+    if isinstance(value, tuple):
+        return (_component(value, address, node, step),)
+    step = node.field_called(value, step)
+    found = [path for path in completions(value, step) if path[0] not in _DOCUMENT and (last or path[:-1] != (NUMBERS,))]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise refuse(address, f'"{step}" may be {" or ".join(".".join(path) for path in found)}', "Write the one that is meant in full")
+    if value is None:
+        raise refuse(address, f'there is no "{step}": what holds it is not given', "Give it first")
+    raise refuse(address, f'there is no "{step}"', suggest_nearest(step, _names(value)))
+
+
+def _component(value: Any, address: str, node: Node, step: str) -> str:
+    if isinstance(node, NumbersNode):
+        if step.isdecimal() and has_member(value, step):
+            return step
+        raise refuse(address, f'there is no number "{step}"', f"They are counted from 0 to {len(value) - 1}")
+    if not node.components or not has_member(value, step):
+        raise refuse(address, f'there is no component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
+    return COMPONENTS[int(step)] if step in "012345" else step
+
+
+def _names(value: Any) -> list[str]:
+    if not is_dataclass(value):
+        return list(value) if hasattr(value, "keys") else []
+    own = [field.name for field in fields(value) if field.name not in _DOCUMENT]
+    nested = [getattr(value, name) for name in own]
+    return own + [name for inner in nested if is_dataclass(inner) or hasattr(inner, "keys") for name in _names(inner)]
+
+
+def _at(mechanism: Mechanism, path: tuple[str, ...]) -> Any:
+    value: Any = mechanism
+    for name in path:
+        value = member(value, name)
+    return value
+
+
+def canonical(mechanism: Mechanism, address: str) -> str:
+    """The address in full, or as it is if it points nowhere.
+
+    >>> canonical(Mechanism(""), "nowhere")
+    'nowhere'
+    """
+    try:
+        return locate(mechanism, address).address
+    except DesignError:
+        return address

@@ -1,0 +1,127 @@
+"""Reading and replacing one field deep inside a frozen description."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from typing import Any
+
+from flexstage.base.number import Table
+from flexstage.base.storage.digest import KEY
+
+_INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5}
+
+
+def _index(name: str) -> int:
+    """The place of a component, by its name or its number; -1 for what is neither."""
+    return int(name) if name.isdecimal() else _INDEX.get(name, -1)
+
+
+MATRICES = ("compliance", "matrix")
+"""Fields that hold a symmetric 6x6."""
+
+
+def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """The path, and for an entry of a symmetric 6x6 also that of its mirror image.
+
+    >>> with_mirror(("compliance", "x", "rz"))
+    (('compliance', 'x', 'rz'), ('compliance', 'rz', 'x'))
+    """
+    if path[-3:-2] and path[-3] in MATRICES and path[-1] != path[-2]:
+        return path, (*path[:-2], path[-1], path[-2])
+    return (path,)
+
+
+def member(value: Any, name: str) -> Any:
+    """Return the field, entry or component of that name.
+
+    >>> member((1.0, 2.0, 3.0), "y")
+    2.0
+    """
+    if isinstance(value, Mapping):
+        return value[name]
+    if isinstance(value, tuple):
+        return value[_index(name)]
+    return getattr(value, _field_name(value, name))
+
+
+def has_member(value: Any, name: str) -> bool:
+    """Whether the value has a field, entry or component of that name.
+
+    >>> has_member((1.0, 2.0, 3.0), "w")
+    False
+    """
+    if isinstance(value, Mapping):
+        return name in value
+    if isinstance(value, tuple):
+        return 0 <= _index(name) < len(value)
+    return name in _field_names(type(value))
+
+
+def _field_name(value: Any, name: str) -> str:
+    """The field that a file calls so, where its word is one of Python's own (`from`)."""
+    return _field_names(type(value)).get(name, name)
+
+
+@cache
+def _field_names(kind: type) -> Mapping[str, str]:
+    """The fields of a class, by their names and by what a file calls them; none of what is no description."""
+    own = fields(kind) if is_dataclass(kind) else ()
+    return {field.name: field.name for field in own} | {field.metadata[KEY]: field.name for field in own if KEY in field.metadata}
+
+
+def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
+    """Return the paths to every member of that name: the value's own, else those inside its nested descriptions and its tables.
+
+    >>> completions((1.0, 2.0), "y")
+    (('y',),)
+    """
+    if has_member(value, name):
+        return ((_field_name(value, name),),)
+    if not is_dataclass(value):
+        return ()
+    found: list[tuple[str, ...]] = []
+    for own in dict.fromkeys(_field_names(type(value)).values()):
+        inner = getattr(value, own)
+        if isinstance(inner, Mapping) or is_dataclass(inner):
+            found += [(own, *rest) for rest in completions(inner, name)]
+    return tuple(found)
+
+
+def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the full path, filling in skipped levels (`radius` for `profile.radius`) where that is unique.
+
+    Raises `KeyError` with the name that was not found or that has several places.
+
+    >>> from flexstage.parts.notch import Notch
+    >>> from flexstage.parts.profile import Circular
+    >>> complete(Notch("steel", 1e-3, 1e-2, Circular(5e-3)), ("radius",))
+    ('profile', 'radius')
+    """
+    if not path:
+        return ()
+    found = completions(value, path[0])
+    if len(found) != 1:
+        raise KeyError(path[0])
+    inner = value
+    for name in found[0]:
+        inner = member(inner, name)
+    return found[0] + complete(inner, path[1:])
+
+
+def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:
+    """Return a copy of the value in which the member at the full path is `new`.
+
+    >>> replace_member((1.0, 2.0, 3.0), ("y",), 5.0)
+    (1.0, 5.0, 3.0)
+    """
+    if not path:
+        return new
+    inner = replace_member(member(value, path[0]), path[1:], new)
+    if isinstance(value, Mapping):
+        return Table({**value, path[0]: inner})
+    if isinstance(value, tuple):
+        index = _index(path[0])
+        return (*value[:index], inner, *value[index + 1 :])
+    return replace(value, **{path[0]: inner})

@@ -1,0 +1,681 @@
+"""Expansion of a description into single bodies and links with frames in the stage's frame."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import TypeAlias, cast
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array, Number, Table, Vector, stack
+from flexstage.mechanism.addresses.path import complete, has_member, replace_member
+from flexstage.mechanism.assembly.likeness import drawn_units, link_lineage
+from flexstage.mechanism.assembly.misalignment import MISALIGNED, misalign
+from flexstage.mechanism.assembly.pattern import Facing, Normal, Pattern, Polar, Pose, copy_names
+from flexstage.mechanism.assembly.sight import (
+    PlacedGauge,
+    PlacedStop,
+    gauge_findings,
+    link_names,
+    place_stop,
+    place_sum,
+    sight,
+    sight_of_link,
+)
+from flexstage.mechanism.mechanism import GROUND, PLATFORM, GaugePlace, GaugeSum, Link, LinkProbe, Mechanism, Probe, Stop, posed
+from flexstage.parts.actuator import Actuator
+from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
+from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
+from flexstage.parts.given import Joint
+from flexstage.parts.mass import MassProperties, combine, drawn_solids, mass_properties, union_properties, within
+from flexstage.parts.material import Material, Paired
+from flexstage.parts.part import Part, Restricted, actuator_of, counter_of, inner, is_actuator, material_of, ports_of
+from flexstage.parts.superelement import Superelement
+from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
+
+_Copy: TypeAlias = tuple[str, str, Frame]
+_EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
+NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
+"""What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedBody:
+    """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame.
+
+    `drawn` is the body with those lent to it; the mass is that of all of them, made of `materials`. `links` are those of the stage.
+    """
+
+    name: str
+    body: Body
+    frame: Frame
+    drawn: tuple[_DrawnBody, ...]
+    links: tuple[PlacedLink | PlacedSuperelement, ...]
+    materials: Mapping[str, Material]
+
+    @cached_property
+    def mass(self) -> MassProperties | None:
+        """Its own mass properties, with those of the bodies lent to it; `None` without any."""
+        return _mass(self.drawn, self.materials)
+
+    @cached_property
+    def reference(self) -> Array:
+        """As stated, else its centre of mass, else the middle of its joints (..., 3)."""
+        if self.body.reference is not None:
+            return self.frame.point(stack(self.body.reference))
+        if self.mass is not None:
+            return self.mass.centre
+        joints = [place for link in self.links for place in link.joints(self.name)]
+        return sum(joints, np.zeros(3)) / len(joints) if joints else self.frame.position
+
+    @cached_property
+    def solids(self) -> Mapping[str, PlacedSolid]:
+        """The outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`)."""
+        return _placed_solids(self.drawn)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedLink:
+    """A link of the expanded stage: bodies joined by name, the part with its departures applied, the link frame in the stage's frame.
+
+    `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`). A link that stands for a member
+    of a compound (`B1/pivot.left`) is `of` the one that the description has (`B1/pivot`).
+    """
+
+    name: str
+    drawn: str
+    joins: tuple[str, str]
+    link: Link
+    part: Part
+    material: Material | None
+    frame: Frame
+    of: PlacedLink | None = None
+
+    @property
+    def described(self) -> PlacedLink:
+        """The link as the description has it: itself, or the one whose part it is a member of."""
+        return self.of or self
+
+    def joints(self, body: str) -> tuple[Array, ...]:
+        """Where it is joined to a body (..., 3): its centre."""
+        return (self.frame.position,) if body in self.joins else ()
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedPort:
+    """A port of a superelement: the body it is joined to, and its frame in the stage's frame."""
+
+    body: str
+    frame: Frame
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedSuperelement:
+    """A superelement of the expanded stage: its part, the frame of the part's axes in the stage's, its ports in the order of its file."""
+
+    name: str
+    drawn: str
+    link: Link
+    part: Superelement
+    frame: Frame
+    ports: Mapping[str, PlacedPort]
+
+    @property
+    def joins(self) -> tuple[str, ...]:
+        """The bodies it joins, a port each."""
+        return tuple(port.body for port in self.ports.values())
+
+    def joints(self, body: str) -> tuple[Array, ...]:
+        """Where it is joined to a body (..., 3): its ports there."""
+        return tuple(port.frame.position for port in self.ports.values() if port.body == body)
+
+    def welds(self) -> Iterator[PlacedLink]:
+        """Joints between its first port's body and that of each other port, rigid but for the freedoms that its link states of two.
+
+        So does the ideal model take it. Ports on the body of the first one need none.
+        """
+        first, *others = self.ports
+        free = self.link.free or ()
+        for name in others:
+            port = self.ports[name]
+            frame = self.frame if free else port.frame
+            if port.body != self.ports[first].body:
+                joins = (self.ports[first].body, port.body)
+                yield PlacedLink(f"{self.name}.{name}", self.drawn, joins, self.link, Joint(free), None, frame)
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
+
+    `strokes` are those of them that impose a stroke, `thrusts` those that exert a force. Links of parts with ports are no `links` here but
+    `superelements`: they join any number of bodies. Bodies that are `of` another one are no bodies here: their solids are their owner's, or
+    among `ground`, the outlines of the ground.
+    """
+
+    bodies: Mapping[str, PlacedBody]
+    links: Mapping[str, PlacedLink]
+    gauges: Mapping[str, PlacedGauge]
+    actuators: Mapping[str, str]
+    points: Mapping[str, tuple[str, Array]]
+    ground: Mapping[str, PlacedSolid]
+    superelements: Mapping[str, PlacedSuperelement] = field(default_factory=lambda: Table({}))
+    stops: Mapping[str, PlacedStop] = field(default_factory=lambda: Table({}))
+
+    @property
+    def welded(self) -> Assembly:
+        """The stage with its superelements as rigid bodies that join those at their ports (see `PlacedSuperelement.welds`)."""
+        welds = {weld.name: weld for item in self.superelements.values() for weld in item.welds()}
+        return replace(self, links={**self.links, **welds}, superelements=Table({})) if self.superelements else self
+
+    def actuator(self, name: str) -> Actuator:
+        """The part of an input, by the input's name."""
+        return actuator_of(self.links[self.actuators[name]].part)
+
+    @cached_property
+    def strokes(self) -> Mapping[str, str]:
+        """Input name to link name of the stroke actuators."""
+        return {name: link for name, link in self.actuators.items() if self.actuator(name).takes_stroke}
+
+    @cached_property
+    def thrusts(self) -> Mapping[str, str]:
+        """Input name to link name of the force actuators."""
+        return {name: link for name, link in self.actuators.items() if not self.actuator(name).takes_stroke}
+
+
+def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
+    """The frames of a pattern's copies in the stage's frame.
+
+    >>> tangent = Polar(radius=0.1, first=0.0, facing=Facing.TANGENT)
+    >>> copy_frames(tangent, 1)[0].direction(np.array([1.0, 0, 0])).round(9).tolist()
+    [0.0, 1.0, 0.0]
+    >>> upright = Polar(radius=0.1, first=0.0, facing=Facing.AXIS)
+    >>> copy_frames(upright, 1)[0].rotation.T.tolist()  # x up, z inward, and y = z cross x
+    [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
+    """
+    if not isinstance(pattern, Polar):
+        return (_reflect(Frame(axes(pattern.direction, _upright(pattern)), stack(pattern.origin)), pattern.mirror),) * count
+    step = pattern.step if pattern.step is not None else 2.0 * np.pi / count
+    return tuple(_reflect(_polar_frame(pattern, pattern.first + number * step), pattern.mirror) for number in range(count))
+
+
+def _upright(pose: Pose) -> Vector | None:
+    """The direction of a pose's z axis; none is meant where the usual one, z, lies along x: then a gauge is roundly alike."""
+    x, y, z = (np.max(np.abs(np.real(component))) for component in pose.direction)
+    return None if pose.up == Pose().up and max(x, y) <= 1e-3 * z else pose.up
+
+
+def _reflect(frame: Frame, mirror: Normal | None) -> Frame:
+    """The frame, or its image in the stage's plane of that normal."""
+    return frame if mirror is None else frame.within(reflection("xyz".index(mirror.value)))
+
+
+def _polar_frame(pattern: Polar, angle: Number) -> Frame:
+    position = stack((pattern.radius * np.cos(angle), pattern.radius * np.sin(angle), pattern.height))
+    if pattern.facing is Facing.AXIS:
+        upright = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+        return Frame(turn_z(angle + pattern.turn) @ upright, position)
+    quarter = {Facing.OUTWARD: 0.0, Facing.TANGENT: 0.5 * np.pi, Facing.INWARD: np.pi}[pattern.facing]
+    return Frame(turn_z(angle + quarter + pattern.turn), position)
+
+
+def expand(mechanism: Mechanism) -> Assembly:
+    """Expand a description: units copied by pattern, departures applied, frames in the stage's frame.
+
+    The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(expand(double_triangle()).links)
+    27
+    """
+    assembly = lay_out(mechanism)
+    for body in assembly.bodies.values():
+        _ = [item.own.value for item in body.drawn], body.reference, body.mass  # what cannot be weighed is refused here
+    return assembly
+
+
+def lay_out(mechanism: Mechanism) -> Assembly:
+    """As `expand`, each body weighed when its mass or reference is first asked for.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> len(lay_out(double_triangle()).bodies)
+    19
+    """
+    return _assembly(Same(mechanism))
+
+
+class Same:
+    """A description as a key of what is kept: equal only to itself, which is cheaper to tell than a digest."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+
+    def __hash__(self) -> int:
+        return id(self.mechanism)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and self.mechanism is other.mechanism
+
+
+@lru_cache(maxsize=2)
+def _assembly(key: Same) -> Assembly:
+    """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
+    mechanism = key.mechanism
+    require([*place_findings(mechanism), *_unknown_names(mechanism), *compound_findings(mechanism)])
+    placed = tuple(copies(mechanism))
+    described = tuple(_links(mechanism, placed))
+    elements = {link.name: link for link in described if isinstance(link, PlacedSuperelement)}
+    compositions = _compositions(described)
+    wholes = (whole for whole in described if isinstance(whole, PlacedLink))
+    links = {link.name: link for whole in wholes for link in _members(mechanism, whole, compositions.get(id(whole.part)))}
+    drawn = (*_bodies(mechanism, placed), *_inner_bodies(mechanism, described, compositions))
+    joined = (*links.values(), *elements.values())
+    lent = _by_owner(drawn)
+    bodies = {
+        item.name: PlacedBody(item.name, item.body, item.frame, (item, *lent.get(item.name, ())), joined, mechanism.materials)
+        for item in drawn
+        if item.body.of is None
+    }
+    require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
+    require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
+    resting = lent.get(GROUND, ())
+    _ = [item.own.value for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
+    ground = _placed_solids(resting)
+    drives = _actuators(links, {copy for copy, _, _ in placed})
+    return Assembly(bodies, links, _gauges(mechanism, links), drives, dict(_points(drawn)), ground, elements, dict(_stops(mechanism)))
+
+
+def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Links that do not say where they are, or say it twice.
+
+    >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
+    links.strut: it has no from. Give both from and to, or at and along.
+    """
+    links = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    links += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    for where, link in links:
+        ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
+        stated = [name for name, value in {**place, **ends}.items() if value is not None]
+        if {"from", "to"} & set(stated) and {"at", "along"} & set(stated):
+            yield Finding(where, f"it has both {' and '.join(stated)}", "Give its ends, from and to, or its place, at and along")
+            continue
+        wanted = place if link.start is None and link.end is None else ends
+        for name in [name for name, value in wanted.items() if value is None]:
+            advice = "Give both from and to, or at and along" if wanted is ends else f"Write for example {name} = {_EXAMPLES[name]}"
+            yield Finding(where, f"it has no {name}", advice)
+
+
+def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
+    """What a description names and does not hold, for those that are built without having passed the checks."""
+    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    bodies = [(f"bodies.{name}", body) for name, body in mechanism.bodies.items()]
+    bodies += [(f"units.{unit}.bodies.{name}", body) for unit, item in mechanism.units.items() for name, body in item.bodies.items()]
+    named: list[tuple[str, str, str | None, Mapping[str, object]]] = [
+        (f"{where}.part", "part", link.part, mechanism.parts) for where, link in drawn
+    ]
+    yield from (finding for where, link in drawn if link.part in mechanism.parts for finding in port_findings(where, link, mechanism.parts))
+    named += [(f"parts.{name}.material", "material", material_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
+    named += [(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials) for name, part in mechanism.parts.items()]
+    named += [
+        (f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
+        for where, body in bodies
+        for name, solid in body.solids.items()
+    ]
+    named += [(f"place.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.place.items()]
+    named += [
+        (f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
+        for name, probe in mechanism.gauges.items()
+        if not isinstance(probe, GaugeSum)
+    ]
+    for where, kind, name, known in named:
+        if name and name not in known:
+            yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, known))
+
+
+def port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
+    """A link joins a body at each port of its part by the port's name, or two bodies where the part has none."""
+    ports, known = ports_of(parts[link.part]), isinstance(link.joins, Mapping)
+    example = ", ".join(f'{name} = "{body}"' for name, body in zip(ports, itertools.cycle((GROUND, PLATFORM)), strict=False))
+    if known and not ports:
+        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Name its two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
+    elif ports and (not known or set(link.joins) != set(ports)):
+        found = f"it joins {', '.join(link.joins)}" if known else "it names no ports"
+        yield Finding(
+            f"{where}.joins", f'part "{link.part}" has the ports {", ".join(ports)}, and {found}', f"Write joins = {{ {example} }}"
+        )
+    if ports and isinstance(parts[link.part], Restricted):
+        what = f'part "{link.part}" restricts a part with ports to some freedoms, of which it has six a port'
+        yield Finding(f"{where}.part", what, "Link the part itself")
+    if ports and link.free and len(ports) > 2:
+        what = f'part "{link.part}" has {len(ports)} ports, and free states the freedoms between two'
+        yield Finding(f"{where}.free", what, "Leave it out: the ideal model takes the part as rigid")
+
+
+def _unknown_bodies(
+    bodies: Mapping[str, PlacedBody], links: Iterable[PlacedLink | PlacedSuperelement], looking: Mapping[str, Probe | Stop]
+) -> Iterator[Finding]:
+    known = dict.fromkeys((*bodies, GROUND))
+    ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
+    ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
+    yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
+
+
+def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
+    """Yield (copy name, unit name, frame) of every placed unit.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [name for name, _, _ in copies(double_triangle())]
+    ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
+    """
+    for key, placement in mechanism.place.items():
+        names = copy_names(key)
+        frames = copy_frames(placement.pattern, len(names))
+        for name, frame in zip(names, frames, strict=True):
+            yield name, placement.unit, misalign(frame, mechanism.changes, name)
+
+
+def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
+    """Every body by the name that links, gauges and loads call it by: those of the stage, and `copy/body` of placed units.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(placed_bodies(double_triangle()))[:3]
+    ['platform', 'B1/base', 'B1/tip']
+    """
+    drawn = {name: unit.bodies for name, unit in drawn_units(mechanism).items()}
+    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.place.items() for copy in copy_names(key)]
+    return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
+
+
+def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
+    """The bodies that move at a link's ends or ports, owners in the places of bodies that are `of` them; `own` are those of its unit.
+
+    >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
+    >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
+    ('ground', 'W/slide')
+    """
+    return tuple(owner_of(bodies, f"{copy}/{name}" if name in own else name) for name in link.bodies)
+
+
+@dataclass(frozen=True, eq=False)
+class _OwnMass:
+    """The mass of a body as it is drawn, weighed once for all its copies when it is first asked for."""
+
+    body: Body
+    materials: Mapping[str, Material]
+    name: str
+
+    @cached_property
+    def value(self) -> MassProperties | None:
+        """Mass properties in the frame it is drawn in; `None` without any."""
+        return mass_properties(self.body, self.materials, self.name)
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnBody:
+    """A body and its own mass, seen from the frame it is drawn in; `frame` is that of this copy, `aligned` as it is meant."""
+
+    name: str
+    body: Body
+    own: _OwnMass
+    frame: Frame
+    aligned: Frame
+
+    def mass(self) -> MassProperties | None:
+        """The mass properties in the stage's frame."""
+        return None if self.own.value is None else within(self.own.value, self.frame)
+
+    def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
+        """The outlines by address, in the stage's frame."""
+        for name, solid in self.body.solids.items():
+            frame = solid.frame.within(self.frame)
+            yield f"{self.name}.{name}", PlacedSolid(solid.mirrored if frame.mirrored else solid, frame.right_handed)
+
+
+def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
+    """The outlines of a body, without those that are holes in the others."""
+    return pierce(dict(solid for item in drawn for solid in item.solids()))
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnLink:
+    """A link with its frame in the frame it is drawn in; `owners` are the addresses whose departures count, its own the last."""
+
+    owners: tuple[str, ...]
+    link: Link
+    frame: Frame
+
+
+def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnBody]:
+    for name, body in mechanism.bodies.items():
+        yield _DrawnBody(name, body, _OwnMass(body, mechanism.materials, name), identity(), identity())
+    drawn = drawn_units(mechanism)
+    units = {unit: drawn[unit].bodies for _, unit, _ in placed}
+    masses = {
+        unit: {name: _OwnMass(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
+        for unit, bodies in units.items()
+    }
+    meant = {copy: frame for copy, _, frame in copies(replace(mechanism, changes=Table({})))} if mechanism.changes else {}
+    for copy, unit, frame in placed:
+        for name, body in units[unit].items():
+            yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame, meant.get(copy, frame))
+
+
+def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
+    """The bodies that are of another one, by its name."""
+    lent: dict[str, list[_DrawnBody]] = {}
+    for item in drawn:
+        if item.body.of is not None:
+            lent.setdefault(item.body.of, []).append(item)
+    return lent
+
+
+def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Array]]]:
+    """Named points with the bodies they move with; those of the ground stand still and are none."""
+    for item in drawn:
+        owner = item.body.of or item.name
+        for point, at in item.body.points.items():
+            if owner != GROUND:
+                yield point if item.name == PLATFORM else f"{item.name}.{point}", (owner, item.frame.point(stack(at)))
+
+
+def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLink | PlacedSuperelement]:
+    bodies = placed_bodies(mechanism)
+    for name, link in mechanism.links.items():
+        yield _placed_link(mechanism, _drawn_link(link, f"links.{name}"), identity(), name, joined(link, bodies))
+    units = drawn_units(mechanism)
+    links = {unit: {name: _unit_link(mechanism, unit, name, link) for name, link in item.links.items()} for unit, item in units.items()}
+    for copy, unit, frame in placed:
+        own = units[unit].bodies
+        for name, drawn in links[unit].items():
+            yield _placed_link(mechanism, drawn, frame, f"{copy}/{name}", joined(drawn.link, bodies, copy, own))
+
+
+def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Restrictions of compounds, and links that state the freedoms of one, or two ends: their members are what has these.
+
+    >>> list(compound_findings(Mechanism("")))
+    []
+    """
+    advice = "State it of the members: draw them as links of their own"
+    compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
+    drawn = [(f"links.{name}", link) for name, link in mechanism.links.items()]
+    drawn += [(f"units.{unit}.links.{name}", link) for unit, item in mechanism.units.items() for name, link in item.links.items()]
+    for name in sorted(compounds):
+        if isinstance(mechanism.parts[name], Restricted):
+            yield Finding(f"parts.{name}", "it restricts a part that consists of several", advice)
+    for where, link in drawn:
+        if link.free is not None and link.part in compounds:
+            yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
+        if (link.start is not None or link.end is not None) and link.part in compounds:
+            place = "Give its origin, at, and its direction, along"
+            yield Finding(f"{where}.from", f"part {link.part} consists of several, each with ends of its own", place)
+
+
+def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:
+    """What the compounds among the parts of links consist of, by their identity: copies of one part share its members."""
+    parts = {id(link.part): link.part for link in links}
+    return {key: part.composition for key, part in parts.items() if isinstance(part, Compound)}
+
+
+def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition | None) -> Iterator[PlacedLink]:
+    """The links that stand for one of the description: its members, else itself."""
+    if composition is None:
+        yield _image(whole)
+        return
+    ends = {FIRST: whole.joins[0], SECOND: whole.joins[1]}
+    for name, member in composition.members.items():
+        first, second = (ends.get(body) or f"{whole.name}.{body}" for body in member.joins)
+        frame = Frame(axes(member.along, member.bends), stack(member.at)).within(whole.frame)
+        link = PlacedLink(
+            f"{whole.name}.{name}",
+            f"{whole.drawn}.{name}",
+            (first, second),
+            replace(whole.link, joins=(first, second)),
+            member.part,
+            _seen_from(mechanism, member.part, frame),
+            frame,
+            whole,
+        )
+        yield _image(link)
+
+
+def _inner_bodies(
+    mechanism: Mechanism, links: Iterable[PlacedLink | PlacedSuperelement], compositions: Mapping[int, Composition]
+) -> Iterator[_DrawnBody]:
+    """The bodies within compounds."""
+    for whole in links:
+        if (composition := compositions.get(id(whole.part))) is not None:
+            for name, body in composition.bodies.items():
+                own = _OwnMass(body, mechanism.materials, f"{whole.name}.{name}")
+                yield _DrawnBody(f"{whole.name}.{name}", body, own, whole.frame, whole.frame)
+
+
+def _drawn_link(link: Link, *owners: str) -> _DrawnLink:
+    return _DrawnLink(owners, link, _link_frame(link))
+
+
+def _unit_link(mechanism: Mechanism, unit: str, name: str, link: Link) -> _DrawnLink:
+    return _drawn_link(link, *(f"{owner}/{name}" for owner in link_lineage(mechanism, unit, name)))
+
+
+def _link_frame(link: Link) -> Frame:
+    return Frame(axes(link.direction, link.bends), stack(link.centre))
+
+
+def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, ends: Sequence[str]) -> PlacedLink | PlacedSuperelement:
+    link, part = apply_changes(mechanism, drawn.link, (*drawn.owners, name))
+    frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
+    if ports_of(part):
+        whole = cast("Superelement", inner(part))
+        whole, frame = (whole.mirrored, frame.right_handed) if frame.mirrored else (whole, frame)
+        return PlacedSuperelement(name, drawn.owners[-1], link, whole, frame, _placed_ports(whole, frame, link.joins, ends))
+    first, second = ends
+    return PlacedLink(name, drawn.owners[-1], (first, second), link, part, _seen_from(mechanism, part, frame), frame)
+
+
+def _seen_from(mechanism: Mechanism, part: Part, frame: Frame) -> Material | None:
+    """The material of a part as it stands: of a crystal, in the part's own axes; of a contact, with that of its seat."""
+    name, counter = material_of(part), counter_of(part)
+    if not name:
+        return None
+    own = mechanism.materials[name].oriented(frame.rotation)
+    return Paired.of(own, mechanism.materials[counter]) if counter else own
+
+
+def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: Sequence[str]) -> dict[str, PlacedPort]:
+    bodies = dict(zip(names, ends, strict=True))
+    frames = {name: Frame(axes(port.along, port.up), stack(port.at)) for name, port in part.ports.items()}
+    return {name: PlacedPort(bodies[name], frames[name].within(outer)) for name in part.order}
+
+
+def _image(link: PlacedLink) -> PlacedLink:
+    """The link in a right-handed frame: in a mirrored copy it is of the part's mirror image."""
+    if not link.frame.mirrored:
+        return link
+    part = link.part.mirrored
+    if part is None:
+        raise refuse(link.name, *NO_IMAGE)
+    return replace(link, part=part, frame=link.frame.right_handed)
+
+
+def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
+    """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order.
+
+    >>> from dataclasses import replace
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = replace(double_triangle(), changes={"horizontal/front.thickness": 1.4e-3})
+    >>> link = stage.units["horizontal"].links["front"]
+    >>> apply_changes(stage, link, ("horizontal/front", "B1/front"))[1].thickness
+    0.0014
+    """
+    part = mechanism.parts[link.part]
+    for owner in dict.fromkeys(owners):
+        for address, value in mechanism.changes.items():
+            if not address.startswith(f"{owner}."):
+                continue
+            path = tuple(address[len(owner) + 1 :].split("."))
+            if path[0] in MISALIGNED:  # of a gauge that has a link's name
+                continue
+            if has_member(link, path[0]):
+                link = replace_member(link, complete(link, path), value)
+            else:
+                part = replace_member(part, complete(part, path), value)
+    return link, part
+
+
+def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:
+    """The mass of a body and of what is lent to it; what they have in common is told where the copies are meant to stand.
+
+    A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost. A stated mass counts
+    as it is, whatever is drawn of its body.
+    """
+    weighed = [item for item in drawn if item.body.mass is None and item.body.solids]
+    single = [item for item in drawn if item.body.mass is not None or len(weighed) == 1]
+    masses = [mass for item in single if (mass := item.mass()) is not None]
+    if len(weighed) > 1:
+        actual, meant = (
+            [solid for item in weighed for solid in drawn_solids(item.body, materials, item.name, frame(item))]
+            for frame in (lambda item: item.frame, lambda item: item.aligned)
+        )
+        masses.append(union_properties(actual, meant))
+    return combine(masses) if masses else None
+
+
+def _actuators(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[str, str]:
+    """Name an input after its unit's copy where that copy has one actuator only, else after the link."""
+    drives = [name for name, link in links.items() if is_actuator(link.part)]
+    owners = [name.rpartition("/")[0] for name in drives]
+    return {(owner if owner in copies and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
+
+
+def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, PlacedGauge]:
+    """The gauges in the description's order; sums of what stands there."""
+    require(gauge_findings(mechanism, links))
+    single = {item.name: item for key, place in mechanism.gauges.items() for item in _single_gauges(mechanism, links, key, place)}
+    formed = {name: place for name, place in mechanism.gauges.items() if isinstance(place, GaugeSum)}
+    sums = {name: place_sum(name, place, mechanism.gauges, single) for name, place in formed.items()}
+    return {name: sums[name] if name in sums else single[name] for key in mechanism.gauges for name in copy_names(key)}
+
+
+def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: str, place: GaugePlace) -> Iterator[PlacedGauge]:
+    names = copy_names(key)
+    if isinstance(place, Probe):
+        gauge = mechanism.sensors[place.gauge]
+        for name, frame in zip(names, copy_frames(place.pattern, len(names)), strict=True):
+            yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.changes, name).right_handed),))
+    elif isinstance(place, LinkProbe):
+        gauge = mechanism.sensors[place.gauge]
+        for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):
+            yield PlacedGauge(name, gauge, (sight_of_link(*link.joins, link.frame, link.part, gauge),))
+
+
+def _stops(mechanism: Mechanism) -> Iterator[tuple[str, PlacedStop]]:
+    for key, stop in mechanism.stops.items():
+        names = copy_names(key)
+        for name, frame in zip(names, copy_frames(stop.pattern, len(names)), strict=True):
+            yield name, place_stop(stop, frame.right_handed)

@@ -1,0 +1,185 @@
+"""Which expansion coefficient every body and part of a stage has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Number
+from flexstage.base.storage.digest import digest
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
+from flexstage.mechanism.drawn import as_drawn
+from flexstage.mechanism.mechanism import GROUND, NOT_GROWING, Mechanism
+from flexstage.parts.body import Solid
+from flexstage.parts.mass import solid_properties
+from flexstage.parts.part import counter_of, inner, material_of, span
+from flexstage.parts.shape import Shaped
+
+_STATED, _ASKED = "as stated", "as asked"
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The `material` the ground grows with (`None`: it does not grow), and from where that is known."""
+
+    material: str | None
+    source: str
+
+    @property
+    def stated(self) -> bool:
+        """Whether the description, or who asked, states it."""
+        return self.source in (_STATED, _ASKED)
+
+
+@dataclass(frozen=True, eq=False)
+class Expansion:
+    """Expansion coefficients [1/K] of the `bodies` (the ground's too) and of the `parts` with a length [m].
+
+    `taken` says for each body which material was taken, and from where (its solids, its links); `ground` is that of the ground.
+    """
+
+    bodies: Mapping[str, Number]
+    parts: Mapping[str, tuple[Number, Number]]
+    taken: Mapping[str, str]
+    ground: Ground
+
+
+def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
+    """Expansion coefficients of everything; `ground` names the ground's material (absent: see `ground_of`; `none`: it does not grow).
+
+    A body takes the material of its solids, of several the heaviest solid's; without solids that of its links, where they agree. Given
+    matrices grow as the drawn parts that they stand for; others and ideal joints have no length and do not grow. Raises `DesignError` with
+    all materials and stacks that state no expansion, and all bodies of unknown material.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = expansion(double_triangle(), ground="steel")
+    >>> found.bodies["platform"], found.taken["platform"]
+    (1.03e-05, 'steel, of its solids')
+    """
+    assembly = expand(mechanism)
+    require(_unknown_growth(assembly))
+    choices = {name: _body_material(mechanism, assembly, name) for name in assembly.bodies}
+    floor = ground_of(mechanism, ground)
+    if floor.material is not None:
+        choices[GROUND] = (floor.material, floor.source)
+    require([*_unknown(mechanism, choices), *_unstated_findings(mechanism, assembly, choices)])
+    bodies = {name: _stated_expansion(mechanism, material) for name, (material, _) in choices.items()}
+    drawn = {name: as_drawn(mechanism, link) for name, link in assembly.links.items()}
+    parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
+    taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
+    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
+
+
+def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
+    for name in assembly.superelements:
+        what = "it is known by its matrices alone: how its ports move apart with temperature is not known"
+        yield Finding(name, what, "Work out its growth in the code that its matrices come from")
+
+
+def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
+    value = mechanism.materials[material].expansion
+    return np.nan if value is None else value
+
+
+def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
+    """What the ground grows with: as asked (`none`: it does not grow), as the description states, else as all that stands on it.
+
+    Taken are the outlines that belong to the ground, else the links on it, if they are of one material. Raises `DesignError` where they are
+    of several, or of none: then drift does not follow from the description.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> ground_of(double_triangle())
+    Ground(material='steel', source='all links that stand on it are of it')
+    """
+    given = asked if asked is not None else mechanism.ground
+    if asked is not None and asked not in (NOT_GROWING, *mechanism.materials):
+        raise refuse("ground", f"material {asked} is not described", suggest_nearest(asked, (NOT_GROWING, *mechanism.materials)))
+    if given is not None:
+        return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
+    assembly = expand(mechanism)
+    solids = _distinct(mechanism, (placed.solid.material for placed in assembly.ground.values()))
+    links = _link_materials(mechanism, assembly, GROUND)
+    if len(solids) == 1:
+        return Ground(solids[0], "all its outlines are of it")
+    if not solids and len(links) == 1:
+        return Ground(links[0], "all links that stand on it are of it")
+    found = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
+    example = (*solids, *links, *mechanism.materials, "steel")[0]
+    advice = f'State it in the design: ground = "{example}", or "{NOT_GROWING}" if it does not grow'
+    raise refuse("ground", f"how it grows with temperature is not known: {found}", advice)
+
+
+def coefficient(link: PlacedLink) -> Number:
+    """The expansion coefficient of a link's part [1/K], NaN where it is not stated.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> coefficient(expand(double_triangle()).links["B1/pzt"])
+    -3e-06
+    """
+    holder = inner(link.part) if link.material is None else link.material
+    value = getattr(holder, "expansion", None)
+    return np.nan if value is None else value
+
+
+def _grows(link: PlacedLink) -> bool:
+    return isinstance(inner(link.part), Shaped)
+
+
+def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
+    """The material a body grows with and its source; an empty name where it is not known."""
+    solids = {address.removeprefix(f"{name}."): placed.solid for address, placed in assembly.bodies[name].solids.items()}
+    if len(_distinct(mechanism, (solid.material for solid in solids.values()))) == 1:
+        return next(iter(solids.values())).material, "of its solids"
+    if solids:
+        heaviest = max(solids, key=lambda solid: _weight(mechanism, solids[solid]))
+        return solids[heaviest].material, f"of its heaviest solid, {heaviest}"
+    found = _link_materials(mechanism, assembly, name)
+    if len(found) == 1:
+        return found[0], "of its links"
+    return "", f"it has no solids, and its links are of {', '.join(found) or 'no material'}"
+
+
+def _weight(mechanism: Mechanism, solid: Solid) -> float:
+    """Mass of a solid on the first design."""
+    return float(np.real(np.ravel(solid_properties(solid, mechanism.materials[solid.material].density).mass)[0]))
+
+
+def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list[str]:
+    parts = [as_drawn(mechanism, link).part for link in assembly.links.values() if body in link.joins]
+    return _distinct(mechanism, (name for part in parts if (name := material_of(part)) is not None and counter_of(part) is None))
+
+
+def _distinct(mechanism: Mechanism, names: Iterable[str]) -> list[str]:
+    """Names of materials, one of those that are the same material under several (of mounted stages)."""
+    known = {digest(mechanism.materials.get(name, name), physics=True): name for name in sorted(set(names), reverse=True)}
+    return sorted(known.values())
+
+
+def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
+    found: list[Finding] = []
+    for name, (material, source) in choices.items():
+        if not material:
+            found.append(Finding(name, f"how it grows with temperature is not known: {source}", "Give the body one solid of its material"))
+        elif material not in mechanism.materials:
+            found.append(Finding(name, f"material {material} is not described", suggest_nearest(material, mechanism.materials)))
+    return found
+
+
+def _unstated_findings(mechanism: Mechanism, assembly: Assembly, choices: Mapping[str, tuple[str, str]]) -> list[Finding]:
+    used = {material for material, _ in choices.values()}
+    used |= {name for name in (material_of(as_drawn(mechanism, link).part) for link in assembly.links.values()) if name is not None}
+    missing = [
+        Finding(f"materials.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "10.3e-6 1/K"')
+        for name in sorted(used)
+        if name in mechanism.materials and mechanism.materials[name].expansion is None
+    ]
+    stacks = [
+        link.link.part for link in assembly.links.values() if _grows(link) and link.material is None and np.isnan(coefficient(link)).any()
+    ]
+    return missing + [
+        Finding(f"parts.{name}", "states no thermal expansion, and drift needs it", 'Add for example expansion = "-3e-6 1/K"')
+        for name in dict.fromkeys(stacks)
+    ]

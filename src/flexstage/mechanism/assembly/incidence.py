@@ -1,0 +1,198 @@
+"""Kinematics of the graph: relative twists at links and at points as linear functions of the bodies' twists."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array, Table
+from flexstage.base.processes.memory import require_memory
+from flexstage.base.sparse import Sparse
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink
+from flexstage.mechanism.mechanism import GROUND, PLATFORM
+from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
+
+LARGE = 60
+"""Bodies from which a single design is worked out without the zeros of its matrices."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first; then the `inner` ones.
+
+    `inner` is how many inner coordinates a link has, by its name: amplitudes of its modes while its ends are held, zero in rigid motion.
+    Of a layout that is `sparse`, matrices over the coordinates come as `flexstage.base.sparse.Sparse`.
+    """
+
+    bodies: tuple[str, ...]
+    inner: Mapping[str, int] = field(default_factory=lambda: Table({}))
+    sparse: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return 6 * len(self.bodies) + sum(self.inner.values())
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates, `platform.x` to `B6/pole.rz`, then `B1/leaf.mode1` and so on."""
+        twists = (f"{body}.{component}" for body in self.bodies for component in COMPONENTS)
+        return (*twists, *(f"{link}.mode{number + 1}" for link, count in self.inner.items() for number in range(count)))
+
+    def columns(self, body: str) -> slice:
+        """The coordinates of a body."""
+        start = self._starts[body]
+        return slice(start, start + 6)
+
+    @cached_property
+    def _starts(self) -> Mapping[str, int]:
+        """The first coordinate of every body."""
+        return {body: 6 * number for number, body in enumerate(self.bodies)}
+
+    @cached_property
+    def inner_starts(self) -> Mapping[str, int]:
+        """The first inner coordinate of every link that has some."""
+        ends = np.cumsum(list(self.inner.values()), dtype=int).tolist()
+        return {name: 6 * len(self.bodies) + end - self.inner[name] for name, end in zip(self.inner, ends, strict=True)}
+
+    def embed(self, first: int, block: Array) -> Array:
+        """A matrix (..., r, n) that is a block (..., r, c) from column `first` on, and zero elsewhere."""
+        if self.sparse:
+            return cast("Array", Sparse(np.arange(first, first + block.shape[-1]), block, self.size))
+        result = np.zeros((*block.shape[:-1], self.size), dtype=block.dtype)
+        result[..., first : first + block.shape[-1]] = block
+        return result
+
+    def selector(self, body: str) -> Array:
+        """The (6, n) matrix that picks a body's twist, at its own reference point in the stage's axes."""
+        return self.embed(self._starts[body], np.eye(6))
+
+    def inner_selector(self, link: str) -> Array:
+        """The (m, n) matrix that picks a link's inner coordinates; without rows where it has none."""
+        return self.embed(self.inner_starts.get(link, 0), np.eye(self.inner.get(link, 0)))
+
+
+def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse: bool = False) -> Layout:
+    """The coordinate layout of an expanded stage whose links have so many `inner` coordinates (absent: none), dense or `sparse`.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> layout(expand(double_triangle())).coordinates[:2]
+    ('platform.x', 'platform.y')
+    """
+    names = tuple(assembly.bodies)
+    first = tuple(name for name in names if name == "platform")
+    return Layout(first + tuple(name for name in names if name != "platform"), Table(inner or {}), sparse)
+
+
+def is_single(assembly: Assembly) -> bool:
+    """Whether nothing that is placed is a batch or stepped.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> is_single(expand(double_triangle()))
+    True
+    """
+    places = [(link.frame.rotation, link.frame.position) for link in assembly.links.values()]
+    places += [(body.frame.rotation, body.reference) for body in assembly.bodies.values()]
+    return all(turn.ndim == 2 and at.ndim == 1 and not np.iscomplexobj(turn) and not np.iscomplexobj(at) for turn, at in places)
+
+
+def require_room(assembly: Assembly, matrices: float) -> None:
+    """Refuse a stage whose dense matrices do not fit: so many at once of (coordinates x rows of bodies or links), 8 bytes an entry.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> require_room(expand(double_triangle()), matrices=20.0)
+    """
+    bodies, links = len(assembly.bodies), len(assembly.links)
+    needed = 8.0 * matrices * 36.0 * bodies * max(bodies, links)
+
+    def fits(there: float) -> str:
+        most = int(np.sqrt(there / needed) * bodies)
+        return f"About {most:,} bodies would fit with as many links to each; join bodies that move as one, or read parts of it"
+
+    require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
+
+
+def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
+    """The (..., 6, n) matrix of a body's twist at a frame's origin, in the frame's axes; zero for the ground.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> twist_at(assembly, layout(assembly), "platform", assembly.links["B4/upper"].frame).shape
+    (6, 114)
+    """
+    if body == GROUND:
+        return order.embed(0, np.zeros((6, 0)))
+    return order.embed(order.columns(body).start, twist_transform(frame, assembly.bodies[body].reference))
+
+
+def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
+    """The (..., 6, n) matrices of the twists of a link's first and second body, at the link's centre, in its frame.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> len(end_twists(assembly, layout(assembly), assembly.links["B1/front"]))
+    2
+    """
+    first, second = link.joins
+    return twist_at(assembly, order, first, link.frame), twist_at(assembly, order, second, link.frame)
+
+
+def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
+    """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> deformation(assembly, layout(assembly), assembly.links["B1/front"]).shape
+    (6, 114)
+    """
+    first, second = end_twists(assembly, order, link)
+    return second - first
+
+
+def free_deformations(assembly: Assembly) -> Array:
+    """The (..., 6 L, n) deformations of all links if the n strokes, each a unit, met no resistance, in the links' frames.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> free_deformations(expand(double_triangle())).sum(axis=0).tolist()
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    places = {name: number for number, name in enumerate(assembly.links)}
+    columns = []
+    for name, link in assembly.strokes.items():
+        own = assembly.actuator(name).free_deformation
+        column = np.zeros((*own.shape[:-1], 6 * len(places)), dtype=own.dtype)
+        column[..., 6 * places[link] : 6 * places[link] + 6] = own
+        columns.append(column)
+    return np.stack(np.broadcast_arrays(*columns), axis=-1) if columns else np.zeros((6 * len(places), 0))
+
+
+def with_ground(assembly: Assembly, order: Layout) -> Array:
+    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
+
+    Inner coordinates rest in it. Raises `DesignError` where there is no platform.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> assembly = expand(double_triangle())
+    >>> with_ground(assembly, layout(assembly))[:6].tolist() == np.eye(6).tolist()  # the platform itself
+    True
+    """
+    if PLATFORM not in assembly.bodies:
+        raise refuse("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
+    centre = assembly.bodies[PLATFORM].reference
+    carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
+    batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))
+    moving = [np.broadcast_to(carry, (*batch, 6, 6)) for carry in carries]
+    return np.concatenate([*moving, np.zeros((*batch, order.size - 6 * len(order.bodies), 6))], axis=-2)

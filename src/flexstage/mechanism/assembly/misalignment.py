@@ -1,0 +1,59 @@
+"""Misalignment: a copy of a unit, or a gauge, that does not stand where its pattern puts it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Annotated, Any
+
+import numpy as np
+
+from flexstage.base.number import Vector, stack
+from flexstage.base.storage.digest import Description
+from flexstage.base.units.quantity import ANGLE, LENGTH
+from flexstage.mechanism.addresses.path import replace_member
+from flexstage.spatial.frame import Frame
+from flexstage.spatial.rotation import exponential
+
+
+@dataclass(frozen=True, eq=False)
+class Misalignment(Description):
+    """How a copy stands against its pattern, in its own frame: `shift` of its origin, and `rotation` about its own axes.
+
+    A rotation vector: its direction is the axis, its length the angle. Of a unit everything that is drawn in it moves as one, the hinge
+    to the platform and its seat there too: the stage is made so, it is not forced.
+    """
+
+    shift: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    rotation: Annotated[Vector, ANGLE] = (0.0, 0.0, 0.0)
+
+
+MISALIGNED = tuple(field.name for field in fields(Misalignment))
+
+
+def misalignment_of(changes: Mapping[str, Any], copy: str) -> Misalignment:
+    """What departures say of a copy's or a gauge's place.
+
+    >>> misalignment_of({"B2.shift.x": 1e-5}, "B2").shift
+    (1e-05, 0.0, 0.0)
+    """
+    result = Misalignment()
+    for address, value in changes.items():
+        name, _, rest = address.partition(".")
+        path = tuple(rest.split("."))
+        if name == copy and path[0] in MISALIGNED:
+            result = replace_member(result, path, value)
+    return result
+
+
+def misalign(frame: Frame, changes: Mapping[str, Any], copy: str) -> Frame:
+    """The frame of a copy as departures leave it: shifted along its own axes, turned about its own origin.
+
+    >>> at = Frame(np.eye(3), np.zeros(3))
+    >>> misalign(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    if not any(address.partition(".")[0] == copy for address in changes):
+        return frame
+    found = misalignment_of(changes, copy)
+    return Frame(np.asarray(frame.rotation) @ exponential(stack(found.rotation)), frame.point(stack(found.shift)), frame.mirrored)

@@ -1,0 +1,110 @@
+"""Placement by pattern: around an axis, or a single pose."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Annotated, TypeAlias
+
+from flexstage.base.number import Number, Vector
+from flexstage.base.storage.digest import KEY, Description
+from flexstage.base.units.quantity import ANGLE, DIRECTION, LENGTH, NOT_NEGATIVE
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+
+
+def between(start: Vector, end: Vector) -> Vector:
+    """The way from one point to another.
+
+    >>> between((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
+    (2.0, 1.0, 0.0)
+    """
+    return (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+
+
+def middle(start: Vector, end: Vector) -> Vector:
+    """The point half way between two.
+
+    >>> middle((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
+    (2.0, 0.5, 0.0)
+    """
+    return (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]), 0.5 * (start[2] + end[2]))
+
+
+class Facing(Enum):
+    """Where the x axis of a copy points: along the circle (counter-clockwise), outward, inward, or along the pattern's axis."""
+
+    TANGENT = "tangent"
+    OUTWARD = "outward"
+    INWARD = "inward"
+    AXIS = "axis"
+
+
+class Normal(Enum):
+    """The normal of a plane through the stage's origin that copies are mirrored in."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+
+
+@dataclass(frozen=True, eq=False)
+class Polar(Description):
+    """Copies at equal steps on a circle around the stage's z axis.
+
+    `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
+    turned by `turn` about z. Each copy's z axis is the stage's z axis (for `Facing.AXIS`: x is up and z points inward, before `turn`).
+    `step` is the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in
+    the stage's plane of that normal.
+    """
+
+    radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
+    first: Annotated[Number, ANGLE]
+    facing: Facing
+    height: Annotated[Number, LENGTH] = 0.0
+    turn: Annotated[Number, ANGLE] = 0.0
+    step: Annotated[Number, ANGLE] | None = None
+    mirror: Normal | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Pose(Description):
+    """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular).
+
+    Instead of `at` and `along` two points of its x axis may be given: the origin `start`, and an `end` that x points to. With `mirror` the
+    copy is the image of that one in the stage's plane of that normal.
+    """
+
+    at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
+    along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
+    up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
+    mirror: Normal | None = None
+    start: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "from"})
+    end: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "to"})
+
+    @property
+    def origin(self) -> Vector:
+        """Where the copy's origin is."""
+        return self.at if self.start is None else self.start
+
+    @property
+    def direction(self) -> Vector:
+        """The direction of its x axis."""
+        return self.along if self.start is None or self.end is None else between(self.start, self.end)
+
+
+Pattern: TypeAlias = Polar | Pose
+
+
+def copy_names(key: str) -> tuple[str, ...]:
+    """The copies that a placement key names.
+
+    >>> copy_names("B1-B3"), copy_names("top")
+    (('B1', 'B2', 'B3'), ('top',))
+    """
+    match = re.fullmatch(r"(.*?)(\d+)-(?:\1)?(\d+)", key)
+    if match is None:
+        return (key,)
+    stem, first, last = match[1], int(match[2]), int(match[3])
+    return tuple(f"{stem}{number}" for number in range(first, last + 1))

@@ -1,0 +1,201 @@
+"""What gauges look at: components of relative twists, of links too, and weighted sums of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexstage.base.finding import Finding, suggest_nearest
+from flexstage.base.number import Array, Number
+from flexstage.mechanism.assembly.pattern import copy_names
+from flexstage.mechanism.mechanism import GROUND, GaugePlace, GaugeSum, LinkProbe, Mechanism, Probe, Stop
+from flexstage.parts.freedom import Freedom
+from flexstage.parts.gauge import Instrument, Positive, combine_gauges
+from flexstage.parts.part import Part, span
+from flexstage.spatial.frame import Frame
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """One thing that a gauge reads: a component of the twist of `body` at `frame` less that of `base` at `foot`, times `weight`.
+
+    Each in the axes of its frame. The two are one frame but for gauges on links, whose faces are apart.
+    """
+
+    body: str
+    base: str
+    frame: Frame
+    foot: Frame
+    component: int
+    weight: Number
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedGauge:
+    """A gauge of the expanded stage: its reading is the sum of its `sights`. Of a sum `members` are the gauges with their weights."""
+
+    name: str
+    gauge: Instrument
+    sights: tuple[Sight, ...]
+    members: Mapping[str, Number] = field(default_factory=dict[str, Number])
+
+    @property
+    def unit(self) -> str:
+        """Unit of its reading: m or rad."""
+        return self.gauge.quantity.si
+
+    @property
+    def single(self) -> Sight | None:
+        """What it looks at; absent of sums."""
+        return None if self.members else self.sights[0]
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedStop:
+    """A stop of the expanded stage: what it sees of its `sight` stays between `low` and `high` (...) [m], infinite where it is open."""
+
+    sight: Sight
+    low: Array
+    high: Array
+
+
+def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
+    """A stop at a frame: it sees the body's motion along x against the base's, as a gauge of a gap does."""
+    seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
+    return PlacedStop(seen, np.asarray(-np.inf if stop.gap_back is None else -stop.gap_back), np.asarray(stop.gap))
+
+
+def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
+    """What a gauge sees that stands at a frame."""
+    sign = -1.0 if probe.positive is Positive.CLOSES else 1.0
+    return Sight(probe.body, probe.base or GROUND, frame, frame, gauge.freedom.index, sign)
+
+
+def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Instrument) -> Sight:
+    """What a gauge on a link sees: the second body where it meets the link against the first where that does."""
+    half = 0.5 * np.asarray(span(part))[..., None] * frame.rotation[..., :, 0]
+    return Sight(
+        second,
+        first,
+        Frame(frame.rotation, frame.position + half),
+        Frame(frame.rotation, frame.position - half),
+        gauge.freedom.index,
+        1.0,
+    )
+
+
+def link_names(text: str) -> tuple[str, ...]:
+    """The links that a gauge's `link` names.
+
+    >>> link_names("B1-B3/pzt"), link_names("strut")
+    (('B1/pzt', 'B2/pzt', 'B3/pzt'), ('strut',))
+    """
+    owner, slash, name = text.partition("/")
+    return tuple(f"{copy}{slash}{name}" for copy in copy_names(owner))
+
+
+def place_sum(name: str, place: GaugeSum, gauges: Mapping[str, GaugePlace], single: Mapping[str, PlacedGauge]) -> PlacedGauge:
+    """A sum as its members see; sums among them are taken apart."""
+    members: dict[str, Number] = {}
+    for member, weight in _members(place, gauges):
+        members[member] = members.get(member, 0.0) + weight
+    sights = tuple(_weighted(item, weight) for member, weight in members.items() for item in single[member].sights)
+    return PlacedGauge(name, combine_gauges([(weight, single[member].gauge) for member, weight in members.items()]), sights, members)
+
+
+def _weighted(item: Sight, weight: Number) -> Sight:
+    return Sight(item.body, item.base, item.frame, item.foot, item.component, item.weight * weight)
+
+
+def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tuple[str, Number]]:
+    for name, weight in place.sum.items():
+        inner = gauges.get(name)
+        if isinstance(inner, GaugeSum):
+            yield from ((member, weight * part) for member, part in _members(inner, gauges))
+        else:
+            yield name, weight
+
+
+# Checks
+
+
+def gauge_findings(mechanism: Mechanism, links: Collection[str]) -> Iterator[Finding]:
+    """Findings about what gauges stand on and sum up, where their sensors are known; `links` are those of the expanded stage."""
+    for key, place in mechanism.gauges.items():
+        if isinstance(place, GaugeSum):
+            yield from _sum_findings(f"gauges.{key}", key, place, mechanism.gauges)
+        elif place.gauge in mechanism.sensors:
+            yield from _place_findings(f"gauges.{key}", key, place, mechanism.sensors[place.gauge], links)
+    yield from _mixture_findings(mechanism)
+
+
+def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instrument, links: Collection[str]) -> Iterator[Finding]:
+    if isinstance(place, LinkProbe):
+        yield from _link_findings(f"{where}.link", key, place, links)
+    elif gauge.inside:
+        what = f"{place.gauge} is a gauge on a link, and no link is named"
+        yield Finding(where, what, 'Write link = "B1/pzt", say, in the place of body and pose')
+    elif gauge.gap and place.positive is None:
+        yield Finding(where, "it has no positive", 'Write for example positive = "opens"')
+    elif not gauge.gap and place.positive is not None:
+        what = f"{place.gauge} reads along or about the gauge's own x axis, and no gap {place.positive.value}"
+        yield Finding(f"{where}.positive", what, "Leave it out; turn the x axis round for the other sign")
+
+
+def _link_findings(where: str, key: str, place: LinkProbe, links: Collection[str]) -> Iterator[Finding]:
+    named, gauges = link_names(place.link), copy_names(key)
+    if len(named) != len(gauges):
+        what = f'"{place.link}" names {_count(named, "link")}, and {key} {_count(gauges, "gauge")}'
+        yield Finding(where, what, "Name as many links as gauges")
+    for name in named:
+        if name not in links:
+            yield Finding(where, f'there is no link "{name}"', suggest_nearest(name, links))
+
+
+def _count(names: tuple[str, ...], noun: str) -> str:
+    return f"{len(names)} {noun}{'' if len(names) == 1 else 's'}"
+
+
+def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[Finding]:
+    if len(copy_names(key)) > 1:
+        yield Finding(where, f"a sum is one gauge, and {key} names several", "Give each sum a table of its own")
+    if not place.sum:
+        yield Finding(f"{where}.sum", "it has no members", "Write for example sum = { S1 = 0.5, S2 = -0.5 }")
+    known = [name for other in gauges for name in copy_names(other) if other != key]
+    for name in place.sum:
+        if name not in known:
+            yield Finding(f"{where}.sum.{name}", f'there is no other gauge "{name}"', suggest_nearest(name, known))
+    if key in place.sum or _turns_back(key, place, gauges):
+        yield Finding(f"{where}.sum", "it takes itself up", "Name other gauges")
+
+
+def _turns_back(key: str, place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> bool:
+    """Whether a sum takes itself up through others."""
+    seen: set[str] = set()
+    left = list(place.sum)
+    while left:
+        name = left.pop()
+        inner = gauges.get(name)
+        if isinstance(inner, GaugeSum) and name not in seen:
+            seen.add(name)
+            left += inner.sum
+    return key in seen
+
+
+def _mixture_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Sums of gauges that read different quantities."""
+    units = {
+        name: mechanism.sensors[place.gauge].quantity.si
+        for key, place in mechanism.gauges.items()
+        if not isinstance(place, GaugeSum) and place.gauge in mechanism.sensors
+        for name in copy_names(key)
+    }
+    for key, place in mechanism.gauges.items():
+        if isinstance(place, GaugeSum) and not _turns_back(key, place, mechanism.gauges):
+            counted = Counter(units[name] for name, _ in _members(place, mechanism.gauges) if name in units)
+            if len(counted) > 1:
+                what = f"its members read {' and '.join(sorted(counted))}"
+                yield Finding(f"gauges.{key}.sum", what, "Sum gauges of one quantity")

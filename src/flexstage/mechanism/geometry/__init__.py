@@ -1,0 +1,1 @@
+"""Outlines of a stage: pieces, nearness and contact."""

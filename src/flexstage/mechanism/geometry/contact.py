@@ -1,0 +1,515 @@
+"""Contact: do links meet their bodies, do the outlines of a body hang together, do all others keep apart, do gauges look at their targets?
+
+Told from the outlines that the description has, without CAD, on the first design of a batch. Round faces are followed within `SAGITTA`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import product
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, first_design
+from flexstage.base.units.quantity import LENGTH
+from flexstage.base.units.unit import show
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.geometry.near import near_pairs
+from flexstage.mechanism.geometry.outline import Outline, outlines
+from flexstage.mechanism.geometry.pieces import SAGITTA, Form, form_of, is_flat, pieces
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.parts.body import Imported, Pierced, Solid, within_polygon
+from flexstage.parts.section import Section
+from flexstage.parts.shape import Shaped
+from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
+from flexstage.spatial.frame import Frame
+
+TOUCHING = 1e-6
+"""Faces nearer than this touch [m]."""
+_SHARE = 1e-3
+"""What of an end face may lie beside its body."""
+_BRACKET = 0.05
+"""A gauge's target may stand on a bracket that is not drawn: this share of its body's longest side away."""
+_ENOUGH = 300
+"""Pairs of pieces looked at for the deepest overlap once there is one."""
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False)
+"""Angles of the corners of the polygon that a round end face is measured with."""
+_MARGIN = (5e-5, 0.05)
+"""Beside its end faces a link keeps clear of its bodies but for this length [m], or this share of its half length."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Hole:
+    """A hole where it stands: the `frame` of its centre."""
+
+    solid: Solid
+    frame: Frame
+
+    def contains(self, points: Array) -> Array:
+        """Which points (n, 3) lie in it, or no farther beside than round faces are followed."""
+        return self.solid.contains((points - self.frame.position) @ self.frame.rotation, SAGITTA)
+
+
+@dataclass(frozen=True, eq=False)
+class _Thing:
+    """A body's solid or a link's part where it stands; `bodies` it belongs to, or joins."""
+
+    name: str
+    form: Form
+    frame: Frame
+    bodies: tuple[str, ...]
+    is_link: bool
+    outline: Outline
+
+    @cached_property
+    def pieces(self) -> tuple[Convex, ...]:
+        return tuple(piece.within(self.frame) for piece in pieces(self.form))
+
+    @cached_property
+    def holes(self) -> tuple[_Hole, ...]:
+        """The holes that others of its body leave in it."""
+        own = self.form.holes if isinstance(self.form, Pierced) else ()
+        return tuple(_Hole(hole, _first(hole.frame).within(self.frame)) for hole in own)
+
+    def trim(self, margin: float) -> tuple[Convex, ...]:
+        return tuple(piece.within(self.frame) for piece in pieces(self.form, margin))
+
+    @property
+    def half(self) -> float:
+        """Half the length of a link."""
+        return 0.5 * float(np.ravel(np.real(self.outline.size[..., 0]))[0])
+
+    @property
+    def end(self) -> Section:
+        """The section at both ends of a link."""
+        assert isinstance(self.form, Shaped)  # noqa: S101  only links are asked
+        return self.form.end
+
+    @cached_property
+    def face(self) -> tuple[Array, Array]:
+        """Points (n, 3) on a link's end face at its origin, and the share of the face that each stands for; the first lie near its rim."""
+        end, found = self.end, []
+        for piece in end.pieces(_ANGLES):
+            low, high = piece.min(axis=0), piece.max(axis=0)
+            points, weights = _face(*(0.5 * (high - low)).tolist(), is_round=end.is_axisymmetric)
+            points = points + np.array([0.0, *(0.5 * (low + high))])
+            inside = within_polygon(points[:, 1:], piece, 0.0)
+            found.append((points[inside], weights[inside] * np.prod(high - low)))
+        points, weights = (np.concatenate(each) for each in zip(*found, strict=True))
+        return points, weights / np.sum(weights)
+
+    @property
+    def slack(self) -> float:
+        """How far its pieces may stay inside it [m]."""
+        return 0.0 if is_flat(self.form) else SAGITTA
+
+
+@lru_cache(maxsize=4)
+def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """What the outlines of a stage contradict.
+
+    Ends off the faces of their bodies, bodies in pieces, overlaps, gauges that look beside their targets; nothing where there are no
+    outlines. Imported shapes are named: they are not looked at.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> contact_findings(parallelogram())
+    ()
+    """
+    shown = with_drawn_parts(mechanism)
+    assembly = expand(shown)
+    things = _things(assembly)
+    solids = _by_body(things.values())
+    told = [
+        *_joint_findings(assembly, things, solids),
+        *_body_findings(solids),
+        *_clash_findings(things),
+        *_gauge_findings(assembly, solids),
+    ]
+    return (*_alike(told, assembly), *_unseen(things.values()))
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Two outlines that no joint connects, and how far apart they are [m]; negative where they overlap."""
+
+    first: str
+    second: str
+    distance: float
+
+
+def gaps(mechanism: Mechanism, within: float) -> tuple[Gap, ...]:
+    """Overlaps, and gaps of at most `within` [m], between outlines that do not belong together; on the first design of a batch.
+
+    The two of a pair belong to different bodies, or are links, or a link and a body that it does not join. Round faces are followed within
+    `SAGITTA`. Imported shapes are left out.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> gaps(parallelogram(), 1e-4)
+    ()
+    """
+    things = _things(expand(with_drawn_parts(mechanism)))
+    seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
+    drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
+    found: list[Gap] = []
+    for one, other in near_pairs([thing.outline for thing in seen], within):
+        first, second = seen[one], seen[other]
+        if not _belong(first, second) and not _meet_in_a_point(first, second, drawn_bodies):
+            deep = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])[0]
+            apart = -deep if deep > TOUCHING else _gap(first, second)
+            found += [Gap(first.name, second.name, apart)] if apart <= within else []
+    return tuple(found)
+
+
+def _things(assembly: Assembly) -> dict[str, _Thing]:
+    found = {outline.name: outline for outline in outlines(assembly)}
+    owned = [(body.name, body.solids) for body in assembly.bodies.values()] + [(GROUND, assembly.ground)]
+    things: dict[str, _Thing] = {}
+    for body, solids in owned:
+        for name, placed in solids.items():
+            things[name] = _Thing(name, placed.solid, _first(placed.frame), (body,), is_link=False, outline=found[name])
+    for name, link in assembly.links.items():
+        form = form_of(link.part)
+        if form is not None:
+            things[name] = _Thing(name, form, _first(link.frame), link.joins, is_link=True, outline=found[name])
+    return things
+
+
+def _first(frame: Frame) -> Frame:
+    return Frame(first_design(np.real(frame.rotation), 2), first_design(np.real(frame.position), 1))
+
+
+def _by_body(things: Iterable[_Thing]) -> dict[str, list[_Thing]]:
+    bodies: dict[str, list[_Thing]] = {}
+    for thing in things:
+        if not thing.is_link:
+            bodies.setdefault(thing.bodies[0], []).append(thing)
+    return bodies
+
+
+def _unseen(things: Iterable[_Thing]) -> Iterator[Finding]:
+    names = [thing.name for thing in things if isinstance(thing.form, Imported)]
+    if names:
+        what = "its shape is imported: whether it meets what joins it and keeps clear of the rest is not looked at"
+        yield Finding(", ".join(names), what, "Ask `flexstage cad`")
+
+
+def _alike(findings: Sequence[Finding], assembly: Assembly) -> Iterator[Finding]:
+    """Findings that copies of a unit share, told once."""
+    copies = {name.partition("/")[0] for name in (*assembly.links, *assembly.bodies, *assembly.ground) if "/" in name}
+    groups: dict[tuple[str, ...], list[Finding]] = {}
+    for finding in findings:
+        words = (finding.where, finding.what.partition(" around (")[0], finding.advice)
+        mentioned = {copy for copy in copies if any(f"{copy}/" in word for word in words)}
+        key = tuple(word.replace(f"{copy}/", "/") for word in words for copy in mentioned) if len(mentioned) == 1 else words
+        groups.setdefault(key, []).append(finding)
+    for first, *others in groups.values():
+        names = dict.fromkeys(_other_name(first, other) for other in others)
+        alike = f" (alike: {', '.join(names)})" if others else ""
+        yield Finding(first.where, f"{first.what}{alike}", first.advice)
+
+
+def _other_name(first: Finding, other: Finding) -> str:
+    """What tells a finding from the first one like it: its place, or the word of it that differs."""
+    if first.where != other.where:
+        return other.where
+    return next(there.rstrip(",:") for here, there in zip(first.what.split(), other.what.split(), strict=False) if here != there)
+
+
+# Joints
+
+
+@dataclass(frozen=True, eq=False)
+class _Meeting:
+    """An end face and the outlines of a body: share of the face that lies on one, how deep the link runs into them [m]."""
+
+    share: float
+    depth: float
+
+    @property
+    def sound(self) -> bool:
+        return self.share >= 1.0 - _SHARE and self.depth == 0.0
+
+
+def _joint_findings(assembly: Assembly, things: Mapping[str, _Thing], solids: Mapping[str, list[_Thing]]) -> Iterator[Finding]:
+    for name, link in assembly.links.items():
+        if name in things:
+            ends = [(side, body, _obstacles(things[name], body, solids)) for side, body in zip((-1.0, 1.0), link.joins, strict=True)]
+            yield from _link_findings(things[name], [end for end in ends if end[2]])
+
+
+def _obstacles(link: _Thing, body: str, solids: Mapping[str, list[_Thing]]) -> list[_Thing]:
+    """The outlines of a body that a link may meet: of the ground those drawn with it; none where one is imported."""
+    own = [each for each in solids.get(body, []) if body != GROUND or _group(each.name) == _group(link.name)]
+    return [] if any(isinstance(each.form, Imported) for each in own) else own
+
+
+def _group(name: str) -> str:
+    return name.rpartition("/")[0]
+
+
+def _link_findings(link: _Thing, ends: Sequence[tuple[float, str, list[_Thing]]]) -> Iterator[Finding]:
+    meetings = [_meeting(link, side, met) for side, _, met in ends]
+    if not all(meeting.sound for meeting in meetings) and all(_meeting(link, -side, met).sound for side, _, met in ends):
+        first, second = link.bodies
+        what = f"it is drawn from {second} to {first}, but joins {first} to {second}"
+        yield Finding(link.name, what, "Turn `along` round, or name the two bodies the other way round")
+        return
+    for (side, body, met), meeting in zip(ends, meetings, strict=True):
+        yield from _end_findings(link, side, body, met, meeting)
+
+
+def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
+    """The end face looked at from both sides, at points all over it."""
+    points, weights = link.face
+    axis = side * link.frame.rotation[:, 0]
+    face = link.frame.point(points + np.array([side * link.half, 0.0, 0.0]))
+    beyond, before = (np.any([_inside(each, face + step * axis) for each in met], axis=0) for step in (2.0 * TOUCHING, -2.0 * TOUCHING))
+    depth = 0.0
+    if float(weights @ before) > _SHARE:
+        depth = _depth(met, face[before], -axis, 2.0 * link.half)
+    return _Meeting(float(weights @ beyond), depth)
+
+
+@lru_cache(maxsize=64)
+def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
+    """Points on a rectangle or circle by its half sides, and the share that each stands for; many links have the same."""
+    if is_round:
+        radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
+        shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
+        angles = 2.0 * np.pi * (np.arange(16) + 0.5) / 16
+        points = np.array([(0.0, y * r * np.cos(a), y * r * np.sin(a)) for r, a in product(radii, angles)])
+        return points, _widen(np.repeat(shares / 16.0, 16))
+    stations = np.array([-0.9995, 0.9995, *(np.arange(10) - 4.5) / 5.0])
+    shares = np.array([0.0, 0.0, *[0.1] * 10])
+    points = np.array([(0.0, y * u, z * v) for u, v in product(stations, stations)])
+    return points, _widen(np.array([a * b for a, b in product(shares, shares)]))
+
+
+def _widen(weights: Array) -> Array:
+    """Points on the rim count for a little more than what may lie beside a body."""
+    rim = weights == 0.0
+    return np.where(rim, 1.5 * _SHARE, weights * (1.0 - 1.5 * _SHARE * np.count_nonzero(rim)))
+
+
+def _rim(link: _Thing, side: float) -> Array:
+    """Corners (n, 3) of a link's end face, in its frame."""
+    rim = link.end.outline(_ANGLES)
+    return np.column_stack([np.full(len(rim), side * link.half), rim])
+
+
+def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
+    """Which points (n, 3) lie in a solid, or within `slack` [m] of it."""
+    own = (points - thing.frame.position) @ thing.frame.rotation
+    if isinstance(thing.form, Solid):
+        return thing.form.contains(own, slack)
+    return np.all(np.abs(own) <= 0.5 * first_design(np.real(thing.outline.size), 1) + slack, axis=1)
+
+
+def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> float:
+    """How far one must go from points of an end face along the link to leave all outlines [m], by halving."""
+    low, high = 0.0, most
+    steps = np.linspace(0.0, most, 33)
+    deep = [step for step in steps if any(np.any(_inside(each, face + step * inward, 0.0)) for each in met)]
+    low = max(deep, default=0.0)
+    high = min(most, low + steps[1])
+    while high - low > 0.1 * TOUCHING:
+        middle = 0.5 * (low + high)
+        meets = any(np.any(_inside(each, face + middle * inward, 0.0)) for each in met)
+        low, high = (middle, high) if meets else (low, middle)
+    return low
+
+
+def _end_findings(link: _Thing, side: float, body: str, met: Sequence[_Thing], meeting: _Meeting) -> Iterator[Finding]:
+    if meeting.share == 0.0 and meeting.depth == 0.0:
+        corners = link.frame.point(_rim(link, side))
+        gap = min(distance(corners, piece.points) for each in met for piece in each.pieces)
+        if gap > TOUCHING:
+            advice = f"Move the link or the outline, or lengthen one, by {_text(gap)} so that they touch"
+            yield Finding(link.name, f"its end is {_text(gap)} away from {body}, which it joins", advice)
+            return
+    if meeting.depth > 0.0:
+        deep = _text(meeting.depth)
+        advice = f"Trim the outline of {body} by {deep}, or move it: end faces meet, solids do not overlap"
+        yield Finding(link.name, f"it runs {deep} into {body}", advice)
+    elif meeting.share < 1.0 - _SHARE:
+        what = f"only about {100.0 * meeting.share:.2g} % of its end face lies on {body}"
+        yield Finding(link.name, what, f"Widen the outline of {body} there, or move it: the whole end face must lie on it")
+    if meeting.sound:
+        yield from _side_findings(link, body, met)
+
+
+def _side_findings(link: _Thing, body: str, met: Sequence[_Thing]) -> Iterator[Finding]:
+    margin = min(_MARGIN[0], _MARGIN[1] * link.half)
+    size = first_design(np.real(link.outline.size), 1) - np.array([2.0 * margin, 0.0, 0.0])
+    short = replace(link.outline, size=size)
+    near = [met[other - 1] for one, other in near_pairs([short, *(each.outline for each in met)], 0.0) if one == 0]
+    deep = max((_overlap(link.trim(margin), each.pieces, each.holes)[0] for each in near), default=0.0)
+    if deep > TOUCHING:
+        what = f"it meets {body} beside its end face too, {_text(deep)} deep"
+        yield Finding(link.name, what, f"Trim the outline of {body} beside the link")
+
+
+# Bodies
+
+
+def _body_findings(solids: Mapping[str, list[_Thing]]) -> Iterator[Finding]:
+    for body, things in solids.items():
+        seen = [thing for thing in things if not isinstance(thing.form, Imported)]
+        if body != GROUND and len(seen) == len(things) > 1:
+            yield from _apart_findings(body, seen)
+
+
+def _apart_findings(body: str, things: Sequence[_Thing]) -> Iterator[Finding]:
+    groups = [{number} for number in range(len(things))]
+    for one, other in near_pairs([thing.outline for thing in things], TOUCHING):
+        here, there = (next(group for group in groups if number in group) for number in (one, other))
+        if here is not there and _is_joined(things[one], things[other]):
+            groups = [group for group in groups if group not in (here, there)] + [here | there]
+    groups.sort(key=lambda group: (-len(group), min(group)))
+    for group in groups[1:]:
+        rest = [number for number in range(len(things)) if number not in group]
+        gap, nearest = min((_gap(things[i], things[j]), j) for i in group for j in rest)
+        names = ", ".join(things[number].name for number in sorted(group))
+        if gap > TOUCHING:
+            what = f"{names} is {_text(gap)} away from {things[nearest].name}: the body is in pieces"
+            yield Finding(body, what, "Let the outlines of one body touch over a face")
+        else:
+            what = f"{names} meets {things[nearest].name} along an edge or at a point only"
+            yield Finding(body, what, "Let them touch over a face, or overlap")
+
+
+def _is_joined(first: _Thing, second: _Thing) -> bool:
+    """Whether two solids overlap, or touch over a face: along an edge two directions part them."""
+    slack = TOUCHING + first.slack + second.slack
+    for one, other in product(first.pieces, second.pieces):
+        gap, _, next_gap = separation(one, other)
+        if gap < -slack or (gap <= slack and next_gap < -slack):
+            return True
+    return False
+
+
+def _gap(first: _Thing, second: _Thing) -> float:
+    return min(distance(one.points, other.points) for one, other in product(first.pieces, second.pieces))
+
+
+# Clashes
+
+
+def _clash_findings(things: Mapping[str, _Thing]) -> Iterator[Finding]:
+    seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
+    drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
+    for one, other in near_pairs([thing.outline for thing in seen], TOUCHING):
+        first, second = seen[one], seen[other]
+        if _belong(first, second):
+            continue
+        deep, around = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])
+        if deep > TOUCHING:
+            place = ", ".join(f"{round(1e3 * float(value), 2) + 0.0:g}" for value in around)
+            yield Finding(first.name, f"it overlaps {second.name} by {_text(deep)} around ({place}) mm", _advice(first, second))
+        elif deep >= -TOUCHING and not _meet_in_a_point(first, second, drawn_bodies):
+            yield Finding(first.name, f"it touches {second.name}, which no joint connects it to", _advice(first, second))
+
+
+def _belong(first: _Thing, second: _Thing) -> bool:
+    """Whether two are of one body, or a link and a body it joins."""
+    return (first.is_link != second.is_link and bool(set(first.bodies) & set(second.bodies))) or (
+        not first.is_link and not second.is_link and first.bodies == second.bodies
+    )
+
+
+def _meet_in_a_point(first: _Thing, second: _Thing, drawn_bodies: set[str]) -> bool:
+    """Whether two links join a body that has no outlines and may lie between them."""
+    return first.is_link and second.is_link and bool((set(first.bodies) & set(second.bodies)) - drawn_bodies)
+
+
+def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[_Hole] = ()) -> tuple[float, Array]:
+    """How deep two sets of pieces overlap [m] (negative: how far they are apart at least), and the middle of that place.
+
+    What lies in one of the `holes` as a whole is no overlap.
+    """
+    deepest, around = -np.inf, np.zeros(3)
+    for count, (one, other) in enumerate(_close(first, second)):
+        if count > _ENOUGH and deepest > TOUCHING:
+            break
+        gap, _, _ = separation(one, other)
+        if -gap > deepest and not (holes and -gap > -TOUCHING and _is_hollow(one, other, holes)):
+            low, high = np.maximum(one.box[0], other.box[0]), np.minimum(one.box[1], other.box[1])
+            deepest, around = -gap, 0.5 * (low + high)
+    return deepest, around
+
+
+def _is_hollow(one: Convex, other: Convex, holes: Sequence[_Hole]) -> bool:
+    """Whether what two pieces have in common, grown by twice what touches, lies in a hole."""
+    sides, offsets = [], []
+    for piece in (one, other):
+        for normals in (piece.normals, -piece.normals):
+            sides.append(normals)
+            offsets.append(np.max(piece.points @ normals.T, axis=0) + 2.0 * TOUCHING)
+    corners = polytope_corners(np.concatenate(sides), np.concatenate(offsets))
+    return len(corners) > 0 and any(np.all(hole.contains(corners)) for hole in holes)
+
+
+def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[Convex, Convex]]:
+    """Pairs of pieces whose boxes along the axes meet."""
+    lows, highs = (np.array([piece.box[end] for piece in second]) for end in (0, 1))
+    for piece in first:
+        low, high = piece.box
+        near = np.all((low <= highs + TOUCHING) & (high >= lows - TOUCHING), axis=1)
+        yield from ((piece, other) for other, is_near in zip(second, near, strict=True) if is_near)
+
+
+def _advice(first: _Thing, second: _Thing) -> str:
+    if not first.is_link and not second.is_link and GROUND in {*first.bodies, *second.bodies}:
+        return "Trim one of the two outlines"
+    return "Trim one of the two outlines, or move one where that moves no axis"
+
+
+# Gauges
+
+
+def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> Iterator[Finding]:
+    for name, gauge in assembly.gauges.items():
+        seen = gauge.single
+        things = solids.get(seen.body, []) if seen is not None and gauge.gauge.gap else []
+        if seen is None or not things or any(isinstance(thing.form, Imported) for thing in things):
+            continue
+        frame = _first(seen.frame)
+        points = np.concatenate([piece.points for thing in things for piece in thing.pieces])
+        side = float(np.max(np.ptp(points, axis=0)))
+        if any(np.any(_inside(thing, frame.position[None])) for thing in things):
+            continue
+        if any(_is_within(_BRACKET * side, frame.position, piece) for thing in things for piece in thing.pieces):
+            continue
+        beside = min(distance(frame.position[None], piece.points) for thing in things for piece in thing.pieces)
+        if beside > _BRACKET * side:
+            yield _off_target(name, seen.body, beside, _miss(frame, things, beside + 2.0 * side))
+
+
+def _is_within(reach: float, point: Array, piece: Convex) -> bool:
+    """Whether the face of a piece that looks at a point holds the foot of the perpendicular, no farther away: a short yes."""
+    across, heights = piece.points @ piece.normals.T, piece.normals @ point
+    low, high = across.min(axis=0), across.max(axis=0)
+    beyond = heights - np.clip(heights, low, high)
+    face = int(np.argmax(np.abs(beyond)))
+    foot = piece.normals @ (point - beyond[face] * piece.normals[face])
+    return bool(abs(beyond[face]) <= reach and np.all((foot >= low - TOUCHING) & (foot <= high + TOUCHING)))
+
+
+def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
+    """How far the axis of a gauge passes by."""
+    axis = frame.position + reach * np.outer([-1.0, 1.0], frame.rotation[:, 0])
+    return min(distance(axis, piece.points) for thing in things for piece in thing.pieces)
+
+
+def _off_target(name: str, body: str, beside: float, miss: float) -> Finding:
+    passes = f"its axis passes {_text(miss)} beside it" if miss > TOUCHING else "on its axis"
+    what = f"it measures at a point {_text(beside)} away from the outline of {body}, {passes}"
+    return Finding(name, what, f"Move the gauge, draw its target among the solids of {body}, or name the body that it looks at")
+
+
+def _text(length: float) -> str:
+    return show(length, LENGTH, digits=3)

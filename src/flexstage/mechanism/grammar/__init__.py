@@ -1,0 +1,1 @@
+"""The grammar of descriptions: the values that each class holds."""

@@ -1,0 +1,278 @@
+"""Formulas of a description: what its numbers are worked out of, kept beside their values.
+
+A formula stands under the address of its number (`parts.leaf.length`, `numbers.half`). Values are always those of the formulas: who changes
+a named number changes all that depends on it (`address.set_value`), who changes a value with a formula takes the formula out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from graphlib import CycleError, TopologicalSorter
+from typing import Any
+
+from flexstage.base.finding import DesignError, Finding, refuse
+from flexstage.base.number import Number
+from flexstage.base.units.dimension import Dimension, dimension_of
+from flexstage.base.units.expression import (
+    FUNCTIONS,
+    Amount,
+    Expression,
+    ExpressionError,
+    Literal,
+    Name,
+    Scope,
+    UnknownAmountError,
+    evaluate,
+    is_plain,
+    is_unit,
+    parse_expression,
+)
+from flexstage.base.units.quantity import RATIO, Quantity
+from flexstage.base.units.unit import parse, quantity_of_dimension, quantity_of_unit, split_unit
+from flexstage.mechanism.mechanism import Mechanism, NamedNumber
+
+NUMBERS = "numbers"
+PREFIX = f"{NUMBERS}."
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,59}")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_SIGN = re.compile(r"[-+*/(]")
+_NOT_FINITE = ("nan", "inf", "infinity")
+
+
+def scope_of(mechanism: Mechanism) -> dict[str, Amount]:
+    """The named numbers of a description.
+
+    >>> scope_of(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")}))["arm"].noun()
+    'a length'
+    """
+    return {name: amount_of(number) for name, number in mechanism.numbers.items()}
+
+
+def amount_of(number: NamedNumber) -> Amount:
+    """The amount of a named number; raises `ValueError` for a unit there is none of."""
+    return Amount(number.value, Dimension(Fraction(1), dimension_of(number.unit).powers))
+
+
+def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Number:
+    """The value of a formula that is to be of a quantity [SI]; raises `DesignError` at `where`, `UnknownAmountError`.
+
+    >>> from flexstage.base.units.quantity import LENGTH
+    >>> formula_value("2 * 3 mm", LENGTH, {}, "parts.leaf.length")
+    0.006
+    """
+    try:
+        found = evaluate(parse_expression(text), scope)
+    except ExpressionError as error:
+        raise refuse(where, error.what, error.advice) from None
+    if found.dimension.powers not in {dimension_of(form).powers for form in (quantity.si, *quantity.also)}:
+        what = f'found "{text}", {found.noun()}, where {quantity.noun} is expected'
+        raise refuse(where, what, "Check the units of the numbers it is made of")
+    return found.value  # type: ignore[no-any-return]
+
+
+def is_formula(text: str, scope: Scope) -> bool:
+    """Whether a text that is no plain number with a fitting unit is meant as a formula.
+
+    >>> is_formula("2 * 3 mm", {}), is_formula("3 furlong", {}), is_formula("steel", {}), is_formula("arm +", {})
+    (True, False, False, True)
+    """
+    try:
+        expression = parse_expression(text)
+    except ExpressionError:
+        told = set(_WORD.findall(text)) & set(scope)
+        return bool(told or (not is_plain(text) and _SIGN.search(text.strip()[1:])))
+    if isinstance(expression, Name):
+        return bool(scope) and expression.name.lower() not in _NOT_FINITE
+    return not isinstance(expression, Literal)
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """Named numbers as a file has them: their `values`, what formulas may refer to, their own formulas, and what is wrong with them."""
+
+    values: Mapping[str, NamedNumber]
+    scope: Scope
+    formulas: Mapping[str, str]
+    findings: tuple[Finding, ...]
+
+
+def read_numbers(table: Mapping[str, Any]) -> Numbers:
+    """Read the named numbers of a file.
+
+    >>> found = read_numbers({"half": "arm / 2", "arm": "26 mm"})
+    >>> found.values["half"].value, found.formulas
+    (0.013, {'numbers.half': 'arm / 2'})
+    """
+    findings = [finding for name in table for finding in spelling_findings(name)]
+    values: dict[str, NamedNumber] = {}
+    texts: dict[str, str] = {}
+    for name, raw in table.items():
+        try:
+            number = _plain_number(raw, PREFIX + name)
+        except DesignError as error:
+            findings += error.findings
+            continue
+        if number is None:
+            texts[name] = raw
+        else:
+            values[name] = number
+    found, told = _evaluate(texts, values, table)
+    findings += told
+    return Numbers({name: found[name] for name in table if name in found}, _scope(table, found), _with_prefix(texts), tuple(findings))
+
+
+def _plain_number(raw: Any, where: str) -> NamedNumber | None:
+    """The number of a text without names or signs, or a bare one; nothing for a formula."""
+    example = 'Write for example "26 mm", 0.3, or a formula such as "arm / 2"'
+    if isinstance(raw, (int, float)) and not isinstance(raw, bool):
+        return NamedNumber(parse(str(raw), RATIO, where=where), "1")
+    if not isinstance(raw, str):
+        raise refuse(where, "this is no number", example)
+    number, unit = split_unit(raw)
+    try:
+        quantity = quantity_of_unit(unit)
+    except ValueError as error:
+        if number and is_plain(raw) and not is_formula(raw, {}):
+            raise refuse(where, f'found "{raw[:60]}": {error}', example) from None
+        return None
+    return NamedNumber(parse(raw, quantity, where=where), unit) if number else None
+
+
+def _evaluate(
+    texts: Mapping[str, str], values: Mapping[str, NamedNumber], table: Mapping[str, Any]
+) -> tuple[dict[str, NamedNumber], list[Finding]]:
+    """The named numbers with those of formulas, each after what it is worked out of, and what is wrong with them."""
+    expressions: dict[str, Expression] = {}
+    findings: list[Finding] = []
+    for name, text in texts.items():
+        try:
+            expressions[name] = parse_expression(text)
+        except ExpressionError as error:
+            findings.append(Finding(PREFIX + name, error.what, error.advice))
+    findings += cycle_findings(expressions)
+    found = dict(values)
+    for name in _order(expressions):
+        try:
+            amount = evaluate(expressions[name], _scope(table, found))
+            found[name] = NamedNumber(amount.value, shown_unit(amount))
+        except ExpressionError as error:
+            findings.append(Finding(PREFIX + name, error.what, error.advice))
+        except UnknownAmountError:
+            continue  # of what it is worked out of the fault is told
+    return found, findings
+
+
+def shown_unit(amount: Amount) -> str:
+    """The unit that a named number is shown in whose value a formula gives; raises `ExpressionError` if none can be written.
+
+    >>> shown_unit(amount_of(NamedNumber(0.026, "um")))
+    'mm'
+    """
+    unit = quantity_of_dimension(amount.dimension).shown
+    if not is_unit(unit) and unit != "1":
+        raise ExpressionError(f"its unit would be {unit}, which nobody can write", "Write the root where it is used")
+    return unit
+
+
+def _order(expressions: Mapping[str, Expression]) -> list[str]:
+    """Names, each after those it is worked out of; those in circles, or worked out of them, are left out."""
+    lost = {name for circle in cycles(expressions) for name in circle}
+    names = {name: expression.names for name, expression in expressions.items() if name not in lost}
+    return [name for name in TopologicalSorter(names).static_order() if name in names]
+
+
+def _scope(table: Mapping[str, Any], found: Mapping[str, NamedNumber]) -> Scope:
+    return {name: amount_of(found[name]) if name in found else None for name in table}
+
+
+def _with_prefix(texts: Mapping[str, str]) -> dict[str, str]:
+    return {PREFIX + name: text for name, text in texts.items()}
+
+
+def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
+    """The addresses of all values that a named number changes, directly or by way of others, each after those it is worked out of.
+
+    >>> formulas = {"numbers.half": "arm/2", "parts.leaf.length": "half", "parts.leaf.width": "1 mm * 2"}
+    >>> dependents(Mechanism("", formulas=formulas), "arm")
+    ('numbers.half', 'parts.leaf.length')
+    """
+    known = {address: parse_expression(text).names for address, text in mechanism.formulas.items()}
+    moved = {name}
+    ordered: list[str] = []
+    for number in TopologicalSorter(_references(known)).static_order():
+        if known.get(PREFIX + number, frozenset()) & moved:
+            moved.add(number)
+            ordered.append(PREFIX + number)
+    return (*ordered, *(address for address, names in known.items() if names & moved and not address.startswith(PREFIX)))
+
+
+def depth(mechanism: Mechanism, name: str) -> int:
+    """How many formulas a named number is worked out by, one after another.
+
+    >>> depth(Mechanism("", formulas={"numbers.half": "arm/2", "numbers.quarter": "half/2"}), "quarter")
+    2
+    """
+    text = mechanism.formulas.get(PREFIX + name)
+    return 0 if text is None else 1 + max((depth(mechanism, each) for each in parse_expression(text).names), default=0)
+
+
+def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
+    """Names that are worked out of themselves: each circle once, from a name to itself.
+
+    >>> list(cycles({"a": parse_expression("2*b"), "b": parse_expression("a")}))
+    [('a', 'b', 'a')]
+    """
+    left = {name: expression.names for name, expression in expressions.items()}
+    while True:
+        try:
+            TopologicalSorter(left).prepare()
+        except CycleError as error:
+            found = tuple(reversed(error.args[1]))
+            first = found.index(min(found))
+            yield (*found[first:-1], *found[: first + 1]) if first else found
+            left = {name: names for name, names in left.items() if name not in found}
+        else:
+            return
+
+
+def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
+    """Findings about names that are worked out of themselves."""
+    for circle in cycles(expressions):
+        yield Finding(PREFIX + circle[0], f"it is worked out of itself: {' -> '.join(circle)}", "Give one of them a number")
+
+
+def spelling_findings(name: str) -> Iterator[Finding]:
+    """Findings about the name of a number: letters, digits and _, and no unit or function.
+
+    >>> print(*spelling_findings("t"))
+    numbers.t: t is a unit, so that "2 t" would mean two things. Call the number otherwise, for example t_1.
+    """
+    if not _NAME.fullmatch(name):
+        yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
+    elif is_unit(name):
+        what = f'{name} is a unit, so that "2 {name}" would mean two things'
+        yield Finding(PREFIX + name, what, f"Call the number otherwise, for example {name}_1")
+    elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
+        yield Finding(PREFIX + name, f"{name} has a meaning of its own in formulas", f"Call the number otherwise, for example {name}_1")
+
+
+def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Named numbers that no formula refers to.
+
+    >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
+    numbers.arm: no formula refers to it, so that it changes nothing. Write it where it is meant, or take it out.
+    """
+    used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
+    for name in mechanism.numbers:
+        if name not in used:
+            yield Finding(
+                PREFIX + name, "no formula refers to it, so that it changes nothing", "Write it where it is meant, or take it out"
+            )
+
+
+def _references(known: Mapping[str, frozenset[str]]) -> dict[str, frozenset[str]]:
+    """The names that each named number is worked out of."""
+    return {address.removeprefix(PREFIX): names for address, names in known.items() if address.startswith(PREFIX)}

@@ -1,0 +1,656 @@
+"""The grammar of descriptions: what each class holds, read from its annotations.
+
+One tree of nodes per class. What a file, an address or a check does with a kind of node stands in the node's class (here those that hold
+others, in `node` those of one value), so that a field is written once, in its class. Names that tell alternatives apart in a file
+(`kind = "notch"`) stand here too.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import types
+import typing
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, Any
+
+from flexstage.base.finding import refuse, suggest_nearest
+from flexstage.base.number import Table
+from flexstage.base.register import Register
+from flexstage.base.storage.digest import KEY, digest
+from flexstage.base.units.quantity import COMPLIANCE_MATRIX, DIRECTION, STIFFNESS_MATRIX, Bound, Quantity
+from flexstage.mechanism.assembly.pattern import Polar, Pose
+from flexstage.mechanism.grammar.node import (
+    BAD,
+    COMPLIANCES,
+    STIFFNESSES,
+    ChoiceNode,
+    Definitions,
+    DirectionNode,
+    FlagNode,
+    MatrixNode,
+    NamedNode,
+    Node,
+    NumberNode,
+    Reader,
+    TextNode,
+    VectorNode,
+    Wanted,
+    WholeNode,
+    Writer,
+    every,
+    is_row,
+    join,
+    kind,
+    meaning,
+    whole_text,
+)
+from flexstage.mechanism.grammar.trade import advise_key, advise_kind
+from flexstage.mechanism.mechanism import (
+    BESIDE,
+    GaugeSum,
+    Joins,
+    LinkProbe,
+    Mechanism,
+    ModalDamping,
+    NamedNumber,
+    Probe,
+    RayleighDamping,
+    StructuralDamping,
+)
+from flexstage.parts import GAUGES, PARTS
+from flexstage.parts.body import SOLIDS, Block, Cylinder, Imported, Solid
+from flexstage.parts.gauge import Gauge, Instrument
+from flexstage.parts.profile import Circular, Elliptic, Filleted, Straight
+from flexstage.parts.shape import Elastic
+
+TAGS = "tags"
+LIKE = "like"
+RESERVED = (TAGS, LIKE)
+"""Keys that may stand in any table of a file and are no field."""
+
+BY_FIELD = ""
+"""In the place of the key of alternatives that are told apart by which of their fields stands in the table; the name is the field's."""
+
+_ALTERNATIVES: dict[type, tuple[str | None, str]] = {
+    Probe: (BY_FIELD, "body"),
+    LinkProbe: (BY_FIELD, "link"),
+    GaugeSum: (BY_FIELD, "sum"),
+    Circular: ("shape", "circular"),
+    Elliptic: ("shape", "elliptic"),
+    Filleted: ("shape", "filleted"),
+    Straight: ("shape", "straight"),
+    Block: ("shape", "block"),
+    Cylinder: ("shape", "cylinder"),
+    Imported: ("shape", "step"),
+    ModalDamping: ("law", "modal"),
+    StructuralDamping: ("law", "structural"),
+    RayleighDamping: ("law", "rayleigh"),
+    Polar: (None, "polar"),
+    Pose: (None, "pose"),
+}
+TOLD_BY = "TOLD_BY"
+"""Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
+
+_ALWAYS = ("gravity",)
+_TAGS_SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "description": "Provenance by field: stated, derived or assumed, then a source and a place in it.",
+    "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
+}
+_KIND = "kind"
+_ELSEWHERE = "A kind that another package offers is known where that package is installed"
+_FILE_KEYS = {(Mechanism, "changes"): "change", (Mechanism, "requirements"): "require"}
+
+
+@dataclass(frozen=True)
+class ListNode(Node):
+    """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
+
+    item: Node
+    length: int | None
+
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f"[{', '.join([self.item.example] * (self.length or 1))}]"
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The items."""
+        if not is_row(self, raw, self.length, where, reader):
+            return BAD
+        return every([reader.read(self.item, part, where) for part in raw])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """The items."""
+        return [writer.write(self.item, item, where) for item in value]
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An array."""
+        length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
+        return {"type": "array", "items": self.item.schema(definitions), **length}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A tuple of fitting items."""
+        fits = isinstance(value, tuple) and self.length in (None, len(value)) and all(self.item.wanted(item) is None for item in value)
+        return None if fits else ("a row of values", "Give a tuple")
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by number, from 1 on."""
+        return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
+
+
+@dataclass(frozen=True)
+class NumbersNode(ListNode):
+    """Numbers or points in a row, any number of them, each of which has an address: its place, counted from nought."""
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The numbers."""
+        if not is_row(self, raw, self.length, where, reader):
+            return BAD
+        return every([reader.read(self.item, part, f"{where}.{place}") for place, part in enumerate(raw)])
+
+    def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
+        """The numbers."""
+        return [writer.write(self.item, item, f"{where}.{place}") for place, item in enumerate(value)]
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its items by place."""
+        return ((str(place), self.item, item) for place, item in enumerate(value))
+
+    def child(self, value: Any, name: str) -> Node:
+        """A number."""
+        return self.item
+
+    def key(self, value: Any, name: str) -> int:
+        """The place of a number."""
+        return int(name)
+
+
+@dataclass(frozen=True)
+class TableNode(Node):
+    """Values by name."""
+
+    item: Node
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """A table of the values."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        items = {name: reader.read(self.item, part, join(where, name)) for name, part in _strip_tags(raw, where, reader).items()}
+        return BAD if BAD in items.values() else Table(items)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table."""
+        if TAGS in value:
+            raise refuse(f"{where}.{TAGS}", f'no entry may be named "{TAGS}"', "Rename it")
+        return {whole_text(name, where): writer.write(self.item, item, f"{where}.{name}") for name, item in value.items()}
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An object of any keys."""
+        return {"type": "object", "properties": _tags_of(definitions), "additionalProperties": self.item.schema(definitions)}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A mapping by names."""
+        return _wanted_mapping(value)
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its values."""
+        return ((name, self.item, item) for name, item in value.items())
+
+    def child(self, value: Any, name: str) -> Node:
+        """A value."""
+        return self.item
+
+
+@dataclass(frozen=True)
+class OpenNode(Node):
+    """Values by name, which stay as they stand: the name decides what each is. `said` is their meaning in a schema."""
+
+    said: str
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The table as it stands."""
+        return Table(raw) if _is_table(raw, where, reader) else BAD
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An object of any values."""
+        return {"type": "object", "description": self.said}
+
+    def wanted(self, value: Any) -> Wanted:
+        """A mapping by names."""
+        return _wanted_mapping(value)
+
+
+class JoinsNode(Node):
+    """The two bodies that a link joins, or a table of bodies by port."""
+
+    shown = '["ground", "platform"]'
+
+    def _node(self, value: Any) -> Node:
+        return TableNode(TextNode()) if isinstance(value, Mapping) else ListNode(TextNode(), 2)
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """Two texts, or a table of texts."""
+        return self._node(raw).read(raw, where, reader)
+
+    def write(self, value: Any, where: str, writer: Writer) -> Any:
+        """A list, or a table."""
+        return self._node(value).write(value, where, writer)
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """An array of two, or an object."""
+        by_port = {"type": "object", "additionalProperties": {"type": "string"}}
+        return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
+
+    def wanted(self, value: Any) -> Wanted:
+        """Two names, or a mapping of names."""
+        return None if self._node(value).wanted(value) is None else ("a row of two names", "Give a tuple of two names, or a dict by port")
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """The names."""
+        return self._node(value).members(value)
+
+    def child(self, value: Any, name: str) -> Node:
+        """A name."""
+        return self._node(value).child(value, name)
+
+
+CHANGES = OpenNode("Departures by address: unit/link.field of all copies, copy/link.field of one.")
+
+
+@dataclass(frozen=True)
+class RecordNode(Node):
+    """A description class with its fields.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> [address for address, _, _ in RecordNode(Rod).numbers(Rod("steel", length=0.03, diameter=0.001), "parts.wire")]
+    ['parts.wire.length', 'parts.wire.diameter']
+    """
+
+    record: type
+
+    @property
+    def fields(self) -> Mapping[str, Slot]:
+        """The fields by name."""
+        return _slots(self.record)
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record, of what stands in the table, what its `like` brings along, and defaults."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        known_like = self._like_is_known(raw, where, reader)
+        raw = _strip_tags(self._expand(raw, reader) if known_like else _without_like(raw), where, reader)
+        values: dict[str, Any] = {}
+        used: set[str] = set()
+        for name, slot in self.fields.items():
+            key, inner = slot.alternative(raw, where, reader)
+            if key in raw:
+                used.add(key)
+                values[name] = reader.read(inner, raw[key], join(where, key))
+            elif slot.required and not known_like:
+                values[name] = BAD
+            elif slot.required:
+                advice = f"Write for example {slot.keys[0]} = {slot.node.example}"
+                values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
+            else:
+                values[name] = slot.default
+        known = [key for slot in self.fields.values() for key in slot.keys]
+        for key in [key for key in raw if key not in used]:
+            reader.refuse(join(where, key), "this key is not known here", advise_key(key, set(known) - used, known))
+        return BAD if BAD in values.values() else self.record(**values)
+
+    def _like_is_known(self, raw: dict[str, Any], where: str, reader: Reader) -> bool:
+        """Whether what `like` names is in the catalogue, if anything is; what an unknown entry would have brought is not missed besides."""
+        section = reader.catalogue.section(self.record)
+        if section is None or LIKE not in raw:
+            return True
+        name = raw[LIKE]
+        known = isinstance(name, str) and name in section.entries
+        if not known:
+            reader.refuse(join(where, LIKE), f"the catalogue has no {kind(name)}", suggest_nearest(kind(name), section.entries))
+        return known
+
+    def _expand(self, raw: dict[str, Any], reader: Reader) -> dict[str, Any]:
+        """The table with what its `like` brings along, overridden by what stands in it."""
+        section = reader.catalogue.section(self.record)
+        if section is None or LIKE not in raw:
+            return raw
+        name = raw[LIKE]
+        shipped = section.entries[name]
+        tags = {key: tag for key, tag in shipped.get(TAGS, {}).items() if key not in raw}
+        reader.sources.update(reader.catalogue.sources_of(tags.values()))
+        own = raw.get(TAGS, {})
+        merged = {"source": f"{name} of the catalogue"} | dict(shipped) | raw | {TAGS: tags | own if isinstance(own, dict) else own}
+        return _without_like(merged)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table of the fields that are not at their defaults, or have a formula."""
+        return dict(self._entries(value, where, writer))
+
+    def _entries(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
+        for name, slot in self.fields.items():
+            value = getattr(record, name)
+            default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
+            stated = not default or writer.has_formula(join(where, name))
+            if stated and name != TAGS and slot.node is not CHANGES:
+                yield self.key(record, name), writer.write(slot.node, value, join(where, name))
+
+    def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """A reference to the definition of a class, told apart by `key = name`."""
+        title = self.record.__name__
+        if title not in definitions.known:
+            definitions.known[title] = {}
+            definitions.known[title] = self.definition(definitions, key, name)
+        return {"$ref": f"#/$defs/{title}"}
+
+    def definition(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
+        """The schema of the class in full."""
+        properties: dict[str, Any] = {key: {"const": name}} if key else {}
+        required = [key] if key else []
+        wrapped: list[dict[str, Any]] = []
+        for slot in self.fields.values():
+            properties |= {key: node.schema(definitions) for key, node in slot.alternatives}
+            if slot.wrapped is not None:
+                wrapped += [{"required": [option]} for option in slot.keys]
+            elif slot.required:
+                required.append(slot.key)
+        section = definitions.catalogue.section(self.record)
+        demand: dict[str, Any] = {"required": required}
+        if section is not None:
+            properties |= {LIKE: {"enum": list(section.entries), "description": "the entry of the catalogue to start from"}}
+            demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
+        demand |= {"oneOf": wrapped} if wrapped else {}
+        shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
+        return shape | demand | {"additionalProperties": False}
+
+    def wanted(self, value: Any) -> Wanted:
+        """An instance of the class itself."""
+        return _wanted_one_of(value, [self.record])
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Its fields, but for optional ones that are absent."""
+        for name, slot in self.fields.items():
+            item = getattr(value, name)
+            if item is not None or not slot.optional:
+                yield name, slot.node, item
+
+    def child(self, value: Any, name: str) -> Node:
+        """A field."""
+        return self.fields[name].node
+
+    def key(self, value: Any, name: str) -> str:
+        """The field's key, or the name of its alternative where that stands in the file."""
+        slot = self.fields[name]
+        return slot.key if slot.wrapped is None else slot.wrapped.name_of(getattr(value, name))
+
+    def field_called(self, value: Any, key: str) -> str:
+        """The field that a file calls by the name of what it holds: `polar` for `pattern`."""
+        found = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
+        return next(found, key)
+
+
+@dataclass(frozen=True)
+class UnionNode(Node):
+    """One of several classes: told apart by the value of the key `told_by`, or, where that is None, by which name stands in the table."""
+
+    told_by: str | None
+    options: tuple[tuple[str, RecordNode], ...]
+    usual: str | None = None
+    """The alternative of a table that names none."""
+
+    def name_of(self, value: Any) -> str:
+        """The name of a value's alternative."""
+        return next(name for name, option in self.options if option.record is type(value))
+
+    def option(self, value: Any) -> RecordNode:
+        """The node of a value's alternative."""
+        return dict(self.options)[self.name_of(value)]
+
+    @property
+    def example(self) -> str:
+        """A text as it may stand in a file."""
+        return f'{{ {self.told_by} = "{self.options[0][0]}", ... }}' if self.told_by else self.shown
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record of the alternative that is named."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        options = dict(self.options)
+        key = self.told_by or ""
+        entry = reader.catalogue.section(*(option.record for option in options.values()))
+        name = raw.get(key, self.usual or (entry.kind if entry and LIKE in raw else None))
+        if name is None:
+            return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
+        if not isinstance(name, str) or name not in options:
+            advice = advise_kind(kind(name), options)
+            return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
+        return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
+
+    def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
+        """A table that says its alternative."""
+        inner = self.option(value).write(value, where, writer)
+        name = self.name_of(value)
+        return {self.told_by: name} | inner if self.told_by and name != self.usual else inner
+
+    def schema(self, definitions: Definitions) -> dict[str, Any]:
+        """One of the definitions."""
+        schemas = [option.schema(definitions, None if name == self.usual else self.told_by, name) for name, option in self.options]
+        return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
+
+    def wanted(self, value: Any) -> Wanted:
+        """An instance of one of the classes."""
+        return _wanted_one_of(value, [option.record for _, option in self.options])
+
+    def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
+        """Those of the alternative."""
+        return self.option(value).members(value)
+
+    def child(self, value: Any, name: str) -> Node:
+        """That of the alternative."""
+        return self.option(value).child(value, name)
+
+    def key(self, value: Any, name: str) -> str:
+        """That of the alternative."""
+        return self.option(value).key(value, name)
+
+    def field_called(self, value: Any, key: str) -> str:
+        """That of the alternative."""
+        return self.option(value).field_called(value, key)
+
+
+@dataclass(frozen=True)
+class FieldUnionNode(UnionNode):
+    """One of several classes, told apart by which of their fields stands in the table; the first where none of them does."""
+
+    def read(self, raw: Any, where: str, reader: Reader) -> Any:
+        """The record of the alternative whose field stands there."""
+        if not _is_table(raw, where, reader):
+            return BAD
+        return next((option for name, option in self.options if name in raw), self.options[0][1]).read(raw, where, reader)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A field: its key in a file, what it holds, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
+
+    key: str
+    node: Node
+    optional: bool
+    default: Any
+
+    @property
+    def required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is dataclasses.MISSING
+
+    @property
+    def wrapped(self) -> UnionNode | None:
+        """Alternatives whose names stand in the place of the key."""
+        return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
+
+    @property
+    def alternatives(self) -> tuple[tuple[str, Node], ...]:
+        """Keys that it may stand under, and what stands there."""
+        return ((self.key, self.node),) if self.wrapped is None else self.wrapped.options
+
+    @property
+    def keys(self) -> list[str]:
+        """Keys that it may stand under."""
+        return [key for key, _ in self.alternatives]
+
+    def alternative(self, raw: dict[str, Any], where: str, reader: Reader) -> tuple[str, Node]:
+        """The key under which the field stands in a table, and its node there."""
+        present = [(key, node) for key, node in self.alternatives if key in raw]
+        if len(present) > 1:
+            reader.refuse(where, f"it has both {' and '.join(key for key, _ in present)}", "Leave one of them")
+        return present[0] if present else (self.key, self.node)
+
+
+def _is_table(raw: Any, where: str, reader: Reader) -> bool:
+    fits = isinstance(raw, dict)
+    if not fits:
+        reader.refuse(where, f"found {kind(raw)} where a table is expected", "Write a table: [name] or { key = value }")
+    return fits
+
+
+def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
+    """The table without its tags, which are noted by address."""
+    if not reader.tagged:
+        return raw
+    tags = raw.get(TAGS, {})
+    if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
+        reader.refuse(join(where, TAGS), "these are no tags", 'Write for example tags = { thickness = "stated paper 2.2" }')
+    else:
+        reader.tags.update({join(where, key): tag for key, tag in tags.items()})
+    return {key: value for key, value in raw.items() if key != TAGS}
+
+
+def _tags_of(definitions: Definitions) -> dict[str, Any]:
+    return {TAGS: _TAGS_SCHEMA} if definitions.tagged else {}
+
+
+def _without_like(raw: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in raw.items() if key != LIKE}
+
+
+def _wanted_mapping(value: Any) -> Wanted:
+    fits = isinstance(value, Mapping) and all(isinstance(name, str) for name in value)
+    return None if fits else ("a mapping by name", "Give a dict with names as keys")
+
+
+def _wanted_one_of(value: Any, records: list[type]) -> Wanted:
+    names = " or ".join(record.__name__ for record in records)
+    return None if type(value) in records else (names, f"Give a {names}")
+
+
+def node_of(record: type) -> RecordNode:
+    """The node of a description class.
+
+    >>> from flexstage.parts.rod import Rod
+    >>> node_of(Rod).fields["length"].node.quantity.name
+    'length'
+    """
+    return RecordNode(record)
+
+
+@functools.cache
+def _slots(record: type) -> Mapping[str, Slot]:
+    hints = typing.get_type_hints(record, include_extras=True)
+    return {
+        field.name: _slot(record, field, hints[field.name])
+        for field in dataclasses.fields(record)
+        if not BESIDE.items() <= field.metadata.items()
+    }
+
+
+def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
+    inner, optional = _without_none(hint)
+    key = field.metadata.get(KEY) or _FILE_KEYS.get((record, field.name), field.name)
+    node = CHANGES if (record, field.name) == (Mechanism, "changes") else _node(inner)
+    default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    if default is dataclasses.MISSING and isinstance(node, (TableNode, OpenNode)):
+        default = Table({})
+    if default is dataclasses.MISSING and optional:
+        default = None
+    return Slot(key, node, optional, default)
+
+
+def _without_none(hint: Any) -> tuple[Any, bool]:
+    if typing.get_origin(hint) not in (types.UnionType, typing.Union):
+        return hint, False
+    rest = [item for item in typing.get_args(hint) if item is not type(None)]
+    if len(rest) == len(typing.get_args(hint)):
+        return hint, False
+    return functools.reduce(lambda left, right: left | right, rest), True
+
+
+def _node(hint: Any) -> Node:
+    origin = typing.get_origin(hint)
+    if origin is Annotated:
+        return _annotated_node(hint)
+    if hint is NamedNumber:
+        return NamedNode()
+    if hint == Joins:
+        return JoinsNode()
+    if hint is Instrument:
+        kinds = {name: RecordNode(option) for name, option in GAUGES.all.items()}
+        return UnionNode(_KIND, tuple(kinds.items()), Gauge.kind)
+    if hint in (Elastic, Solid) or origin in (types.UnionType, typing.Union):
+        several = {Elastic: PARTS.all.values(), Solid: SOLIDS}
+        options = [each for option in typing.get_args(hint) or (hint,) for each in several.get(option, [option])]
+        told = [_discriminator(option) for option in options]
+        named = tuple((name, RecordNode(option)) for (_, name), option in zip(told, options, strict=True))
+        return FieldUnionNode(None, named) if told[0][0] == BY_FIELD else UnionNode(told[0][0], named)
+    if origin is tuple:
+        return _tuple(typing.get_args(hint))
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return TableNode(_node(typing.get_args(hint)[1]))
+    return _named_node(hint)
+
+
+def _discriminator(option: type) -> tuple[str | None, str]:
+    """The key that tells an alternative apart, and its name there; parts say their kind."""
+    told = _ALTERNATIVES.get(option) or getattr(option, TOLD_BY, None)
+    return told or (_KIND, option.kind)  # type: ignore[attr-defined]
+
+
+def _named_node(hint: type) -> TextNode | WholeNode | FlagNode | ChoiceNode | RecordNode:
+    if hint is bool:
+        return FlagNode()
+    if hint in (str, int):
+        return TextNode() if hint is str else WholeNode()
+    return ChoiceNode(hint) if issubclass(hint, Enum) else RecordNode(hint)
+
+
+def _annotated_node(hint: Any) -> Node:
+    inner, *extras = typing.get_args(hint)
+    node = next((extra for extra in extras if isinstance(extra, Node)), None)
+    if node is not None:
+        return node
+    register = next((extra for extra in extras if isinstance(extra, Register)), None)
+    if register is not None:
+        return UnionNode(_KIND, tuple((name, RecordNode(option)) for name, option in register.all.items()), next(iter(register.own)))
+    if inner is int:
+        return WholeNode(extras[0])
+    quantity = next(extra for extra in extras if isinstance(extra, Quantity))
+    bound = next((extra for extra in extras if isinstance(extra, Bound)), None)
+    if quantity is DIRECTION:
+        return DirectionNode()
+    if quantity in (COMPLIANCE_MATRIX, STIFFNESS_MATRIX):
+        return MatrixNode(COMPLIANCES if quantity is COMPLIANCE_MATRIX else STIFFNESSES)
+    if typing.get_origin(inner) is tuple:
+        return VectorNode((NumberNode(quantity, bound),) * len(typing.get_args(inner)))
+    return NumberNode(quantity, bound)
+
+
+def _tuple(items: tuple[Any, ...]) -> VectorNode | ListNode:
+    nodes = [_node(item) for item in items if item is not Ellipsis]
+    numbers = tuple(node for node in nodes if isinstance(node, NumberNode))
+    if Ellipsis in items and isinstance(nodes[0], NumberNode | VectorNode):
+        return NumbersNode(nodes[0], None)
+    if numbers:
+        return VectorNode(numbers)
+    return ListNode(nodes[0], None if Ellipsis in items else len(items))

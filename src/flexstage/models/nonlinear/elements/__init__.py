@@ -1,0 +1,1 @@
+"""Elements at large displacements: flexures, links and held coordinates."""

@@ -1,0 +1,54 @@
+"""A seat between the ground and some links of a stage: a body that can be held elsewhere than drawn, so that what does not fit bends."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.elements.hinge import Hinges
+from flexstage.models.nonlinear.stage import Flexures, Nonlinear
+
+SEAT = "seat"
+_Links = TypeVar("_Links", Flexures, Hinges)
+
+
+def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
+    """The model with a body `seat`, its reference at `place` (3,), to which `links` join instead of to the ground.
+
+    It is free: hold its six coordinates. Raises `DesignError` where none of the links joins the ground.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> seat(nonlinear(parallelogram()), ["left"], np.zeros(3)).bodies[-1]
+    'seat'
+    """
+    ground = len(model.bodies)
+    flexures, hinges = tuple(_moved(group, ground, links, place) for group in model.flexures), _moved(model.hinges, ground, links, place)
+    if not any(np.any(np.concatenate([group.first, group.second]) == ground) for group in (*flexures, hinges)):
+        raise refuse(", ".join(links) or SEAT, "it does not join the ground", "Name a copy or a link that does")
+    return replace(
+        model,
+        bodies=(*model.bodies, SEAT),
+        reference=np.concatenate([model.reference[:-1], place[None], model.reference[-1:]]),
+        flexures=flexures,
+        hinges=hinges,
+        places=replace(model.places, body=np.where(model.places.body == ground, ground + 1, model.places.body)),
+        growth=np.append(model.growth, model.growth[-1]),
+    )
+
+
+def _moved(group: _Links, ground: int, links: Collection[str], place: Array) -> _Links:
+    """Links whose ends on the ground are on the seat, if they are named, or on the ground behind it."""
+    mine = np.array([name in links for name in group.names], dtype=bool)
+    found: dict[str, Array] = {}
+    for end, arm in (("first", "arm_first"), ("second", "arm_second")):
+        bodies = getattr(group, end)
+        seated = mine & (bodies == ground)
+        found[end] = np.where((bodies == ground) & ~seated, ground + 1, bodies)
+        found[arm] = getattr(group, arm) - seated[:, None] * place
+    return replace(group, **found)

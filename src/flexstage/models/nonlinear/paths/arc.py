@@ -1,0 +1,288 @@
+"""Equilibria along a load by arc length: past limits, and on from a point with a motion into another branch (docs/nonlinear.md, 27)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.elements.hold import Hold
+from flexstage.models.nonlinear.graph import System, advance, assemble, exerted_by
+from flexstage.models.nonlinear.newton import TOLD, Found, lack, search
+from flexstage.models.nonlinear.paths.inertia import count_descents, lowest_stiffness, stiffness_scale, weakest_flexure
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status, put
+from flexstage.models.nonlinear.walk import walked
+from flexstage.spatial.rotation import logarithm
+
+_PROBE, _ONSET = 0.03, 1e-3
+"""Relative change of the factor, and that from zero, for its effect where more than inputs changes: weight along flexures is not linear."""
+_STRIDE, _LEAST = 0.1, 1e-3
+"""Of the motion so far: the length of a step towards a whole load, and the least, quarter by quarter, that is tried."""
+_FAR, _ROUGH = 1.0, 1e-3
+"""Times the length of a step that a correction may have, and the last one at most."""
+_FINEST, _SHORTEST = 1e-7, 1e-16
+"""Length of a step, over the longest before it, below which a path is not followed; and that of any."""
+_SOFTER = 0.3
+"""Slope over the steepest so far below which a path may turn."""
+_TURN, _ASIDE, _MISFIT, _UNEVEN = 0.35, 0.2, 0.25, 0.1
+"""Bounds of a step: rotation of the tangent [rad], distance of the point from the tangent over the length, error of the predicted slope
+and stiffness over their size or predicted change, and error of the factor's change by the trapezoidal rule."""
+_NOISE, _NONE = 1e-7, 1e-3
+"""Relative error of a factor, and slopes and stiffnesses over the largest, that count as rounding."""
+_AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
+"""Share of these bounds that the next step aims at, bounds of its length over the last one's, and over that to where stiffness vanishes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Loads and held coordinates of one case that change with a factor: those at zero, and what they gain per unit of the factor.
+
+    `effort` decides when each equilibrium on it is found; stability counts in the rows `kept` of its system.
+    """
+
+    model: Nonlinear
+    loads: Loads
+    hold: Hold
+    gain: Loads
+    moved: Array
+    effort: Effort
+    kept: list[int]
+
+    def at(self, factor: float) -> tuple[Loads, Hold]:
+        """Loads and held coordinates at a factor."""
+        loads = Loads(*(getattr(self.loads, name) + factor * getattr(self.gain, name) for name in ("inputs", "gravity", "constant")))
+        return loads, replace(self.hold, value=self.hold.value + factor * self.moved)
+
+    @property
+    def plain(self) -> bool:
+        """Whether inputs alone change, in which residuals are linear."""
+        return not (np.any(self.gain.gravity) or np.any(self.gain.constant) or np.any(self.moved))
+
+    @property
+    def scale(self) -> Array:
+        """What makes motions of bodies (n,) comparable, reactions left out."""
+        model = self.model
+        others = np.zeros(len(model.hinges.locked) + len(self.hold.body))
+        return np.concatenate([np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), others])
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Stiffnesses at the start of a path, with which those along it are compared: of the stage, in units `scale` (n,), and of a flexure."""
+
+    scale: Array
+    stage: float
+    flexure: float
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """An equilibrium on a course: its `found` pose, `factor`, and the scaled `step` (n,) that led to it.
+
+    `along` (n,) is the tangent of the path, of unit length in the scaled motion of bodies, `slope` the factor's change along it. `motions`
+    counts the independent motions that lower the potential there. `stiffness` is the product of the stage's lowest and that of the weakest
+    flexure between fixed ends, over those of the `reference`: where the second vanishes the first has a pole, and the product has none. It
+    is negative where motions are, and NaN without a reference. `steepest` is the largest slope so far.
+    """
+
+    found: Found
+    factor: float
+    step: Array
+    system: System
+    along: Array
+    slope: float
+    motions: int
+    stiffness: float
+    steepest: float
+    reference: Reference | None
+
+
+def follow_course(course: Course, begin: Point, length: float, points: int) -> Iterator[Point]:
+    """Equilibria beyond `begin`, at most `length` apart in the motion of bodies, over the stage's size and in radians.
+
+    Ends after `points` times the length, or where none is found at a small part of it.
+    """
+    gone = 0.0
+    for point in march(course, begin, length, longest=length):
+        yield point
+        gone += float(np.linalg.norm(point.step))
+        if gone > (points - 0.5) * length:
+            return
+
+
+def march(course: Course, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
+    """Equilibria beyond `begin`, by steps whose length follows the path's turning and the errors of its prediction.
+
+    A step is repeated, shorter, where the tangent turns, the equilibrium is aside of it, or slope and lowest stiffness are not those which
+    the last two points predict. So no step passes two events. Ends where a step would be too small a part of the longest before it.
+    """
+    before, last, most = None, begin, 0.0
+    while length > max(_FINEST * most, _SHORTEST):
+        after = step_along(course, last, length)
+        error = np.inf if after is None else _misfit(course.scale, before, last, after)
+        if after is not None and error <= 1.0:
+            yield after
+            most, before, last = max(most, length), last, after
+        length = min(length * (0.25 if after is None else _change(error)), longest, _ahead(before, last))
+
+
+def _change(error: float) -> float:
+    return float(np.clip(_AIM / max(error, 1e-9), _SHORTER, _LONGER))
+
+
+def _misfit(scale: Array, before: Point | None, last: Point, after: Point) -> float:
+    """The largest error of a step over its bound; 1 is the most that is accepted."""
+    length = float(np.linalg.norm(after.step))
+    turned, aside = (float(np.linalg.norm(each - scale * last.along)) for each in (scale * after.along, after.step / length))
+    rise, steep = after.factor - last.factor, length * max(abs(last.slope), abs(after.slope))
+    uneven = abs(rise - 0.5 * length * (last.slope + after.slope)) / (_UNEVEN * steep + _NOISE * abs(after.factor))
+    errors = [turned / _TURN, aside / _ASIDE, uneven]
+    errors.append(_unforeseen(before, last, after, "slope", last.steepest if last.steepest < np.inf else 0.0))
+    if not last.motions:
+        errors.append(_unforeseen(before, last, after, "stiffness", 1.0))
+    return float(np.nanmax(errors))
+
+
+def _unforeseen(before: Point | None, last: Point, after: Point, name: str, size: float) -> float:
+    """The error of what the last two points predict of the next over the bound; NaN where a branch begins."""
+    there, here = getattr(last, name), getattr(after, name)
+    expected = there
+    if before is not None:
+        expected += (there - getattr(before, name)) * np.linalg.norm(after.step) / np.linalg.norm(last.step)
+    elif not there:
+        return np.nan
+    return abs(here - expected) / (_MISFIT * max(abs(expected - there), abs(there), _NONE * size))
+
+
+def _ahead(before: Point | None, last: Point) -> float:
+    """The length of a step to a little beyond where the lowest stiffness would vanish; infinite where it does not fall."""
+    if before is None or last.motions or not last.stiffness < before.stiffness:
+        return np.inf
+    return _AHEAD * float(np.linalg.norm(last.step)) * last.stiffness / (before.stiffness - last.stiffness)
+
+
+def step_along(course: Course, last: Point, length: float) -> Point | None:
+    """The equilibrium a length further; `None` where it is not found. After E. Riks (Int. J. Solids Structures 15, 1979).
+
+    Corrections keep the factor where the path is steep; else they are normal to the step so far, and the factor follows.
+    """
+    scale, effort, model = course.scale, course.effort, course.model
+    whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
+    scaled = length * scale * last.along
+    factor, step, turns = last.factor, whole, abs(last.slope) < _SOFTER * last.steepest
+    enough, own = min(effort.step, _ROUGH * length), abs(length * last.slope)
+    with np.errstate(all="ignore"):
+        for iteration in range(effort.iterations):
+            if iteration:
+                system = assemble(model, pose, *course.at(factor))
+                step, change = _solved(system, -system.residual[0]), 0.0
+                if turns:
+                    along = _solved(system, load_rate(course, pose, factor, system))
+                    change = -float(scaled @ (scale * step) / (scaled @ (scale * along)))
+                    step = step + change * along
+            size = float(np.linalg.norm(scale * step))
+            if not np.isfinite(size + change) or (iteration and size > _FAR * length):
+                return None
+            pose, inside = advance(model, pose, system.bent, step[None], np.ones(1))
+            if not isinstance(system.matrix, np.ndarray):
+                pose = walked(model, pose, course.at(factor + change)[0])
+            factor, scaled = factor + change, scaled + (scale * step if iteration else 0.0)
+            if iteration and max(size, float(inside[0])) < enough and abs(change) <= effort.step * (own + abs(factor)):
+                gap = float(lack(model, system)[0])
+                if gap < effort.gap:
+                    return point_at(course, _one(pose, iteration + 1, gap), factor, step=scaled, start=last)
+    return None
+
+
+def load_rate(course: Course, pose: Pose, factor: float, system: System) -> Array:
+    """What loads and held coordinates gain (n,) with the factor at a pose."""
+    if course.plain:
+        return np.append(exerted_by(course.model, pose, course.gain)[0], np.zeros(len(course.hold.body)))
+    probe = _PROBE * abs(factor) or _ONSET
+    return (system.residual[0] - assemble(course.model, pose, *course.at(factor + probe)).residual[0]) / probe
+
+
+def _solved(system: System, right: Array) -> Array:
+    return system.solved(right[None])[0]
+
+
+def _one(pose: Pose, iterations: int, gap: float) -> Found:
+    return Found(pose, np.array([Status.CONVERGED]), np.array([iterations]), np.array([gap]), np.ones(1))
+
+
+def first_point(course: Course, pose: Pose, factor: float) -> Point:
+    """A known equilibrium of one case to begin from, to where the factor grows."""
+    return point_at(course, _one(pose, 0, 0.0), factor, step=0.0 * course.scale)
+
+
+def critical_point(course: Course, pose: Pose, factor: float, into: Array | None) -> Point:
+    """A limit point to begin from, or a bifurcation and the motion `into` (n,) of its branch.
+
+    Just before a limit the path goes on to where the factor grows; just past it, where a motion is unstable, to where it falls.
+    """
+    point = first_point(course, pose, factor)
+    along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(course.scale * into)
+    return replace(point, along=along, slope=0.0, steepest=np.inf, stiffness=np.nan, reference=None)
+
+
+def point_at(course: Course, found: Found, factor: float, *, step: Array, start: Point | None = None) -> Point:
+    """The tangent of the path, the count of motions and the lowest stiffness at an equilibrium, seen from the point before it."""
+    model = course.model
+    with np.errstate(all="ignore"):
+        system = assemble(model, found.pose, *course.at(factor))
+        rate = _solved(system, load_rate(course, found.pose, factor, system))
+        slope = np.copysign(1.0 / np.linalg.norm(course.scale * rate), 1.0 if start is None else step @ (course.scale * rate))
+        along = slope * rate
+    motions, stiffness = int(count_descents(model, system, course.kept)[0]), np.nan
+    reference = None if start is None else start.reference
+    if start is None or reference is not None:
+        scale = stiffness_scale(model, system) if reference is None else reference.scale
+        own, whole = weakest_flexure(model, system)[0], lowest_stiffness(model, system, course.kept, scale)[0]
+        reference = reference or Reference(scale, whole, own)
+        stiffness = (-1.0 if motions else 1.0) * abs(whole / reference.stage * own / reference.flexure)
+    steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
+    return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
+
+
+def rescue(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
+    """What was found, with those cases that were found in part followed by arc length to their whole load, or to where it turns."""
+    partly = np.flatnonzero((found.status != Status.CONVERGED) & (found.reached > 0.0))
+    for case in partly if effort.arcs else ():
+        one = np.array([case])
+        after = _rescued(model, loads.of(one), hold.of(one), found.of(one), effort)
+        told = (put(getattr(found, name), one, getattr(after, name)) for name in TOLD)
+        found = Found(found.pose.put(one, after.pose), *told)
+    return found
+
+
+def _rescued(model: Nonlinear, loads: Loads, hold: Hold, found: Found, effort: Effort) -> Found:
+    """One case: its load is followed from the share that was reached."""
+    rows = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
+    course = Course(model, loads.times(np.zeros(1)), replace(hold, value=0.0 * hold.value), loads, hold.value, effort, rows)
+    last = first_point(course, found.pose, float(found.reached[0]))
+    stride = _STRIDE
+    for _ in range(effort.arcs):
+        after = step_along(course, last, stride * _moved(course, last.found.pose))
+        if after is None:
+            stride *= 0.25
+            if stride < _LEAST:
+                break
+        elif after.factor >= 1.0:
+            whole = search(model, after.found.pose, loads, hold, effort)
+            return whole if whole.status[0] == Status.CONVERGED else found
+        elif after.factor < last.factor and not effort.past:
+            break
+        else:
+            last, stride = after, _STRIDE * (2.5 if effort.past else 1.0)
+            found = replace(found, pose=after.found.pose, reached=np.maximum(found.reached, after.factor))
+    return found
+
+
+def _moved(course: Course, pose: Pose) -> float:
+    """How far bodies are from where they are drawn, over the stage's size and in radians."""
+    model = course.model
+    apart = (pose.position[0, :-1] - model.reference[:-1]) / model.size
+    return float(np.linalg.norm(np.concatenate([apart, logarithm(pose.turn[0, :-1])]))) or 1.0

@@ -1,0 +1,187 @@
+"""Stability: how many ways a state would leave its equilibrium, and the load at which the first opens (docs/nonlinear.md, 22 to 24)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.elements.strain import law_reserve
+from flexstage.models.nonlinear.equilibrium import LESS, State, equilibrium, require_equilibrium, state, why_without
+from flexstage.models.nonlinear.graph import assemble
+from flexstage.models.nonlinear.newton import Task
+from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, load_rate
+from flexstage.models.nonlinear.paths.follow import NEAR, VANISHED, Followed, continued, follow_to_event
+from flexstage.models.nonlinear.paths.inertia import count_descents, kept_rows, lowest_stiffness, weakest_flexure
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import STATED, WEIGHT, Effort, Loads, Status
+
+_MOST = 1e12
+"""The largest factor."""
+_SEEN = 1e-6
+"""Work of the load on the motion, over their sizes, below which it does none."""
+
+
+class NothingGivesWayError(DesignError):
+    """The stage bears as much of a load as was looked at."""
+
+
+class Kind(Enum):
+    """The type of a critical point: a `LIMIT` point, which the load cannot pass, or a `BIFURCATION` into another path."""
+
+    LIMIT = "limit"
+    BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, eq=False)
+class Critical:
+    """The `factor` on a load at which the stage gives way, the `shape` (n, 6) of its `bodies` doing so, and of which `kind` it is.
+
+    `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one. `bend` is the
+    factor at which the path has bent off before, an imperfect bifurcation; None where it has not.
+    """
+
+    factor: float
+    bodies: tuple[str, ...]
+    shape: Array
+    kind: Kind
+    link: str
+    state: State
+    bend: float | None = None
+
+
+def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
+    """How many independent motions (...) lower the potential of each case: zero if it is stable. -1 where a case has no state.
+
+    The negative eigenvalues of the stage's stiffness, and those of each flexure's own system beyond its six multipliers. Of what the state
+    holds, the coordinates `locked` stay held (absent: all); the others are released under the force that held them.
+    """
+    whole = assemble(state.model, state.pose, state.loads, state.hold)
+    count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
+    return np.where(state.converged.ravel(), count, -1).reshape(state.shape)
+
+
+@check_arguments
+def critical(  # noqa: PLR0913 (what stays, one by one)
+    model: Nonlinear,
+    load: Mapping[str, float],
+    *,
+    rest: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    locked: Sequence[str] | None = None,
+    weight: float = 1.0,
+    stated: float = 1.0,
+    known: State | None = None,
+    most: float = _MOST,
+    tolerance: float = 1e-9,
+) -> Critical:
+    """The factor on `load` at which equilibrium stops being stable, all else (`rest`, weight, stated forces) staying as it is.
+
+    Loads are named as in `equilibrium`, and so are coordinates in `hold`, whose values then grow; `weight` names the stage's own, which
+    then counts as a load alone if `weight` is zero, and `stated forces` those of the description with its preloads, likewise. Other
+    coordinates in `hold` stay at their values; those that are not `locked` too (absent: all are) count as free under the force that holds
+    them there.
+
+    The path of equilibria is followed from no load, or from the whole load where the state under it is `known`, by arc length with steps
+    that resolve its turning and the change of its lowest stiffness. The first limit point or bifurcation is where that stiffness is zero,
+    to `tolerance`. Raises `DesignError` for a load that is zero and for a stage that is unstable where that begins,
+    `NothingGivesWayError` where no stiffness vanishes up to `most` times the load, and `LowerBoundError` where the path is followed to
+    less than that: to the end of the range of a law (`strain.law_reserve`), or to where no further equilibrium is found.
+    """
+    if not any(load.values()):
+        raise refuse("load", "the load whose critical factor is asked for is zero", "Name a force or moment and its size")
+    require(Finding(name, "no value holds it", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
+    low = 0.0 if known is None else 1.0
+    start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
+    course = course_of(start, load, low, NEAR, locked=locked)
+    begin = first_point(course, start.pose, low)
+    require_equilibrium(start)
+    if begin.motions:
+        under = "with" if low else "without"
+        raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Look at its weight and its stated forces")
+    followed = follow_to_event(course, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(course, point, ())))
+    if followed.event is None or followed.factor > most:
+        what = f"nothing gives way up to {most:g} times the load"
+        raise NothingGivesWayError([Finding("load", what, "Name a larger load, or another one")])
+    return _critical(course, followed, start.held)
+
+
+def _at(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    factor: float,
+    *,
+    rest: Mapping[str, float],
+    hold: Mapping[str, float],
+    shares: tuple[float, float],
+    start: State | None,
+) -> State:
+    """The equilibrium under a factor on a load, all else staying."""
+    held = {name: value + factor * load.get(name, 0.0) for name, value in hold.items()}
+    scaled = {name: factor * value for name, value in load.items() if name not in hold}
+    weight, stated = (share + scaled.pop(name, 0.0) for share, name in zip(shares, (WEIGHT, STATED), strict=True))
+    together = {name: scaled.get(name, 0.0) + rest.get(name, 0.0) for name in {**rest, **scaled}}
+    return equilibrium(model, together, hold=held, weight=weight, stated=stated, start=start)
+
+
+def require_continuation(start: State, end: State) -> None:
+    """Refuse a stable state that is not the continuation of another one as loads and held coordinates go from those to its own.
+
+    Raises `DesignError` at the load of the first limit point or bifurcation on the way, where the path ends, and where it leads to another
+    equilibrium. A state that is not stable, or whose path begins at one that is not, is let through.
+    """
+    one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
+    found = continued(one, other)
+    if found.status[0] != Status.CONVERGED:
+        raise refuse("stage", why_without(int(found.status[0]), float(found.reached[0])), LESS)
+    if found.pose is not end.pose:
+        raise refuse("stage", "the equilibrium found under its loads is not the continuation of the unloaded stage", LESS)
+
+
+def course_of(start: State, load: Mapping[str, float], factor: float, effort: Effort, *, locked: Sequence[str] | None = None) -> Course:
+    """The course of a load that changes by a factor, from a state that has it so many times."""
+    model = start.model
+    rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
+    gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))
+    begun = Loads(*(getattr(start.loads, name) - factor * getattr(gain, name) for name in ("inputs", "gravity", "constant")))
+    moved = np.array([[load.get(name, 0.0) for name in start.held]])
+    kept = kept_rows(model, start.held, start.held if locked is None else locked)
+    return Course(model, begun, replace(start.hold, value=start.hold.value - factor * moved), gain, moved, effort, kept)
+
+
+def state_at(course: Course, point: Point, held: tuple[str, ...]) -> State:
+    """The state at a point of a course."""
+    return state(course.model, *course.at(point.factor), point.found, ((), held))
+
+
+def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Critical:
+    """The critical point where a stiffness vanishes: a limit point where the load works on the motion of that stiffness."""
+    model, event = course.model, followed.event
+    assert event is not None  # noqa: S101
+    assert event.reference is not None  # noqa: S101
+    scale = event.reference.scale
+    value, motion = lowest_stiffness(model, event.system, course.kept, scale)
+    own, link = weakest_flexure(model, event.system)
+    inside = abs(own) < VANISHED * event.reference.flexure
+    force = _force_rate(course, event)
+    work = abs(force @ motion) / (np.linalg.norm(force / scale) * np.linalg.norm(motion * scale))
+    apart = inside and abs(value) > VANISHED * event.reference.stage
+    kind = Kind.LIMIT if work > _SEEN and not apart else Kind.BIFURCATION
+    last = state_at(course, followed.last, held)
+    return Critical(followed.factor, model.bodies, motion.reshape(-1, 6), kind, link if inside else "", last, followed.bend)
+
+
+def _force_rate(course: Course, event: Point) -> Array:
+    """What the bodies gain of force (n,) with the factor, held coordinates that move with it being followed by their bodies alone."""
+    count, matrix = course.model.freedoms, event.system.matrix[0]
+    rate = load_rate(course, event.found.pose, event.factor, event.system)
+    if not np.any(course.moved):
+        return rate[:count]
+    held = matrix[count:, :count]
+    moved = np.linalg.lstsq(held if isinstance(held, np.ndarray) else held.toarray(), rate[count:])[0]
+    return rate[:count] - matrix[:count, :count] @ moved

@@ -1,0 +1,87 @@
+"""Inertia of the tangent stiffness: negative eigenvalues of the stage and of every flexure's own system (docs/nonlinear.md, 22)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.elements.condense import system
+from flexstage.models.nonlinear.elements.element import Tangent
+from flexstage.models.nonlinear.graph import System
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.summed import nearest_descent, negative_pivots
+
+
+def kept_rows(model: Nonlinear, held: Sequence[str], locked: Sequence[str]) -> list[int]:
+    """The rows of a system without those of held coordinates that are not locked."""
+    first = model.freedoms + len(model.hinges.locked)
+    return [*range(first), *(first + place for place, name in enumerate(held) if name in locked)]
+
+
+def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
+    """Independent motions (b,) that lower the potential: negative eigenvalues beyond those of constraints and multipliers."""
+    count = _descents(whole, kept, model.freedoms) - (len(kept) - model.freedoms)
+    for bent in whole.bent:
+        count = count + np.sum(_negative(indefinite(bent.tangent)) - 6, axis=0)
+    return count
+
+
+def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Array) -> tuple[float, Array]:
+    """The lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among motions that constraints allow, and its motion (n,)."""
+    freedoms = model.freedoms
+    if not isinstance(whole.matrix, np.ndarray):
+        value, motion = nearest_descent(whole.matrix[0][kept][:, kept], scale)
+        return value, motion / scale
+    matrix = whole.matrix[0][np.ix_(kept, kept)]
+    stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
+    free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
+    values, vectors = np.linalg.eigh(free.T @ stiff @ free)
+    return float(values[0]), free @ vectors[:, 0] / scale
+
+
+def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
+    """The least of the flexures' own eigenvalues, scaled by rows, beyond their six multipliers, and the flexure; 1 without flexures."""
+    weakest = [
+        (float(least), name)
+        for group, each in zip(model.flexures, whole.bent, strict=True)
+        for name, least in zip(group.names, np.linalg.eigvalsh(_even(indefinite(each.tangent)[:, 0]))[:, 6], strict=True)
+    ]
+    return min(weakest, default=(1.0, ""))
+
+
+def stiffness_scale(model: Nonlinear, whole: System) -> Array:
+    """The square roots (n,) of the stiffness's diagonal: motions in units that no unit of measurement changes."""
+    diagonal = whole.matrix[0].diagonal()[: model.freedoms]
+    size = np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies))
+    typical = np.sqrt(np.max(diagonal / size**2, initial=0.0) or 1.0)
+    return np.maximum(np.sqrt(np.maximum(diagonal, 0.0)), 1e-6 * typical * size)
+
+
+def indefinite(found: Tangent) -> Array:
+    """The symmetric form of a flexure's system: the rows of its end with reversed signs."""
+    matrix = system(found)
+    matrix[..., matrix.shape[-1] - 6 :, :] *= -1.0
+    return 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+
+
+def _descents(whole: System, kept: list[int], freedoms: int) -> Array:
+    """Negative eigenvalues (b,) of the rows and columns kept; of sparse matrices by their pivots."""
+    if isinstance(whole.matrix, np.ndarray):
+        return _negative(whole.matrix[:, kept][:, :, kept])
+    known = [bool(np.isfinite(each.data).all()) for each in whole.matrix]
+    return np.array([negative_pivots(each[kept][:, kept], freedoms) if good else 0 for each, good in zip(whole.matrix, known, strict=True)])
+
+
+def _negative(matrix: Array) -> Array:
+    """How many eigenvalues of symmetric matrices (..., n, n) are negative."""
+    return np.sum(np.linalg.eigvalsh(_even(matrix)) < 0.0, axis=-1)
+
+
+def _even(matrix: Array) -> Array:
+    """Symmetric matrices (..., n, n) scaled by the largest of their rows."""
+    even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
+    size = np.sqrt(np.maximum(np.max(np.abs(even), axis=-1), 1e-300))
+    return np.nan_to_num(even / size[..., None] / size[..., None, :])

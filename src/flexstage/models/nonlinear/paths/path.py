@@ -1,0 +1,323 @@
+"""Paths of equilibria: over a drive from end to end, or along a load past the points where it turns (docs/nonlinear.md, 26 and 27)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+import scipy
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.models.nonlinear.equilibrium import State, equilibria, equilibrium, require_equilibrium, state
+from flexstage.models.nonlinear.newton import USUAL, Task, join
+from flexstage.models.nonlinear.paths.arc import Course, Point, critical_point, first_point, follow_course
+from flexstage.models.nonlinear.paths.critical import Critical, Kind, course_of, critical, unstable_motions
+from flexstage.models.nonlinear.paths.follow import continued
+from flexstage.models.nonlinear.stage import Nonlinear
+from flexstage.models.nonlinear.state import Effort, Loads, Status
+from flexstage.spatial.frame import COMPONENTS
+
+
+@dataclass(frozen=True, eq=False)
+class Event:
+    """What happens between two points of a path: a `LIMIT`, where the load turns, or a `BIFURCATION`, where stability is lost or won."""
+
+    kind: Kind
+    before: int
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], the `state` of each.
+
+    `motions` (k,) is how many ways each would leave its equilibrium (0: stable; -1: not found), what a held drive holds counted as held.
+    `locked` coordinates stay where they are along it. `turns` (k - 1,) are the extreme loads between its points, NaN where the load is
+    monotonic; None where values were given.
+    """
+
+    drive: str
+    values: Array
+    state: State
+    motions: Array
+    locked: tuple[str, ...] = ()
+    turns: Array | None = None
+
+    def some(self, points: Array) -> Path:
+        """Some of its points, by their numbers."""
+        return Path(self.drive, self.values[points], self.state.some(points), self.motions[points], self.locked)
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """Limit points and bifurcations, in order, a bifurcation at the mean of the values on either side."""
+        return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
+
+    def _between(self, place: int) -> Iterator[Event]:
+        """What happens between a point and the next: at a limit point one motion is gained or lost, more at a bifurcation."""
+        top, motions = np.nan if self.turns is None else float(self.turns[place]), self.motions[place : place + 2]
+        changes = 0 if min(motions) < 0 else abs(int(motions[1] - motions[0]))
+        if np.isfinite(top):
+            yield Event(Kind.LIMIT, place, top)
+        if changes > np.isfinite(top):
+            yield Event(Kind.BIFURCATION, place, float(np.mean(self.values[place : place + 2])))
+
+
+@check_arguments
+def path(
+    model: Nonlinear,
+    drive: str,
+    values: Array,
+    *,
+    loads: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria as `drive` takes `values` (k,): a coordinate that is held (`platform.y`), or an actuator's stroke, force or a wrench.
+
+    Coordinates in `hold` stay locked at their values. All values are tried at once from the drawn position; what fails starts again from
+    its nearest neighbour that was found. Stable states that do not continue the stage at rest along the drive have no numbers, as in
+    `equilibrium`. Raises `DesignError` for a drive that the stage does not have.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = path(nonlinear(parallelogram()), "platform.x", np.linspace(-1e-4, 1e-4, 3), weight=0.0)
+    >>> found.state.reactions[:, 0].round(0).tolist(), found.motions.tolist()
+    ([-1939.0, 0.0, 1939.0], [0, 0, 0])
+    """
+    values = np.asarray(values, dtype=float)
+    rest = equilibrium(model, loads, hold=hold, weight=weight)
+    found = equilibria_along(model, drive, values, loads=loads, hold=hold, weight=weight, effort=effort)
+    begin, start = begin_along(rest, drive, loads or {}, hold or {}, weight)
+    found = continue_along(begin, found, values - start)
+    return Path(drive, values, found, unstable_motions(found), tuple(hold or {}))
+
+
+def begin_along(rest: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
+    """The stage at rest with its drive held there, and the value of the drive."""
+    driven = drive in {channel.name for channel in rest.model.inputs}
+    if not bool(rest.converged):
+        return rest, 0.0
+    owner, _, component = drive.rpartition(".")
+    start = 0.0 if driven else float(rest.twist(owner)[COMPONENTS.index(component)])
+    held = {**({} if driven else {drive: start}), **hold}
+    return equilibrium(rest.model, loads, hold=held, weight=weight, start=rest), start
+
+
+def continue_along(begin: State, found: State, away: Array) -> State:
+    """States (k,) of a drive that is `away` (k,) from where it begins; stable ones that do not continue one another have no numbers."""
+    if not bool(begin.converged):
+        return replace(found, status=np.where(found.converged, begin.status, found.status), reached=0.0 * found.reached)
+    pose, status, reached = found.pose, np.array(found.status), np.array(found.reached)
+    stable = unstable_motions(found) == 0
+    last = dict.fromkeys((False, True), (Task(begin.model, begin.pose, begin.loads, begin.hold), 0.0))
+    for case in np.argsort(np.abs(away)):
+        if not stable[case]:
+            continue
+        one, there, side = np.array([case]), float(away[case]), bool(away[case] > 0.0)
+        before, here = last[side]
+        end = Task(found.model, pose.of(one), found.loads.of(one), found.hold.of(one))
+        after = continued(before, end)
+        status[case], pose = after.status[0], pose.put(one, after.pose)
+        if status[case] == Status.CONVERGED:
+            last[side] = (replace(end, start=after.pose), there)
+        else:
+            reached[case] = (here + float(after.reached[0]) * (there - here)) / there
+    return replace(found, pose=pose, status=status, reached=reached)
+
+
+def equilibria_along(
+    model: Nonlinear,
+    drive: str,
+    values: Array,
+    *,
+    loads: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> State:
+    """The states (k,) of a `path`, of which nothing is asked but where they are.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> equilibria_along(nonlinear(parallelogram()), "platform.x", np.array([0.0, 1e-4]), weight=0.0).reactions[:, 0].round(0).tolist()
+    [0.0, 1939.0]
+    """
+    values, rest, locked, effort = np.asarray(values, dtype=float), dict(loads or {}), dict(hold or {}), replace(effort, arcs=0)
+    known = {channel.name for channel in model.inputs}
+
+    def at(some: Array, start: State | None) -> State:
+        if drive in known:
+            driven = {**rest, drive: some + rest.get(drive, 0.0)}
+            return equilibrium(model, driven, hold=locked, weight=weight, start=start, effort=effort)
+        return equilibrium(model, rest, hold={drive: some, **locked}, weight=weight, start=start, effort=effort)
+
+    found = at(values, None)
+    while 0 < (count := int(np.sum(found.converged))) < values.size:
+        found = at(values, _neighbour(found))
+        if int(np.sum(found.converged)) <= count:
+            break
+    return found
+
+
+def equilibria_of_designs(
+    models: Sequence[Nonlinear],
+    drive: str,
+    values: Sequence[Array],
+    *,
+    loads: Mapping[str, float],
+    hold: Sequence[Mapping[str, float]],
+    weight: float = 1.0,
+) -> list[State]:
+    """The states of `equilibria_along` of several designs of one structure, in one run; values (k,) and locked coordinates of each.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> (found,) = equilibria_of_designs([nonlinear(parallelogram())], "platform.x", [np.array([1e-4])], loads={}, hold=[{}], weight=0.0)
+    >>> found.reactions[:, 0].round(0).tolist()
+    [1939.0]
+    """
+    alone = [
+        partial(equilibria_along, model, drive, some, loads=loads, hold=locked, weight=weight)
+        for model, some, locked in zip(models, values, hold, strict=True)
+    ]
+    if drive in {channel.name for channel in models[0].inputs}:
+        return [each() for each in alone]
+    held = [{drive: some, **locked} for some, locked in zip(values, hold, strict=True)]
+    found = equilibria(models, loads, hold=held, weight=weight, effort=replace(USUAL, arcs=0))
+    return [one if one.converged.all() else again() for one, again in zip(found, alone, strict=True)]
+
+
+def _neighbour(found: State) -> State:
+    """The state with every case that failed begun from the nearest that did not."""
+    places, good = np.arange(len(found.status)), np.flatnonzero(found.converged)
+    nearest = good[np.argmin(np.abs(places[:, None] - good), axis=1)]
+    chosen = np.where(found.converged, places, nearest)
+    return replace(found, pose=found.pose.of(chosen))
+
+
+@check_arguments
+def trace(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    *,
+    step: float = 0.02,
+    points: int = 60,
+    rest: Mapping[str, float] | None = None,
+    hold: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria along the factor on `load`, by arc length: past limits, where the load turns and the stage goes on.
+
+    `step` is the length of a step in the motion of the bodies, over the flexures' length and in radians; `points` how many steps at most.
+    Coordinates in `hold` stay locked at their values. The path ends where no further equilibrium is found. After E. Riks (Int. J. Solids
+    Structures 15, 1979), steps normal to the first of each.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = trace(nonlinear(parallelogram()), {"platform.fx": 100.0}, points=2, weight=0.0)
+    >>> found.values.size, bool(found.state.converged.all())
+    (3, True)
+    """
+    start = equilibrium(model, rest or {}, hold=hold, weight=weight)
+    require_equilibrium(start)
+    names = [channel.name for channel in model.inputs]
+    unknown = [name for name in load if name not in names]
+    if unknown or not any(load.values()):
+        raise refuse(", ".join(unknown) or "load", "it is no load of this stage, or zero", "Name a force, moment or stroke and its size")
+    course = course_of(start, load, 0.0, effort)
+    begin = first_point(course, start.pose, 0.0)
+    return _along(course, [begin, *follow_course(course, begin, step, points)], start.held)
+
+
+@check_arguments
+def branch(
+    model: Nonlinear,
+    load: Mapping[str, float],
+    *,
+    side: float = 1.0,
+    step: float = 0.02,
+    points: int = 60,
+    rest: Mapping[str, float] | None = None,
+    weight: float = 1.0,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
+
+    The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
+    against it. Steps and points are as in `trace`. Raises `DesignError` as `critical` does; where the load turns instead (a limit, which
+    `trace` passes); where a flexure gives way by itself, its ends at rest; and where no equilibrium is found on the branch.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> found = branch(nonlinear(parallelogram()), {"platform.fx": -1e3}, points=2, weight=0.0)
+    >>> found.values.round(3).tolist()
+    [11.063, 11.065, 11.069]
+    """
+    given = critical(model, load, rest=rest, weight=weight)
+    if given.kind is Kind.LIMIT:
+        raise refuse("load", f"at {given.factor:.6g} times the load equilibrium ends: nothing branches", "Follow the load with fs.trace")
+    return beyond(given, load, side=side, step=step, points=points, effort=effort)
+
+
+def beyond(
+    given: Critical,
+    load: Mapping[str, float],
+    *,
+    side: float = 1.0,
+    step: float = 0.02,
+    points: int = 60,
+    effort: Effort = USUAL,
+) -> Path:
+    """Equilibria from where a load is critical, along the factor on it: on the branch that opens there, or past the limit or bend.
+
+    `given` is what `critical` found for the load; steps, points and `side` are as in `branch`; past a limit, or where the path bends, there
+    is one side only. Raises `DesignError` for the other one, where a flexure gives way by itself, its ends at rest, and where no
+    equilibrium is found.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.nonlinear.stage import nonlinear
+    >>> load = {"platform.fx": -1e3}
+    >>> given = critical(nonlinear(parallelogram()), load, weight=0.0)
+    >>> beyond(given, load, side=-1.0, points=2).values.round(3).tolist()
+    [11.063, 11.065, 11.069]
+    """
+    start, what = given.state, f"at {given.factor:.6g} times the load"
+    if given.kind is not Kind.BIFURCATION and side < 0.0:
+        raise refuse("side", f"{what} the path goes on to one side: a {given.kind.value}", "Follow that one")
+    if given.link and given.kind is Kind.BIFURCATION:
+        raise refuse(given.link, f"{what} it gives way between its ends, which rest", "Draw it as two parts with a light body between them")
+    course, into = course_of(start, load, given.factor, effort), None
+    if given.kind is Kind.BIFURCATION:
+        others = np.zeros(len(course.scale) - start.model.freedoms)
+        into = np.concatenate([np.sign(side) * np.ravel(given.shape), others])
+    begin = critical_point(course, start.pose, given.factor, into)
+    found = [begin, *follow_course(course, begin, step, points)]
+    if len(found) == 1:
+        raise refuse("load", f"no equilibrium is found beyond what gives way {what}", "Try a smaller step")
+    return _along(course, found, start.held)
+
+
+def _along(course: Course, found: list[Point], held: tuple[str, ...]) -> Path:
+    factors, count = np.array([each.factor for each in found]), len(found)
+    loads, hold = course.at(0.0)
+    inputs, gravity = (getattr(loads, name) + factors[:, None] * getattr(course.gain, name) for name in ("inputs", "gravity"))
+    along = Loads(inputs, gravity, loads.constant + factors * course.gain.constant)
+    whole = join([each.found for each in found])
+    states = state(course.model, along, replace(hold, value=np.repeat(hold.value, count, axis=0)), whole, ((count,), held))
+    motions = np.array([each.motions for each in found])
+    return Path("factor", factors, states, motions, held, np.array([_turn(*pair) for pair in itertools.pairwise(found)]))
+
+
+def _turn(one: Point, other: Point) -> float:
+    """The extreme factor between two points, of the cubic with their values and slopes; NaN where it goes one way."""
+    if one.slope * other.slope >= 0.0:
+        return np.nan
+    cubic = scipy.interpolate.CubicHermiteSpline([0.0, np.linalg.norm(other.step)], [one.factor, other.factor], [one.slope, other.slope])
+    return float(cubic(cubic.derivative().roots(extrapolate=False)[0]))

@@ -1,0 +1,1 @@
+"""Geometry of solids: pieces, CAD, contact and clearance."""

@@ -1,0 +1,219 @@
+"""The CAD of a component: its pieces as one conforming solid (or several, one a medium), with the faces it is joined and held by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.parts.body import Cylinder, Imported, Pierced, Sphere
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, is_mirrored
+from flexstage.solid.fea.jobs.content import KEPT
+from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups
+
+_TOLERANCE = 1e-3
+"""Faces match within this distance [mm]."""
+_AREA = 1e-4
+"""... and within this share of their area."""
+_WITHIN, _ALONG = 1e-9, 1.0 - 1e-9
+"""How far from a plane [m] what lies on it may be, and the least cosine between directions that are one."""
+
+_PLATE = 0.22
+"""Cylinders thinner than this share of their diameter are plates: elements as usual are smaller than their curvature asks for."""
+
+
+@dataclass(frozen=True)
+class Cad:
+    """A component drawn: the shape [mm] whose faces carry the names of `faces`, its solids the names `medium 0`, ... of `media`.
+
+    Of what is cut at `mirrors` it is the positive side.
+    """
+
+    shape: occ.TopoDS_Shape
+    media: tuple[Medium, ...]
+    faces: tuple[str, ...]
+    mirrors: Mirrors = Mirrors()
+
+
+def cad(component: Component) -> Cad:
+    """Draw a component: pieces of one medium are fused, those of different media glued over their common faces.
+
+    Faces are named after joints: interfaces and those held by the ground. Raises `DesignError` for joints without a matching flat face and
+    for pieces that do not form one solid.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> drawing = cad(bar())
+    >>> round(drawing.shape.mass, 6), drawing.faces  # mm^3
+    (10000.0, ('end', 'foot'))
+    """
+    media = tuple(dict.fromkeys(piece.medium for piece in component.pieces))
+    solids = [_fuse([piece for piece in component.pieces if piece.medium == medium]) for medium in media]
+    for number, solid in enumerate(solids):
+        solid.mat(f"medium {number}")
+    shape = solids[0] if len(solids) == 1 else occ.Glue(solids)
+    require(_pieces_of(component, shape))
+    shape = _name_solids(shape, component.interfaces)
+    joints = [*(item.joint for item in component.interfaces), *component.fixed]
+    require(finding for joint in joints if (finding := _name_face(shape, joint)) is not None)
+    return Cad(shape, media, tuple(joint.name for joint in joints))
+
+
+def cut_component(component: Component, drawing: Cad) -> Cad:
+    """The positive side of a drawing of a component, across the planes that it is symmetric about.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> round(cut_component(bar(), cad(bar())).shape.mass, 6)  # mm^3
+    2500.0
+    """
+    mirrors = mirrors_of(component)
+    return replace(drawing, shape=cut_at_mirrors(drawing.shape, mirrors), mirrors=mirrors) if mirrors.axes else drawing
+
+
+@lru_cache(maxsize=1)
+def mirrors_of(component: Component) -> Mirrors:
+    """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
+
+    Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut: their elements, flat already, would be
+    flatter, or fewer across them, and the errors told larger. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates:
+    their roundness alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too
+    little.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> mirrors_of(bar())
+    Mirrors(axes=(1, 2))
+    """
+    is_one = len({piece.medium for piece in component.pieces}) == 1
+    return Mirrors(tuple(axis for axis in MIRRORS if is_one and _is_mirrored(component, axis)))
+
+
+def _is_mirrored(component: Component, axis: int) -> bool:
+    """Whether a component without round pieces is symmetric across an axis, joint by joint, link by link and body by body."""
+    joints = [*(item.joint for item in component.interfaces), *component.fixed]
+    links = [piece for piece in component.pieces if piece.body is None]
+    frames = [*(joint.frame for joint in joints), *(piece.frame for piece in links)]
+    slender = any(isinstance(piece.form, Shaped) and piece.form.slender for piece in links)
+    return (
+        not (slender or any(_is_round(piece.form) for piece in component.pieces))
+        and is_mirrored(component.pieces[0].medium, axis)
+        and all(abs(point[axis]) < _WITHIN for point in (*(frame.position for frame in frames), *component.bodies.values()))
+        and all(np.max(np.abs(frame.rotation[axis, 1:])) > _ALONG for frame in frames)
+        and all(is_symmetric(solids, axis) for solids in _solids(component))
+    )
+
+
+def _is_round(form: Form) -> bool:
+    """Whether it is round, and not so thin that this does not matter to the size of its elements."""
+    if isinstance(form, Pierced):
+        return any(map(_is_round, (form.solid, *form.holes)))
+    if isinstance(form, Cylinder):
+        return float(np.real(form.length)) > _PLATE * float(np.real(form.diameter if form.bore is None else form.bore))
+    return isinstance(form, Sphere) or (isinstance(form, Shaped) and form.is_axisymmetric and form.is_prismatic)
+
+
+def _solids(component: Component) -> Iterator[list[occ.TopoDS_Shape]]:
+    """The solids of each link, of each body, and those that print each foreign joint."""
+    for members in groups(component).values():
+        yield [move_solid(draw_form(piece.form), piece.frame) for piece in (component.pieces[number] for number in members)]
+    for item in component.interfaces:
+        if item.footprint is not None and item.stamp is not None:
+            yield [move_solid(draw_form(item.footprint), item.stamp)]
+
+
+def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
+    total = move_solid(draw_form(pieces[0].form), pieces[0].frame)
+    for piece in pieces[1:]:
+        total = total + move_solid(draw_form(piece.form), piece.frame)
+    return total
+
+
+def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
+    """Solids that share faces, glued media included, hang together; anything else that falls apart has a gap."""
+    if len(shape.solids) == 1:
+        return
+    groups: list[set[tuple[float, ...]]] = []
+    for solid in shape.solids:
+        faces = {tuple(np.round((*_coordinates(face.center), face.mass), 6)) for face in solid.faces}
+        touching = [group for group in groups if group & faces]
+        groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
+    if len(groups) > 1:
+        names = ", ".join(piece.name for piece in component.pieces)
+        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Let their outlines touch")
+
+
+def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
+    """The shape with the end faces of foreign links printed on it."""
+    stamps = [
+        move_solid(draw_form(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None
+    ]
+    if not stamps:
+        return shape
+    for stamp in stamps:
+        stamp.mat("stamp")
+    glued = occ.Glue([*shape.solids, *stamps])
+    kept = [solid for solid in glued.solids if solid.name != "stamp"]
+    return kept[0] if len(kept) == 1 else occ.Compound(kept)
+
+
+def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
+    origin, normal = joint.frame.position * MILLIMETRES, joint.frame.rotation[:, 0]
+    flat = [face for face in shape.faces if _is_flat(face, origin, normal)]
+    # A face around the joint (an annulus) has the same centre: the area tells them apart.
+    area = joint.area * MILLIMETRES**2
+    nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _distance(face, origin) / np.sqrt(area), default=None)
+    if nearest is None or _distance(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
+        likeliest = "" if nearest is None else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}"
+        found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_distance(nearest, origin):.3g} mm away"
+        what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
+        return Finding(joint.name, what, "Move the outline to touch it fully")
+    nearest.name = joint.name
+    return None
+
+
+def _distance(face: occ.Face, origin: Array) -> float:
+    return float(np.linalg.norm(_coordinates(face.center) - origin))
+
+
+def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
+    """Whether all of the face lies in the plane through `origin`."""
+
+    def lies_there(point: occ.gp_Pnt) -> bool:
+        return abs(float(normal @ (_coordinates(point) - origin))) <= _TOLERANCE
+
+    return all(lies_there(vertex.p) for vertex in face.vertices) and lies_there(face.center)
+
+
+def _coordinates(point: occ.gp_Pnt) -> Array:
+    return np.array([point.x, point.y, point.z])
+
+
+def region(piece: Piece, points: Array) -> Array:
+    """Distance-like measure (n,) of points (n, 3) [m] from a piece: how far outside its bounding box they are, 0 inside [m].
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
+    [0.0, 0.002]
+    """
+    local = (points - piece.frame.position) @ piece.frame.rotation
+    return np.max(np.maximum(np.abs(local) - half_extents(piece), 0.0), axis=1)
+
+
+@lru_cache(maxsize=KEPT)
+def half_extents(piece: Piece) -> Array:
+    """Half sizes (3,) of a piece's bounding box in its own frame [m], drawn once.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> half_extents(bar().pieces[0]).round(9).tolist()
+    [0.05, 0.005, 0.005]
+    """
+    if isinstance(piece.form, Imported):
+        return 0.5 * np.real(np.array(piece.form.size))
+    low, high = draw_form(piece.form).bounding_box
+    return 0.5 * (_coordinates(high) - _coordinates(low)) / MILLIMETRES

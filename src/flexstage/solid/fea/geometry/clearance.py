@@ -1,0 +1,72 @@
+"""Clearance: outlines that no joint connects keep apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from flexstage.mechanism.geometry.near import near_pairs
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.solid.fea.geometry.draw import draw_form, move_solid
+from flexstage.solid.fea.geometry.near import Answer, Question, distance_text, frame_key, relative_frame
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, form_digest
+from flexstage.solid.fea.geometry.stage_pieces import Stage
+
+TOUCHING = 1e-6
+"""Outlines nearer than this touch [m]."""
+_NO_VOLUME = 1e-6
+"""Common volumes below this are rounding [mm^3]."""
+
+
+def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
+    """A question for every near pair of outlines of different bodies or links, but links and the bodies they join.
+
+    `clearance` is the least distance wanted [m]; copies ask the same.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
+    >>> stage = stage_pieces(parallelogram())
+    >>> len(list(clearance_questions(stage, 0.0))), len(list(clearance_questions(stage, 1.0))) > 20
+    (0, True)
+    """
+    pieces = list(stage.pieces.values())
+    for one, other in near_pairs([stage.boxes[piece.name] for piece in pieces], clearance + TOUCHING):
+        first, second = pieces[one], pieces[other]
+        if _belong_together(stage, first, second):
+            continue
+        relative = relative_frame(second.frame, first.frame)
+        key = f"pair {form_digest(first.form)} {form_digest(second.form)} {frame_key(relative)}"
+        yield Question(key, first.name, lambda pair=(first, second), clearance=clearance: _answers(*pair, clearance))
+
+
+def _belong_together(stage: Stage, first: Piece, second: Piece) -> bool:
+    """Whether two pieces are of one body, or a link and a body it joins."""
+    if first.body is not None and second.body is not None:
+        return first.body == second.body
+    for link, piece in ((first, second), (second, first)):
+        if link.body is None and piece.body is not None:
+            return piece.body in stage.assembly.links[link.name].joins
+    return False
+
+
+def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
+    here, there = draw_form(first.form), move_solid(draw_form(second.form), relative_frame(second.frame, first.frame))
+    away, common = float(here.Distance(there)), here * there  # a solid within another one is at a distance from its faces
+    if common.mass > _NO_VOLUME:
+        at = first.frame.point(np.array([common.center.x, common.center.y, common.center.z]) / MILLIMETRES) * MILLIMETRES
+        place = ", ".join(f"{round(float(value), 3) + 0.0:g}" for value in at)
+        yield f"it overlaps {second.name} by {common.mass:.3g} mm3 around ({place}) mm", _advice(first, second)
+    elif away > (clearance + TOUCHING) * MILLIMETRES:
+        return
+    elif away <= TOUCHING * MILLIMETRES:
+        yield f"it touches {second.name}, which no joint connects it to", _advice(first, second)
+    else:
+        wanted = distance_text(clearance * MILLIMETRES)
+        yield f"it is {distance_text(away)} from {second.name}, less than the clearance of {wanted}", _advice(first, second)
+
+
+def _advice(first: Piece, second: Piece) -> str:
+    if GROUND in {first.body, second.body}:
+        return "Trim one of the two outlines"
+    return "Trim one of the two outlines, or move one where that moves no axis"

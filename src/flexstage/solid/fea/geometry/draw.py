@@ -1,0 +1,263 @@
+"""Drawing: forms as CAD solids, in millimetres (the CAD kernel's tolerances are absolute and made for them).
+
+Every hinge is drawn at the origin and then moved: cuts made far from the origin fail to mesh. Arcs that would end square on an end face are
+stopped short by 3 % of their radius: a face tangent to another leaves a wedge of no angle that no mesh can fill.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.base.register import Register
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere
+from flexstage.parts.cruciform import Cruciform
+from flexstage.parts.leaf import Leaf
+from flexstage.parts.neck import Neck
+from flexstage.parts.notch import Notch
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.profile import Circular, Contour, Filleted, Profile, length
+from flexstage.parts.profile import rise as cut_height
+from flexstage.parts.reinforced_leaf import ReinforcedLeaf
+from flexstage.parts.rod import Rod
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.contour import contour_edges
+from flexstage.solid.fea.geometry.imported import imported_shape
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form
+from flexstage.solid.fea.geometry.reinforced_leaf import reinforced_solid
+from flexstage.solid.fea.hinges.specimen import Specimen, bar, cut
+from flexstage.spatial.frame import Frame
+from flexstage.spatial.rotation import rotation_vector
+
+SHORTENED = 0.03
+"""By how much of their radius arcs stop short of an end face they would touch without an angle."""
+_STATIONS = 33
+
+Curve = list[occ.TopoDS_Shape]
+
+
+def draw_form(form: Form) -> occ.Solid:
+    """A form as a CAD solid at the origin [mm]: links along x, thin along y, width along z.
+
+    >>> from flexstage.parts.body import Block
+    >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
+    6000.0
+    """
+    return _SOLIDS[type(form)](form) if isinstance(form, Solid) else _shape(form).draw(form)
+
+
+def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
+    """Draw a hinge with stubs of given lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
+
+    It is thin along y and wide along z. Raises `DesignError` for a kind whose shape nobody offers.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
+    >>> round(bar.solid.mass, 9), sorted(face.name for face in bar.solid.faces if face.name)
+    (2.0, ['end', 'start'])
+    """
+    shape, lengths = _shape(part), (stubs[0] * MILLIMETRES, stubs[1] * MILLIMETRES)
+    return bar(part, lengths, size, shape.draw(part)) if shape.specimen is None else shape.specimen(part, lengths, size)
+
+
+def _shape(part: Shaped) -> Shape:
+    found = SHAPES.get(part.kind)
+    if found is None:
+        what = "its shape as a solid is not known: nobody offers one for this kind"
+        raise refuse(f"the {part.kind}", what, f"Install the package that does ({SHAPES.group})")
+    return found
+
+
+def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
+    """A solid drawn at the origin, moved into a frame given in metres.
+
+    >>> from flexstage.parts.body import Block
+    >>> there = move_solid(draw_form(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
+    >>> round(there.center.x, 6)
+    100.0
+    """
+    turn = rotation_vector(np.real(frame.rotation))
+    angle = float(np.linalg.norm(turn))
+    if angle > 0.0:
+        axis = occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*(turn / angle)))
+        solid = solid.Rotate(axis, float(np.rad2deg(angle)))
+    return solid.Move(occ.Vec(*_point(frame.position)))
+
+
+def _point(position: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) * MILLIMETRES for value in np.real(position))
+    return x, y, z
+
+
+def _mm(value: object) -> float:
+    return float(np.real(value)) * MILLIMETRES  # type: ignore[arg-type]
+
+
+def _box(x: object, y: object, z: object) -> occ.Solid:
+    a, b, c = 0.5 * _mm(x), 0.5 * _mm(y), 0.5 * _mm(z)
+    return occ.Box(occ.Pnt(-a, -b, -c), occ.Pnt(a, b, c))
+
+
+def _round(diameter: object, size: object) -> occ.Solid:
+    half = 0.5 * _mm(size)
+    return occ.Cylinder(occ.Pnt(-half, 0, 0), occ.X, r=0.5 * _mm(diameter), h=2.0 * half)
+
+
+def _block(form: Block) -> occ.Solid:
+    solid = _box(*form.size)
+    return solid if form.hole is None else solid - _box(*form.hole, 2.0 * form.size[2])
+
+
+def _tube(form: Cylinder) -> occ.Solid:
+    solid = _round(form.diameter, form.length)
+    return solid if form.bore is None else solid - _round(form.bore, 2.0 * form.length)
+
+
+def _extrusion(form: Extrusion) -> occ.Solid:
+    half = 0.5 * _mm(form.height)
+    return _prism([occ.Pnt(_mm(x), _mm(y), -half) for x, y in np.real(form.corners)], occ.Vec(0, 0, 2.0 * half))
+
+
+def _prism(corners: list[occ.Pnt], along: occ.Vec) -> occ.Solid:
+    sides = [occ.Segment(here, there) for here, there in pairwise([*corners, corners[0]])]
+    return occ.Face(occ.Wire(sides)).Extrude(along)
+
+
+def _pierced(form: Pierced) -> occ.Solid:
+    drawn = draw_form(form.solid)
+    for hole in form.holes:
+        drawn = drawn - move_solid(draw_form(hole), hole.frame)
+    return drawn
+
+
+_SOLIDS: Mapping[type[Solid], Callable[[Any], occ.Solid]] = {
+    Block: _block,
+    Cylinder: _tube,
+    Extrusion: _extrusion,
+    Sphere: lambda form: occ.Sphere(occ.Pnt(0, 0, 0), 0.5 * _mm(form.diameter)),
+    Imported: imported_shape,
+    Pierced: _pierced,
+}
+
+
+def _neck(form: Neck) -> occ.Solid:
+    if form.width is not None:
+        flat = _extrude(form.thickness, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
+        upright = _extrude(form.width, form.profile, 4.0 * form.width + 4.0 * form.thickness + 4.0 * length(form.profile))
+        return flat * upright.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90.0)
+    half = 0.5 * _mm(length(form.profile))
+    upper = _upper(0.5 * _mm(form.thickness), form.profile)
+    start, end = _ends(0.5 * _mm(form.thickness), form.profile)
+    outline = [(half, end), (half, 0.0), (-half, 0.0), (-half, start)]
+    wire = occ.Wire([*upper, *_polyline(outline)])
+    return occ.Face(wire).Revolve(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 360.0)
+
+
+def _extrude(thickness: object, profile: Profile, width: object) -> occ.Solid:
+    """The profile on both sides of the xz plane, drawn through the width."""
+    half, rise = 0.5 * _mm(length(profile)), 0.5 * _mm(thickness)
+    upper, lower = _upper(rise, profile), _upper(rise, profile, side=-1.0)
+    start, end = _ends(rise, profile)
+    right, left = _polyline([(half, -end), (half, end)]), _polyline([(-half, start), (-half, -start)])
+    face = occ.Face(occ.Wire([*lower, *right, *reversed(upper), *left]))  # counter-clockwise: extrusion along +z gives a positive volume
+    depth = _mm(width)
+    return face.Extrude(occ.Vec(0, 0, depth)).Move(occ.Vec(0, 0, -0.5 * depth))
+
+
+def _ends(rise: float, profile: Profile) -> tuple[float, float]:
+    """Half heights of the two end faces [mm]."""
+    height = rise + _mm(cut_height(profile))
+    return height, height
+
+
+def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
+    """The edge curve y = side (rise + w(x)) from one end face to the other, in the xy plane."""
+    if isinstance(profile, Contour):
+        return contour_edges(profile, rise, side)
+    half, height = 0.5 * _mm(length(profile)), rise + _mm(cut_height(profile))
+    if height == rise:
+        return _polyline([(-half, side * rise), (half, side * rise)])
+    curve, reach, end = _cut(rise, profile, side)
+    left = _polyline([(-half, side * height), (-reach, side * height), (-reach, side * end)])
+    right = _polyline([(reach, side * end), (reach, side * height), (half, side * height)])
+    return [*left, *curve, *right]
+
+
+def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, float]:
+    """The curved part, shortened: its edges, how far it reaches along x and its height there [mm]."""
+    if isinstance(profile, Filleted):
+        return _fillet(rise, profile, side)
+    half, height = 0.5 * _mm(length(profile)), _mm(cut_height(profile))
+    largest = float(np.arcsin(1.0 - SHORTENED))
+
+    def at(angle: float) -> tuple[float, float]:
+        return half * np.sin(angle), side * (rise + height * (1.0 - np.cos(angle)))
+
+    reach, end = at(largest)
+    curve = _arc(at(-largest), at(0.0), at(largest)) if isinstance(profile, Circular) else _spline(at, largest)
+    return [curve], reach, side * end
+
+
+def _fillet(rise: float, profile: Filleted, side: float) -> tuple[Curve, float, float]:
+    radius, half = _mm(profile.radius), 0.5 * _mm(profile.length)
+    straight, largest = half - radius, float(np.arcsin(1.0 - SHORTENED))
+
+    def at(angle: float, sign: float) -> tuple[float, float]:
+        return sign * (straight + radius * np.sin(angle)), side * (rise + radius * (1.0 - np.cos(angle)))
+
+    left = _arc(at(largest, -1.0), at(0.5 * largest, -1.0), at(0.0, -1.0))
+    right = _arc(at(0.0, 1.0), at(0.5 * largest, 1.0), at(largest, 1.0))
+    middle = _polyline([at(0.0, -1.0), at(0.0, 1.0)]) if straight > 0.0 else []
+    reach, end = at(largest, 1.0)
+    return [left, *middle, right], reach, side * end
+
+
+def _arc(first: tuple[float, float], middle: tuple[float, float], last: tuple[float, float]) -> occ.TopoDS_Shape:
+    return occ.ArcOfCircle(occ.Pnt(*first, 0), occ.Pnt(*middle, 0), occ.Pnt(*last, 0))
+
+
+def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.TopoDS_Shape:
+    angles = np.linspace(-largest, largest, _STATIONS)
+    return occ.SplineInterpolation([occ.Pnt(*at(float(angle)), 0) for angle in angles])
+
+
+def _polyline(points: list[tuple[float, float]]) -> Curve:
+    return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairwise(points)]
+
+
+def prism(form: Shaped) -> occ.Solid:
+    """A part of one section, drawn by the corners of its outline [mm]."""
+    half = 0.5 * _mm(form.span)
+    return _prism([occ.Pnt(-half, _mm(y), _mm(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A kind of part as a CAD solid in millimetres: what draws it at the origin, and what draws it as a specimen, with stubs at its ends.
+
+    Without the latter, a specimen is the part as it is drawn, with blocks at its ends. Parts with a profile of cuts want `specimen.cut`:
+    arcs that are drawn a little short meet rigid faces at angles that no mesh can fill.
+    """
+
+    draw: Callable[[Any], occ.Solid]
+    specimen: Callable[[Any, tuple[float, float], float], Specimen] | None = None
+
+
+_OWN: Mapping[type[Shaped], Shape] = {
+    Notch: Shape(lambda form: _extrude(form.thickness, form.profile, form.width), cut),
+    Neck: Shape(_neck, cut),
+    Leaf: Shape(lambda form: _box(form.length, form.thickness, form.width), bar),
+    ReinforcedLeaf: Shape(reinforced_solid),
+    Rod: Shape(lambda form: _round(form.diameter, form.length), bar),
+    Cruciform: Shape(prism),
+    Piezo: Shape(lambda form: _round(form.diameter, form.length)),
+}
+SHAPES: Register[Shape] = Register("flexstage.shapes", {part.kind: shape for part, shape in _OWN.items()})
+"""Parts as solids, by their kind."""

@@ -1,0 +1,208 @@
+"""Imported solids: STEP files that stand for outlines, read and held to what the description states of them."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from netgen import occ
+
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.number import Array, stack
+from flexstage.base.storage.files import require_regular
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.body import Body, Imported, Inertia
+from flexstage.parts.mass import tensor
+from flexstage.solid.fea.geometry.piece import MILLIMETRES
+
+_DIGITS = 6
+"""Digits of a box [mm]: the kernel widens it by 1e-7."""
+TOLERANCE = 1e-3
+"""What is stated agrees with the file within this share: of mass and inertia, and for places of the longest side."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImportedProperties:
+    """What a file's solid is, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
+
+    `inertia` (3, 3) is that of unit density about the centre [m^5].
+    """
+
+    sha256: str
+    size: Array
+    middle: Array
+    volume: float
+    centre: Array
+    inertia: Array
+
+
+def imported_shape(form: Imported) -> occ.TopoDS_Shape:
+    """The file's solid [mm], the middle of its box at the origin.
+
+    Raises `DesignError` where the file is not there, is no STEP file or not the one that is meant, or does not hold exactly one solid.
+    """
+    path = Path(form.file)
+    require(_version_findings(path, form.sha256))
+    x, y, z = (-MILLIMETRES * float(np.real(value)) for value in form.middle)
+    own = _solid(path, form.solid)
+    return (own.Mirror(_ACROSS) if form.reflected else own).Move(occ.Vec(x, y, z))
+
+
+_ACROSS = occ.Axes(occ.Pnt(0, 0, 0), n=occ.Y, h=occ.X)
+"""The x-z plane, that of mirror images."""
+
+
+def measure(path: Path, name: str | None = None) -> ImportedProperties:
+    """Measure the solid in a STEP file, of several the one of that name or place (`#2`).
+
+    Raises `DesignError` where there is no such file or it does not hold exactly one such solid.
+
+    >>> measure(Path("nowhere.step"))
+    Traceback (most recent call last):
+    flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
+    """
+    digest = _sha256(path)
+    solid = _solid(path, name)
+    low, high = (np.round([corner.x, corner.y, corner.z], _DIGITS) / MILLIMETRES for corner in solid.bounding_box)
+    volume = float(solid.mass) / MILLIMETRES**3
+    centre = np.array([solid.center.x, solid.center.y, solid.center.z]) / MILLIMETRES
+    return ImportedProperties(digest, high - low, 0.5 * (low + high), volume, centre, _inertia(solid))
+
+
+def _inertia(solid: occ.TopoDS_Shape) -> Array:
+    """The inertia tensor of unit density about the centre [m^5]."""
+    matrix = solid.inertia
+    return np.array([[matrix[i, j] for j in range(3)] for i in range(3)]) / MILLIMETRES**5
+
+
+def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
+    """The description of a measured solid of a `density` [kg/m^3], called `solid` where its file holds several.
+
+    >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
+    >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
+    1.0
+    """
+    j = density * found.inertia
+    inertia = Inertia(*(float(j[i, i]) for i in range(3)), xy=-float(j[0, 1]), xz=-float(j[0, 2]), yz=-float(j[1, 2]))
+    return Imported(
+        material=material,
+        file=file,
+        sha256=found.sha256,
+        size=_triple(found.size),
+        mass=density * found.volume,
+        centre=_triple(found.centre),
+        inertia=inertia,
+        middle=_triple(found.middle),
+        solid=solid,
+    )
+
+
+def _triple(values: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def import_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Where imported solids are not what the description states of them; nothing without any.
+
+    >>> import_findings(Mechanism("nothing"))
+    ()
+    """
+    return tuple(finding for where, solid in _imported_bodies(mechanism) for finding in _findings(mechanism, where, solid))
+
+
+def _imported_bodies(mechanism: Mechanism) -> Iterator[tuple[str, Imported]]:
+    sections: dict[str, Mapping[str, Body]] = {"bodies": mechanism.bodies}
+    sections |= {f"units.{name}.bodies": unit.bodies for name, unit in mechanism.units.items()}
+    for section, bodies in sections.items():
+        for name, body in bodies.items():
+            for solid, each in body.solids.items():
+                if isinstance(each, Imported):
+                    yield f"{section}.{name}.solids.{solid}", each
+
+
+def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Finding]:
+    path = Path(solid.file)
+    solid = solid.mirrored if solid.reflected else solid
+    try:
+        found = measure(path, solid.solid)
+    except DesignError as error:
+        yield from (Finding(f"{where}.file", f"{each.where}: {each.what}", each.advice) for each in error.findings)
+        return
+    if found.sha256 != solid.sha256:
+        yield from (Finding(f"{where}.sha256", each.what, each.advice) for each in _version_findings(path, solid.sha256))
+        return
+    density, longest = float(np.real(mechanism.materials[solid.material].density)), float(np.max(found.size))
+    mass, moment = density * found.volume, density * float(np.max(np.linalg.eigvalsh(found.inertia)))
+    pairs = (
+        ("size", stack(solid.size), found.size, longest, "m"),
+        ("middle", stack(solid.middle), found.middle, longest, "m"),
+        ("mass", np.array([solid.mass]), np.array([mass]), mass, "kg"),
+        ("centre", stack(solid.centre), found.centre, longest, "m"),
+        ("inertia", tensor(solid.inertia), density * found.inertia, moment, "kg m^2"),
+    )
+    for name, said, true, scale, unit in pairs:
+        off = float(np.max(np.abs(np.real(said) - true)))
+        if off > TOLERANCE * scale:
+            what = f"it is off by {off:.4g} {unit} from the file's: stated {_text(said)}, found {_text(true)} {unit}"
+            yield Finding(f"{where}.{name}", what, 'State what the file holds (see "flexstage import")')
+
+
+def _text(values: Array) -> str:
+    numbers = ", ".join(f"{float(value):.5g}" for value in np.ravel(np.real(values)))
+    return numbers if np.size(values) == 1 else f"({numbers})"
+
+
+def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
+    found = _sha256(path)
+    if found != sha256:
+        what = f"the file {path} has another content than stated (sha256 {found[:12]}..., stated {sha256[:12]}...)"
+        yield Finding(str(path), what, 'Give the file that was meant, or state the new one (see "flexstage import")')
+
+
+def _sha256(path: Path) -> str:
+    require_regular(path)
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise refuse(str(path), f"it cannot be read: {reason}", "Give the path of a STEP file, from the design file or whole") from None
+
+
+def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
+    with path.open("rb") as stream:
+        start = stream.read(200)
+    if not start.lstrip().startswith(b"ISO-10303-21"):
+        raise refuse(str(path), "this is no STEP file (it does not begin with ISO-10303-21)", "Export the solid as STEP")
+    if path.suffix.lower() not in {".step", ".stp"}:
+        raise refuse(str(path), f'its name ends in "{path.suffix}"', "Name it .step or .stp")
+    try:
+        solids = list(occ.OCCGeometry(str(path)).shape.solids)
+    except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
+        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) anew") from None
+    names = _names(path, solids)
+    if name is None and len(solids) != 1:
+        what = f"it holds {len(solids)} solids: {', '.join(names)}"
+        raise refuse(str(path), what, f'Say which: solid = "{next(iter(names), "")}"; a body may have several')
+    place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
+    if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
+        what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'
+        raise refuse(str(path), what, f'{suggest_nearest(name, names)}; or name it by its place among them, "#1" to "#{len(names)}"')
+    return solids[0 if name is None else names.index(name) if name in names else place - 1]
+
+
+_BREP = re.compile(rb"=\s*MANIFOLD_SOLID_BREP\s*\(\s*'((?:[^']|'')*)'\s*,\s*(#\d+)\s*\)")
+_SHELL = re.compile(rb"(#\d+)\s*=\s*CLOSED_SHELL\s*\(\s*'(?:[^']|'')*'\s*,\s*\(([^)]*)\)")
+
+
+def _names(path: Path, solids: Sequence[occ.TopoDS_Shape]) -> list[str]:
+    """What a file calls its solids, or their places: the kernel drops names, which count where the file's order is its own."""
+    text = path.read_bytes()
+    faces = {shell: members.count(b"#") for shell, members in _SHELL.findall(text)}
+    found = [(name.decode("utf-8", "replace").replace("''", "'"), faces.get(shell)) for name, shell in _BREP.findall(text)]
+    alike = len(found) == len(solids) and all(count == len(solid.faces) for (_, count), solid in zip(found, solids, strict=True))
+    return [found[place][0] if alike and found[place][0] else f"#{place + 1}" for place in range(len(solids))]

@@ -1,0 +1,206 @@
+"""Pieces: the parts and bodies of a stage as single solids, each with its medium, before anything is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array, Number
+from flexstage.base.register import Register
+from flexstage.base.storage.digest import digest
+from flexstage.mechanism.assembly.expand import PlacedLink
+from flexstage.parts.body import Cylinder, Solid
+from flexstage.parts.given import Joint
+from flexstage.parts.material import Material, Oriented
+from flexstage.parts.part import Part, Restricted
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.shape import Shaped
+from flexstage.spatial.frame import Frame
+
+_DIGITS = 10
+"""Of the tensor of a crystal, relative to its largest entry: copies of a unit must come out equal."""
+
+_CROSSED = 1e-9
+"""What couples stretching with shear, over the largest entry, where there is nothing but rounding."""
+
+MILLIMETRES = 1e3
+"""CAD units per metre."""
+
+OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
+"""Shapes that other packages offer, without those of `draw`: the kernel that draws is not needed to ask for versions."""
+
+Form: TypeAlias = Shaped | Solid
+"""What can be drawn: given 6x6 parts and ideal joints have no shape."""
+
+
+@dataclass(frozen=True)
+class Medium:
+    """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
+
+    Of a crystal `tensor` are the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear strains);
+    its modulus is then that along x, its ratio makes the shear modulus a mean of the planes xy and xz: both serve stubs of hinges alone.
+    """
+
+    young: float
+    poisson: float
+    density: float
+    tensor: tuple[tuple[float, ...], ...] | None = None
+
+    @property
+    def shear(self) -> float:
+        """Shear modulus G = E / (2 (1 + nu)) [Pa].
+
+        >>> Medium(260.0, 0.3, 1.0).shear
+        100.0
+        """
+        return self.young / (2.0 * (1.0 + self.poisson))
+
+    @property
+    def lame(self) -> float:
+        """First Lame constant E nu / ((1 + nu) (1 - 2 nu)) [Pa].
+
+        >>> Medium(1.0, 0.25, 1.0).lame
+        0.4
+        """
+        return self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One solid to draw: its address (`B1/front`, `platform.plate`), form, medium and frame.
+
+    A link's form is drawn at its frame's origin, x along it; a body's solid at its centre. `body` names the body it belongs to (absent for
+    links).
+    """
+
+    name: str
+    form: Form
+    medium: Medium
+    frame: Frame
+    body: str | None = None
+
+
+def medium(material: Material, rotation: Array | None = None) -> Medium:
+    """The medium of a material; of a crystal in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
+
+    Without these the drawing has the axes of the part that the crystal is seen from, or else the stage's.
+
+    >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
+    7750.0
+    >>> from flexstage.spatial.frame import axes
+    >>> silicon = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
+    >>> round(medium(silicon).young / 1e9), round(medium(silicon, axes((1.0, 1.0, 0.0))).young / 1e9)
+    (130, 169)
+    """
+    density = _single(material.density)
+    if not material.is_cubic:
+        return Medium(_single(material.modulus), _single(material.contraction), density)
+    seen = material.tensor if rotation is None and isinstance(material, Oriented) else material.stiffness_tensor(_stage(rotation))
+    unit = 10 ** (int(np.log10(np.max(np.real(seen)))) - _DIGITS)
+    tensor = np.round(np.real(seen) / unit) * unit + 0.0
+    soft = np.linalg.inv(tensor)
+    young, shear = float(1.0 / soft[0, 0]), float(1.0 / np.sqrt(soft[4, 4] * soft[5, 5]))
+    return Medium(young, 0.5 * young / shear - 1.0, density, tuple(tuple(row) for row in tensor.tolist()))
+
+
+def is_mirrored(own: Medium, axis: int) -> bool:
+    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing, as all are but crystals.
+
+    >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
+    True
+    """
+    if own.tensor is None:
+        return True
+    odd = np.array([(pair.count(axis) % 2) for pair in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], dtype=bool)
+    crossed = np.array(own.tensor)[np.ix_(odd, ~odd)]
+    return bool(np.max(np.abs(crossed)) < _CROSSED * own.tensor[0][0])
+
+
+def _stage(rotation: Array | None) -> Array:
+    return np.eye(3) if rotation is None else rotation
+
+
+def stack_medium(stack: Piezo) -> Medium:
+    """The medium of a stack's ceramic: E = k L / A from its axial stiffness, density from its mass.
+
+    >>> round(stack_medium(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01, mass=0.1)).young / 1e9, 2)
+    35.07
+    """
+    area = 0.25 * np.pi * _single(stack.diameter) ** 2
+    size = _single(stack.length)
+    return Medium(_single(stack.stiffness) * size / area, _single(stack.poisson), _single(stack.mass) / (area * size))
+
+
+def form_of(link: PlacedLink) -> Form | Finding | None:
+    """The form of a link's part, or why it has none; `None` of a part without a shape that states what it does.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> type(form_of(expand(double_triangle()).links["B1/front"])).__name__
+    'Neck'
+    """
+    part: Part = link.part
+    if isinstance(part, Restricted):
+        return Finding(
+            link.name, "some of its freedoms are locked or freed by a restriction", "A solid has all of them: read the unrestricted stage"
+        )
+    if isinstance(part, Shaped):
+        return part
+    if not isinstance(part, Joint) and part.stated(link.material) is not None:
+        return None
+    what = f"a part of kind {part.kind} has no shape, and states no stiffness"
+    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "given")')
+
+
+def form_digest(form: Form) -> str:
+    """Digest of what is drawn; where another package offers its shape, that package's name and version count.
+
+    >>> from flexstage.parts.body import Block
+    >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))
+    False
+    """
+    return digest(form, physics=True) + (OFFERED_SHAPES.offer(form.kind) if isinstance(form, Shaped) else "")
+
+
+def span(form: Form) -> float:
+    """Length of a link's form between its end faces [m].
+
+    >>> from flexstage.parts.profile import Circular
+    >>> from flexstage.parts.notch import Notch
+    >>> span(Notch("steel", 1e-3, 1e-2, Circular(5e-3)))
+    0.01
+    """
+    return _single(form.span if isinstance(form, Shaped) else form.sides[..., 0])
+
+
+def end_area(form: Form) -> float:
+    """Area of a link form's end faces [m^2].
+
+    >>> from flexstage.parts.profile import Straight
+    >>> from flexstage.parts.neck import Neck
+    >>> round(end_area(Neck("steel", 2e-3, Straight(1e-2), width=3e-3)) * 1e6, 9)
+    6.0
+    """
+    if isinstance(form, Cylinder):
+        return 0.25 * np.pi * (_single(form.diameter) ** 2 - (0.0 if form.bore is None else _single(form.bore) ** 2))
+    if isinstance(form, Solid):
+        return _single(form.sides[..., 1]) * _single(form.sides[..., 2])
+    return _single(form.end.area)
+
+
+def thinnest(form: Form) -> float:
+    """Smallest dimension of a form [m]: it sets the mesh there.
+
+    >>> from flexstage.parts.body import Block
+    >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
+    0.02
+    """
+    return _single(form.thinnest if isinstance(form, Solid) else form.throat.thinnest)
+
+
+def _single(value: Number) -> float:
+    """One design's number; batches have no single solid."""
+    return float(np.real(value))

@@ -1,0 +1,79 @@
+"""All pieces of a stage where they stand, before it is cut into components."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.mechanism.geometry.outline import Outline, outlines
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.geometry.piece import Piece, form_of, medium, stack_medium
+from flexstage.solid.fea.solver.component import Joint, link_joints
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """The pieces of a stage in its own axes by address, those of the ground with `body` "ground".
+
+    `boxes` are their outlines, `joints` the two ends of every link, `materials` names each piece's material (of a stack its part).
+    """
+
+    assembly: Assembly
+    pieces: Mapping[str, Piece]
+    boxes: Mapping[str, Outline]
+    joints: Mapping[str, tuple[Joint, Joint]]
+    materials: Mapping[str, str]
+    bodies: Mapping[str, tuple[Piece, ...]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        found: dict[str, tuple[Piece, ...]] = {}
+        for piece in self.pieces.values():
+            if piece.body is not None:
+                found[piece.body] = (*found.get(piece.body, ()), piece)
+        object.__setattr__(self, "bodies", found)
+
+
+def stage_pieces(mechanism: Mechanism) -> Stage:
+    """The pieces of a stage; parts that state their stiffness and have no shape are none.
+
+    Raises `DesignError` naming every link that has neither.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> stage = stage_pieces(double_triangle())
+    >>> len(stage.joints), stage.materials["B1/front"], stage.pieces["B1/lug.nose"].body
+    (27, 'steel', 'platform')
+    """
+    assembly = expand(mechanism)
+    forms = {name: form for name, link in assembly.links.items() if (form := form_of(link)) is not None}
+    require(form for form in forms.values() if isinstance(form, Finding))
+    pieces: dict[str, Piece] = {}
+    materials: dict[str, str] = {}
+    owned = [(body.name, body.solids) for body in assembly.bodies.values()] + [(GROUND, assembly.ground)]
+    for body, solids in owned:
+        for name, placed in solids.items():
+            pieces[name] = Piece(name, placed.solid, medium(mechanism.materials[placed.solid.material]), placed.frame, body)
+            materials[name] = placed.solid.material
+    for name, form in forms.items():
+        link = assembly.links[name]
+        if isinstance(form, Finding):
+            continue
+        if isinstance(form, Piezo):
+            pieces[name], materials[name] = Piece(name, form, stack_medium(form), link.frame), link.link.part
+        elif link.material is not None:
+            pieces[name], materials[name] = Piece(name, form, medium(link.material), link.frame), form.material
+    joints = {name: link_joints(assembly.links[name], pieces[name].form) for name in forms}
+    return Stage(assembly, pieces, {outline.name: outline for outline in outlines(assembly)}, joints, materials)
+
+
+def require_shapes(mechanism: Mechanism, stage: Stage) -> None:
+    """Raise a `DesignError` where nothing of a stage has a shape.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> require_shapes(parallelogram(), stage_pieces(parallelogram()))
+    """
+    if not stage.pieces:
+        advice = "Give bodies solids, or links parts that can be drawn"
+        raise refuse(mechanism.name or "stage", "no body has outlines and no link a shape", advice)

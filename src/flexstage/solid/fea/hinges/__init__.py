@@ -1,0 +1,1 @@
+"""The 6x6 of hinges by finite elements."""

@@ -1,0 +1,347 @@
+"""A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
+
+The hinge stands between rigid outer faces, with a stub of the block on each side that it grows on; the stubs are then taken off as beams,
+so that what its roots yield remains with the hinge. An end without a root is held rigid itself, where its arcs end. What is symmetric
+about its planes is cut there: the six motions are even or odd about each, so a quarter does, held accordingly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import ngsolve
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.parts.material import Material
+from flexstage.parts.part import is_actuator
+from flexstage.parts.profile import Contour, Filleted
+from flexstage.parts.shape import Profiled, Shaped
+from flexstage.solid.fea.geometry.draw import specimen
+from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors
+from flexstage.solid.fea.geometry.piece import Medium, is_mirrored, medium, span
+from flexstage.solid.fea.hinges.hinge_form import LEAVE, NO_ESTIMATE, HingeSolid
+from flexstage.solid.fea.hinges.roots import Roots, own_roots, rises
+from flexstage.solid.fea.hinges.specimen import END, START, Specimen, own_stub
+from flexstage.solid.fea.hinges.stub import beam
+from flexstage.solid.fea.jobs.memory import Counts
+from flexstage.solid.fea.jobs.progress import Report, Stage, silent
+from flexstage.solid.fea.meshing.estimate import Accuracy, change, remaining
+from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
+from flexstage.solid.fea.solver.field import Field, apply_form, factorise, field, rigid, stiffness, times
+from flexstage.spatial.frame import identity, transport
+
+_SYMMETRY = 1e-8
+_LATTICE, _INSIDE = 6, 0.015
+"""Steps of the lattice in an element, and how far inside its faces it ends: as far as the points of the rules that integrate there."""
+_BLUNT = 5e-4
+"""What the blunted wedges of arcs at rigid faces change of the compliance at the hinge's end, relatively: twice what was found."""
+_NECK = Fineness().neck
+"""Elements within round necks are as they are in a stage."""
+_TELLING = 3
+"""The order whose change from the one before may tell an error small enough."""
+_COARSER = 1.3
+"""By how much larger elements are where the usual ones are too many."""
+_ATTEMPTS = (
+    (1.0, 0.5, 1.2),
+    (1.0, 0.5, 1.6),
+    (1.0, 0.5, 2.0),
+    (1.0, 0.4, 3.0),
+    (0.8, 0.5, 2.0),
+    (0.8, 0.3, 3.0),
+    (0.6, 0.5, 2.5),
+    (0.6, 0.3, 4.0),
+    (0.4, 0.3, 3.0),
+)
+"""Factors on sizes, grading and segments per radius of curvature, tried one after the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Solve:
+    stiffness: Array
+    freedoms: int
+    elements: int
+    order: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Subject:
+    """A hinge of a `medium` with stubs of so many metres at its first and second end, nought where the end is held rigid."""
+
+    part: Shaped
+    medium: Medium
+    first: float
+    second: float
+
+    @staticmethod
+    def of(part: Shaped, own: Medium, stub: float | None, roots: Roots) -> _Subject:
+        """With stubs of the length told, or their own, at the ends with roots."""
+        length = own_stub(part)[1] if stub is None else stub
+        return _Subject(part, own, length if roots.first else 0.0, length if roots.second else 0.0)
+
+    @property
+    def blunting_error(self) -> float:
+        """What is not known because arcs that end on a rigid face are blunted there."""
+        is_blunt = isinstance(self.part, Profiled) and not isinstance(self.part.profile, Contour) and rises(self.part)
+        return _BLUNT if is_blunt and min(self.first, self.second) == 0.0 else 0.0
+
+    @property
+    def stubs(self) -> Array:
+        """Compliance (6, 6) of both stubs about the hinge's centre."""
+        section, total = own_stub(self.part)[0], np.zeros((6, 6))
+        for sign, length in ((-1.0, self.first), (1.0, self.second)):
+            if length > 0.0:
+                total += _about_centre(beam(section, length, self.medium), sign * 0.5 * (span(self.part) + length))
+        return total
+
+    def draw(self, size: float) -> Specimen:
+        """As a specimen, cut where hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
+        across = [axis for axis in MIRRORS if is_mirrored(self.medium, axis) and not (axis == 1 and self.part.slender)]
+        return specimen(self.part, (self.first, self.second), size).cut(across)
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """A mesh [mm], and the planes of which it is one side."""
+
+    mesh: ngsolve.Mesh
+    mirrors: Mirrors
+
+
+@dataclass(frozen=True, eq=False)
+class Listener:
+    """Who is told how far a hinge is, and who is asked whether there is room for its first mesh (nobody, unless stated)."""
+
+    report: Report = silent
+    ask: Callable[[Counts], None] = lambda _counts: None
+
+
+_NOBODY = Listener()
+
+
+@check_arguments
+def hinge_compliance(
+    part: Shaped,
+    material: Material,
+    accuracy: Accuracy | None = None,
+    stub: float | None = None,
+    told: Listener = _NOBODY,
+    *,
+    roots: Roots | None = None,
+) -> HingeSolid:
+    """The 6x6 of a hinge by finite elements, to the accuracy asked for (1 % unless told).
+
+    Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
+    X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
+    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of any other hinge),
+    `stub` [m] how long a stub is: the hinge's full height, or five times its `grain` where it ends on a block wider than itself.
+
+    Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
+    length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
+    without a shape, for a batch, and where no mesh can be made. `told` hears of every mesh and solve.
+
+    >>> from flexstage.parts.neck import Neck
+    >>> from flexstage.parts.profile import Straight
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> coarse = Accuracy(error=0.5, orders=(2, 3), meshes=1)
+    >>> bar = hinge_compliance(Neck("steel", 1e-3, Straight(0.01), width=2e-3), steel, coarse)
+    >>> round(float(bar.compliance[0, 0]) * 200e9 * 1e-3 * 2e-3 / 0.01, 1), bar.stub, bar.finding is None
+    (1.0, 0.0, True)
+    """
+    asked = accuracy or Accuracy()
+    require(_refusals(part))
+    own = medium(material)
+    subject = _Subject.of(part, own, stub, roots or own_roots(part))
+    taken, blunt = subject.stubs, subject.blunting_error
+    found: list[Array] = []
+    last = None
+    for last in _solves(subject, asked, told):
+        found.append(_symmetrise(np.linalg.inv(last.stiffness)) - taken)
+        if blunt + _error(part, found) <= asked.error:
+            break
+    if last is None:
+        what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
+        raise refuse(_label(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
+    alone, error = found[-1], blunt + _error(part, found)
+    return HingeSolid(
+        compliance=alone,
+        stiffness=_symmetrise(np.linalg.inv(alone)),
+        error=error,
+        changes=np.abs(np.diag(alone - found[-2]) / np.diag(alone)) if len(found) > 1 else np.full(6, np.inf),
+        whole=alone + taken,
+        stub=max(subject.first, subject.second),
+        freedoms=last.freedoms,
+        elements=last.elements,
+        order=last.order,
+        finding=None if error <= asked.error else _not_reached(part, error, asked),
+    )
+
+
+def _refusals(part: Shaped) -> Iterator[Finding]:
+    """Parts without a shape, batches, fillets longer than the hinge."""
+    if not isinstance(part, Shaped) or is_actuator(part):
+        yield Finding(_label(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
+        return
+    profile = part.profile if isinstance(part, Profiled) else None
+    for owner in (part, profile):
+        for name, value in vars(owner).items() if owner is not None else ():
+            sizes = [np.size(each) for each in (value if isinstance(value, tuple) else (value,)) if np.ndim(each) > 0]
+            if sizes:
+                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "A solid is one design: read them one by one")
+    if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
+        total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
+        if 2.0 * radius > total:
+            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+
+
+def _error(part: Shaped, found: Sequence[Array]) -> float:
+    """Estimated error of the last of the compliances found, all taken at the hinge's end."""
+    arm = transport(np.array([0.5 * span(part), 0.0, 0.0]))
+    ends = [arm @ compliance @ arm.T for compliance in found]
+    return remaining([change(first, second) for first, second in pairwise(ends)])
+
+
+def _label(part: Shaped) -> str:
+    return f"the {part.kind}"
+
+
+def _solves(subject: _Subject, asked: Accuracy, told: Listener) -> Iterator[_Solve]:
+    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms.
+
+    Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two. Freedoms
+    and elements are counted for all of the hinge.
+    """
+    lowest, highest = asked.orders
+    for refinement in range(asked.meshes):
+        told.report(Stage.MESHING, 0.0)
+        cut = _mesh(subject, asked.shrink**refinement, highest)
+        if refinement == 0:
+            if cut.mirrors.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > asked.freedoms:
+                lowest, cut = 2, _mesh(subject, _COARSER, highest)
+            mesh = cut.mesh
+            told.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))
+        for order in range(lowest if refinement == 0 else highest, highest + 1):
+            space = _space(subject, cut, order)
+            if cut.mirrors.copies * space.size > asked.freedoms:
+                return
+            told.report(Stage.FACTORISING, 0.0)
+            yield _Solve(_law(subject.part, space, cut), cut.mirrors.copies * space.size, cut.mirrors.copies * cut.mesh.ne, order)
+
+
+def _space(subject: _Subject, cut: _Mesh, order: int) -> Field:
+    cut.mesh.Curve(order)
+    owner, finer = np.zeros(cut.mesh.ne, dtype=int), np.zeros(cut.mesh.ne, dtype=bool)
+    return field(PieceMesh(cut.mesh, (subject.medium,), (START, END), owner, finer, cut.mirrors), [START, END], order)
+
+
+def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
+    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other.
+
+    Motions that are not alike about a plane of symmetry have no energy in common.
+    """
+    form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
+    strained, forces = stiffness(space, assemble=False), times([form], motion)  # by strains: the rounding of K u drowns a thin leaf
+    kinds = cut.mirrors.twist_kinds(np.eye(3))
+    for kind in range(cut.mirrors.copies):
+        alike = np.flatnonzero(kinds == kind)
+        own = motion[:, alike] - factorise(space, form, kind)(forces[:, alike])
+        law[np.ix_(alike, alike)] = cut.mirrors.copies * (own.T @ apply_form(strained, own))
+    _require_symmetric(part, law)
+    return _symmetrise(law)
+
+
+def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
+    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
+
+    It is what of a hinge of an isotropic material is computed: the quarter on the positive sides of y and z, the half of a leaf. Elements
+    are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
+    `DesignError` when none of that helps.
+
+    >>> from flexstage.parts.neck import Neck
+    >>> from flexstage.parts.profile import Straight
+    >>> hinge_mesh(Neck("steel", 1e-3, Straight(1e-3), width=1e-3)).GetMaterials()
+    ('medium 0',)
+    """
+    return _mesh(_Subject.of(part, Medium(1.0, 0.0, 1.0), stub, own_roots(part)), factor, order).mesh
+
+
+def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
+    reason = "the mesher was not asked"
+    for shrink, grading, curvature in _ATTEMPTS:
+        drawn = subject.draw(factor * shrink)
+        sizes = {
+            "mp": restrict_sizes(
+                (drawn.mirrors.within(points), size) for points, size in core_points(subject.part, _NECK * factor * shrink)
+            ),
+            "grading": grading,
+            "curvaturesafety": curvature / factor,
+        }
+        outcome = _attempt(drawn, sizes, order)
+        if isinstance(outcome, ngsolve.Mesh):
+            return _Mesh(outcome, drawn.mirrors)
+        reason = outcome
+    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+
+
+def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
+    mesh = generate_mesh(drawn.solid, {"maxh": drawn.largest, **sizes})
+    if isinstance(mesh, str):
+        return mesh
+    for degree in range(2, order + 1):
+        mesh.Curve(degree)
+        lowest = lowest_jacobian(mesh)
+        if lowest <= 0.0:
+            return f"a curved face turns an element inside out, Jacobian {lowest:.3g}"
+    return mesh
+
+
+def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
+    """The lowest Jacobian determinant [mm^3] at a lattice of points in every element, close to its corners and edges: they fold first.
+
+    Not at the edges: where two faces of an element lie on one smooth surface the determinant is nought on their edge, harmlessly.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0
+    True
+    """
+    steps = range(_LATTICE + 1)
+    lattice = np.array([(i, j, k) for i in steps for j in steps for k in steps if i + j + k <= _LATTICE])
+    points = _INSIDE + (1.0 - 4.0 * _INSIDE) / _LATTICE * lattice
+    rule = ngsolve.IntegrationRule([tuple(point) for point in points.tolist()], [1.0] * len(points))
+    return float(np.min(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3))(mesh.MapToAllElements(rule, ngsolve.VOL))))
+
+
+def _about_centre(compliance: Array, away: float) -> Array:
+    """A compliance about a point `away` [m] along x, about the centre."""
+    shift = transport(np.array([-away, 0.0, 0.0]))
+    return shift @ compliance @ shift.T
+
+
+def _symmetrise(matrix: Array) -> Array:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _require_symmetric(part: Shaped, law: Array) -> None:
+    skew = change(law, law.T)
+    if skew > _SYMMETRY:
+        raise refuse(
+            _label(part),
+            f"its stiffness is unsymmetric by {skew:.1e}, {_SYMMETRY:.0e} is allowed",
+            "Its mesh is ill-conditioned: check the proportions",
+        )
+
+
+def _not_reached(part: Shaped, error: float, asked: Accuracy) -> Finding:
+    if not np.isfinite(error):
+        return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
+    return Finding(
+        _label(part),
+        f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
+        "Allow more freedoms, or ask for less",
+    )

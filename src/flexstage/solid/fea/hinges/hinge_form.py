@@ -1,0 +1,46 @@
+"""What a hinge is computed from, and what is found: its 6x6. Light: whoever shows it needs no solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.parts.material import Material
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.hinges.roots import Roots
+
+NO_ESTIMATE = "an error is estimated from two solves, and the second would have more unknowns than are allowed"
+LEAVE = "Compare it with beam theory (flexstage verify), or in Python allow hinge_compliance more freedoms by its Accuracy"
+
+
+class HingeForm(NamedTuple):
+    """What a hinge is computed from: its shape, its material, and which of its ends grow on blocks."""
+
+    part: Shaped
+    material: Material
+    roots: Roots
+
+
+@dataclass(frozen=True, eq=False)
+class HingeSolid:
+    """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
+
+    `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
+    relative error of the compliance *at the hinge's end*, where it acts, each entry ij against sqrt(C_ii C_jj) there; `changes` (6,) are
+    the last relative changes of the diagonal about the centre: those of y and z are larger, being small differences of lever arms.
+    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
+    `finding` says what was not reached, if anything.
+    """
+
+    compliance: Array
+    stiffness: Array
+    error: float
+    changes: Array
+    whole: Array
+    stub: float
+    freedoms: int
+    elements: int
+    order: int
+    finding: Finding | None = None

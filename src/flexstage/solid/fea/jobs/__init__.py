@@ -1,0 +1,1 @@
+"""Jobs of the solid model: processes, memory and caches."""

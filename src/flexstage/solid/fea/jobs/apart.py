@@ -1,0 +1,72 @@
+"""Checking and drawing whole stages in processes of their own: the CAD kernel may crash or hang, and takes nothing with it there."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+from flexstage.base.finding import Finding
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.solid.fea.jobs.install import require_installed
+from flexstage.solid.fea.jobs.progress import Stage
+from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
+from flexstage.solid.fea.jobs.worker import Call, Job
+
+_LIMITS = Limits(seconds=600.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawing(Job):
+    """A stage to draw as a STEP file."""
+
+    mechanism: Mechanism
+
+    @property
+    def name(self) -> str:
+        """The stage's name."""
+        return self.mechanism.name or "stage"
+
+    def work(self, call: Call) -> bytes:
+        """The file."""
+        call.report(Stage.DRAWING, 0.0)
+        from flexstage.solid.exchange.step import step
+
+        return step(self.mechanism)
+
+
+@dataclass(frozen=True, eq=False)
+class _Checking(_Drawing):
+    """A stage whose outlines are checked against each other."""
+
+    clearance: float
+
+    def work(self, call: Call) -> bytes:
+        """The findings as JSON."""
+        call.report(Stage.DRAWING, 0.0)
+        from flexstage.solid.fea.geometry.contact import contact_findings
+
+        return json.dumps([asdict(finding) for finding in contact_findings(self.mechanism, self.clearance)]).encode()
+
+
+def contacts_apart(
+    mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
+) -> list[tuple[Finding, ...]]:
+    """What `contact_findings` finds of stages, side by side in processes of their own, or those of a `pool`.
+
+    Raises `DesignError` where that crashes or takes too long.
+    """
+    found = _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
+    return [tuple(Finding(**item) for item in json.loads(data)) for data in found]
+
+
+def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
+    """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
+    return _results_of([_Drawing(mechanism)], limits)[0]
+
+
+def _results_of(jobs: Sequence[_Drawing], limits: Limits, pool: Pool | None = None) -> list[bytes]:
+    require_installed()
+    results: dict[_Drawing, bytes] = {}
+    work_all(jobs, results.__setitem__, limits, pool=pool)
+    return [results[job] for job in jobs]

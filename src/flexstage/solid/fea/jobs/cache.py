@@ -1,0 +1,164 @@
+"""The cache of superelements and hinges: files by content, so that each is computed once on a machine and a stopped run resumes.
+
+What cannot be read or kept is told, never fatal: it is then computed, or not kept.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexstage.base.arguments import CheckedFields
+from flexstage.base.finding import DesignError, Finding
+from flexstage.base.number import Array
+from flexstage.base.storage.store import FOLDER_VARIABLE, cache_folder, write
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.jobs.store import from_bytes, versions
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.component import Component
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of files in the cache: how their names end, what is in them, and the method whose code counts as their version."""
+
+    suffix: str
+    noun: str
+    method: str
+
+
+SUPERELEMENTS = Kind(".superelement", "superelement", "solver.reduce")
+HINGES = Kind(".hinge", "6x6", "hinges.hinge")
+
+
+@dataclass(frozen=True)
+class Cache(CheckedFields):
+    """Where superelements are kept, and how many bytes of them: the least recently used go first.
+
+    Without a `folder`: that named by the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    """
+
+    folder: Path | None = None
+    limit: float = 4e9
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What the cache holds, a superelement, a 6x6 or nothing, and what is to be said about it."""
+
+    element: Any
+    notices: tuple[Finding, ...] = ()
+
+
+def folder_of(cache: Cache) -> Path:
+    """The folder a cache is in; it need not be there yet.
+
+    >>> folder_of(Cache(Path("/tmp/superelements"))).name
+    'superelements'
+    """
+    if cache.folder is not None:
+        return cache.folder
+    return cache_folder()
+
+
+def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
+    """Digest of what a superelement depends on, versions apart: the component's content and how it is reduced.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.solver.component import components
+    >>> part = components(parallelogram())[0]
+    >>> key_of(part, Reduction()) == key_of(part, Reduction(modes=13))
+    False
+    """
+    state = hashlib.sha256(f"{content(component)} {reduction}".encode())
+    if springs is not None:
+        state.update(np.ascontiguousarray(springs).tobytes())
+    return state.hexdigest()[:32]
+
+
+def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS) -> Found:
+    """Look a component or a hinge up. `where` names it in what is said about files that are damaged or of other versions.
+
+    >>> find(Cache(Path("/nowhere")), "key", "lever").element is None
+    True
+    """
+    path = _path(cache, key, kind)
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return Found(None, _other_versions(path, key, where, kind))
+    except OSError as error:
+        return Found(None, (Finding(where, f"its {kind.noun} {path} cannot be read ({error.strerror})", _RECOMPUTED),))
+    outcome = from_bytes(data, key, versions(kind.method))
+    if isinstance(outcome, str):
+        return Found(None, (Finding(where, f"its {kind.noun} {path} is not used: {outcome}", _RECOMPUTED),))
+    with contextlib.suppress(OSError):
+        os.utime(path)
+    return Found(outcome)
+
+
+_RECOMPUTED = "It is computed anew and replaced"
+
+
+def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
+    """Whether there is a file for a key; whether it is sound shows when it is read.
+
+    >>> holds(Cache(Path("/nowhere")), "key")
+    False
+    """
+    return _path(cache, key, kind).is_file()
+
+
+def keep(cache: Cache, key: str, where: str, data: bytes, kind: Kind = SUPERELEMENTS) -> tuple[Finding, ...]:
+    """Keep the bytes of a file, whole or not at all. Tells why it could not.
+
+    >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", b"")[0].where
+    'lever'
+    """
+    path = _path(cache, key, kind)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _remove_old(cache, path.parent, len(data), kind)
+        write(path, data)
+    except (OSError, DesignError) as error:
+        why = error.strerror if isinstance(error, OSError) else error.findings[0].what
+        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
+        advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
+        return (Finding(where, what, advice),)
+    return ()
+
+
+def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
+    """Remove what was not used for longest, until there is room."""
+    total = float(coming)
+    for _, size, path in sorted(_files(folder, kind.suffix), reverse=True):
+        total += size
+        if total > cache.limit:
+            path.unlink(missing_ok=True)
+
+
+def _files(folder: Path, suffix: str) -> Iterator[tuple[float, int, Path]]:
+    """Last use, size and path of files; another process may remove one meanwhile."""
+    for path in folder.glob(f"*{suffix}"):
+        with contextlib.suppress(FileNotFoundError):
+            state = path.stat()
+            yield state.st_mtime, state.st_size, path
+
+
+def _path(cache: Cache, key: str, kind: Kind) -> Path:
+    return folder_of(cache) / f"{key}-{versions(kind.method).digest}{kind.suffix}"
+
+
+def _other_versions(path: Path, key: str, where: str, kind: Kind) -> tuple[Finding, ...]:
+    others = len(list(path.parent.glob(f"{key}-*{kind.suffix}"))) if path.parent.is_dir() else 0
+    if not others:
+        return ()
+    what = f"the cache {path.parent} holds its {kind.noun} of other versions only ({others}), here is {versions(kind.method)}"
+    return (Finding(where, what, "It is computed anew; the others stay for the versions they belong to"),)

@@ -1,0 +1,169 @@
+"""Memory of a reduction: estimated from the mesh before anything is assembled, against what the machine has left.
+
+Degrees of freedom and matrix entries are counted exactly from the mesh; what the factor takes is measured: between 20 and 70 bytes an entry
+of the matrix on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from flexstage.base.finding import Finding
+from flexstage.base.processes.memory import gigabytes
+from flexstage.solid.fea.meshing.fineness import Fineness
+
+_PROCESS = 180e6
+_PER_ELEMENT = 3500.0
+_MATRICES = 24.0
+"""Bytes an entry: stiffness and inertia, 8 bytes of value and 4 of index each."""
+_FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 50.0, 4e5, 1.0 / 6.0
+"""Bytes an entry of the matrix for its factor; above so many freedoms they grow by this power of them."""
+_COPIES = 4.0
+"""Copies of the basis that are alive at once."""
+_LANCZOS = 40
+_DRAWN, _PER_MESHED = 0.5, 1.4e-4
+"""Seconds to draw; seconds an element to mesh."""
+_PER_FREEDOM, _PER_PROJECTED, _SLOWER = 3.3e-5, 1.7e-7, 2e5
+"""Seconds an unknown, and an unknown and coordinate; above so many unknowns they grow by the root of them, as factors fill."""
+_COARSER, _COARSEST = 1.25, 12.0
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What a tetrahedral mesh consists of, and of how many sides like it the whole does."""
+
+    vertices: float
+    edges: float
+    faces: float
+    elements: float
+    sides: int = 1
+
+    @staticmethod
+    def of(elements: float, sides: int = 1) -> Counts:
+        """The usual counts of a mesh with so many elements.
+
+        >>> Counts.of(1000.0)
+        Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0, sides=1)
+        """
+        return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
+
+    def coarser(self, factor: float) -> Counts:
+        """Roughly the counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
+
+        >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
+        2.0
+        """
+        return self._times(1.0 / factor**2)
+
+    def enriched(self, share: float, order: int) -> Counts:
+        """Of a mesh all of whose elements are of an order, the counts that have as many freedoms as this one with a share of one more.
+
+        >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
+        10.0
+        """
+        return self._times(1.0 + share * (freedoms(self, order + 1) / freedoms(self, order) - 1.0))
+
+    def _times(self, factor: float) -> Counts:
+        return Counts(self.vertices * factor, self.edges * factor, self.faces * factor, self.elements * factor, self.sides)
+
+
+def freedoms(counts: Counts, order: int) -> float:
+    """Degrees of freedom of displacements of an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
+
+    >>> freedoms(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: ten nodes
+    30.0
+    """
+    p = order
+    inner = (p - 1) * (p - 2) / 2.0, (p - 1) * (p - 2) * (p - 3) / 6.0
+    return 3.0 * (counts.vertices + (p - 1) * counts.edges + inner[0] * counts.faces + inner[1] * counts.elements)
+
+
+def entries(counts: Counts, order: int) -> float:
+    """Entries of the stiffness matrix: nine for every pair of nodal functions that share an element, counted at the simplex they span.
+
+    >>> entries(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: full
+    900.0
+    """
+    p = order
+    edge = (p + 1) ** 2 - 2
+    face = ((p + 1) * (p + 2) // 2) ** 2 - 3 * edge - 3
+    inside = ((p + 1) * (p + 2) * (p + 3) // 6) ** 2 - 4 * face - 6 * edge - 4
+    return 9.0 * (counts.vertices + edge * counts.edges + face * counts.faces + inside * counts.elements)
+
+
+def needed(counts: Counts, order: int, columns: int) -> float:
+    """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
+
+    One side of what is symmetric has a factor for every kind of its motions, as many as there are sides. Within -15 and +40 % of what was
+    measured at orders two to four with modes; without them, as one factor at a time is there, up to 70 % more.
+
+    >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
+    1030
+    """
+    size, full = freedoms(counts, order), entries(counts, order)
+    growth = max(1.0, size / _FACTOR_FREEDOMS) ** _FACTOR_GROWTH
+    vectors = 8.0 * size * (_COPIES * columns + _LANCZOS)
+    return _PROCESS + _PER_ELEMENT * counts.elements + full * (_MATRICES + counts.sides * _FACTOR * growth) + vectors
+
+
+def mesh_seconds(counts: Counts) -> float:
+    """What drawing and meshing usually take on one core [s].
+
+    >>> round(mesh_seconds(Counts.of(1000.0)), 1)
+    0.6
+    """
+    return _DRAWN + _PER_MESHED * counts.elements
+
+
+def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
+    """What a reduction usually takes on one core [s]: drawing, mesh, and each unknown solved for and projected once a coordinate.
+
+    Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
+
+    >>> round(reduction_seconds(Counts.of(1000.0), 2, 24), 1), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
+    (0.8, 22)
+    """
+    size = freedoms(counts, order)
+    return mesh_seconds(counts) + size * (_PER_FREEDOM + _PER_PROJECTED * columns) * max(1.0, size / _SLOWER) ** 0.5
+
+
+def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
+    """Why a component does not fit into `limit` bytes, with an order or a fineness that does; nothing if it fits.
+
+    >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
+    >>> found.what
+    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are there'
+    >>> found.advice
+    'Ask for order 2, about 0.363 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
+    >>> refusal("half a lever", Counts(1416, 7258, 10580, 4737, sides=2), Fineness(), 24, 0.5e9).what
+    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are there'
+    """
+    wanted = needed(counts, fineness.order, columns)
+    if wanted <= limit:
+        return None
+    what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
+    size = f"{freedoms(counts, fineness.order):,.0f} degrees of freedom{' of one side' if counts.sides > 1 else ''}"
+    what += f" ({size}), and {gigabytes(limit)} are there"
+    smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
+    remedy = f"Ask for {', or for '.join(smaller)}" if smaller else "Free memory, or read its parts one by one"
+    return Finding(where, what, remedy)
+
+
+def _lower_order(counts: Counts, fineness: Fineness, columns: int, limit: float) -> Iterator[str]:
+    for order in range(fineness.order - 1, 1, -1):
+        wanted = needed(counts, order, columns)
+        if wanted <= limit:
+            yield f"order {order}, about {gigabytes(wanted)}"
+            return
+
+
+def _larger_elements(counts: Counts, fineness: Fineness, columns: int, limit: float) -> Iterator[str]:
+    factor = _COARSER
+    while factor <= _COARSEST:
+        wanted = needed(counts.coarser(factor), fineness.order, columns)
+        if wanted <= limit:
+            found = replace(fineness, neck=round(fineness.neck * factor, 1), block=round(fineness.block * factor, 1))
+            yield f"larger elements, Fineness(neck={found.neck:g}, block={found.block:g}, order={found.order}), about {gigabytes(wanted)}"
+            return
+        factor *= _COARSER

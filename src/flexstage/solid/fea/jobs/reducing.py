@@ -1,0 +1,192 @@
+"""The job of reducing one component."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Array
+from flexstage.base.processes.progress import duration
+from flexstage.parts.piezo import Piezo
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.piece import Form, Piece, span, thinnest
+from flexstage.solid.fea.jobs.cache import SUPERELEMENTS, Kind
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.jobs.memory import Counts, mesh_seconds, needed, reduction_seconds, refusal
+from flexstage.solid.fea.jobs.store import to_bytes
+from flexstage.solid.fea.jobs.worker import Call, Job
+from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, WARPS, Fineness, Hold, Reduction
+from flexstage.solid.fea.solver.component import Component
+
+_PER_PIECE, _PER_FEWEST = 450.0, 12.0
+"""Elements of usual meshes: so many a piece, and so many times the fewest."""
+_LEAF, _NOTCH, _LEAST_THIN = 3.0, 5.5, 0.6
+"""Elements over each triangle of the middle plane of a leaf and of the fine part of a notch, as counted; the least share of them."""
+_SURELY = 0.85
+"""Share of the usual elements that meshes of leaves and notches had at least."""
+_TRIANGLE = 0.433
+"""Area of an equilateral triangle of side one."""
+
+
+def fewest_elements(component: Component, fineness: Fineness) -> float:
+    """Elements a mesh has at least: one at every triangle of the surface, were it that of the pieces' necks and blocks alone.
+
+    What asks for more memory than there is need not be meshed first.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.solid.fea.solver.component import components
+    >>> part = components(parallelogram())[-1]  # a stack, 5 mm thick and 40 mm long
+    >>> round(fewest_elements(part, Fineness(neck=0.1)) / fewest_elements(part, Fineness(neck=1.0)))
+    100
+    """
+    return sum(max(_narrow_elements(piece, fineness), _LEAST_THIN * _thin_elements(piece.form, fineness)) for piece in component.pieces)
+
+
+def _narrow_elements(piece: Piece, fineness: Fineness) -> float:
+    """One at every triangle of the lateral surface, were the piece as wide as its least dimension."""
+    return _surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2)
+
+
+def _thin_elements(form: Form, fineness: Fineness) -> float:
+    """Elements of usual meshes in what is thin over a width: a layer of prisms in a leaf, several about the middle plane of a notch."""
+    if not isinstance(form, Shaped) or form.is_axisymmetric:
+        return 0.0
+    size, width = fineness.neck * thinnest(form), float(np.real(form.throat.area)) / thinnest(form)
+    if form.slender:
+        return _LEAF * span(form) * width / (_TRIANGLE * size**2)
+    if not form.has_arc:
+        return 0.0
+    along = 2.0 * NOTCH_REACH * np.sqrt(0.5 * span(form) * thinnest(form))
+    return _NOTCH * along * width / (_TRIANGLE * (NOTCH_MIDDLE * size) ** 2)
+
+
+def _size(piece: Piece, fineness: Fineness) -> float:
+    return (fineness.neck if piece.body is None else fineness.block) * thinnest(piece.form)
+
+
+def _surface(form: Form) -> float:
+    """Lateral surface [m^2], that of the square around the least dimension."""
+    return 4.0 * thinnest(form) * max(span(form), thinnest(form))
+
+
+@dataclass(frozen=True, eq=False)
+class StoredJob(Job):
+    """A job whose result is stored for `key`, in a file of a kind."""
+
+    key: str
+
+    stored: ClassVar[Kind]
+
+    @property
+    def mark(self) -> str:
+        """Its key."""
+        return self.key
+
+
+@dataclass(frozen=True, eq=False)
+class ComponentJob(StoredJob):
+    """A component to mesh."""
+
+    component: Component
+
+    attempts = len(ATTEMPTS)
+    stored = SUPERELEMENTS
+
+    @property
+    def name(self) -> str:
+        """The component's name."""
+        return self.component.name
+
+    @property
+    def kin(self) -> str:
+        """Its content: at whatever order, its mesh is the same."""
+        return content(self.component)
+
+    def expected(self, fineness: Fineness) -> Counts:
+        """What its mesh usually consists of, with elements of one order more in its notches."""
+        forms = [piece.form for piece in self.component.pieces]
+        thin = [_thin_elements(form, fineness) for form in forms]
+        narrow = (_PER_FEWEST * _narrow_elements(piece, fineness) for piece in self.component.pieces)
+        total = _PER_PIECE * len(thin) + sum(map(max, narrow, thin))
+        finer = sum(number for number, form in zip(thin, forms, strict=True) if number and isinstance(form, Shaped) and form.has_arc)
+        return Counts.of(total).enriched(finer / total, fineness.order)
+
+
+@dataclass(frozen=True, eq=False)
+class Reduce(ComponentJob):
+    """A component to reduce; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+
+    reduction: Reduction
+    springs: Array | None = None
+
+    @property
+    def columns(self) -> int:
+        """Coordinates its superelement will have at most."""
+        part = self.component
+        stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
+        warps = WARPS * sum(item.yields for item in part.interfaces)
+        residual = 6 * len(part.interfaces) if self.reduction.residual else 0
+        return (
+            residual + 6 * (len(part.interfaces) + part.floats + len(part.bodies) + len(part.seats)) + warps + stacks + self.reduction.modes
+        )
+
+    @property
+    def _is_plain(self) -> bool:
+        """Whether faces alone hold it, plane or as they warp: then motions about a plane of symmetry are told apart by what moves them."""
+        part = self.component
+        return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
+
+    @cached_property
+    def _usual(self) -> Counts:
+        return self.expected(self.reduction.fineness)
+
+    def seconds(self, counts: Counts | None = None) -> float:
+        """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
+        found = counts or self._usual
+        return reduction_seconds(found, self.reduction.fineness.order, self.columns)
+
+    def spared(self) -> float:
+        """Its drawing and mesh [s]."""
+        return mesh_seconds(self._usual)
+
+    def needed(self, counts: Counts) -> float:
+        """Memory of the reduction [bytes]."""
+        return needed(counts, self.reduction.fineness.order, self.columns)
+
+    def refusal(self, counts: Counts, limit: float) -> Finding | None:
+        """Why it does not fit, with an order or a fineness that does."""
+        return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
+
+    def foreseen_refusal(self, memory: float, seconds: float) -> Finding | None:
+        """Why its usual mesh is beyond a memory [bytes] or a time, by far more than usual meshes differ; with its thinnest wide piece."""
+        scaled = self._usual.coarser(_SURELY**-0.5)
+        found = self.refusal(scaled, memory)
+        if found is None and self.seconds(scaled) > seconds:
+            what = f"its reduction at order {self.reduction.fineness.order} takes about {duration(self.seconds(scaled))}"
+            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Ask for a lower order (--order 2)")
+        thin = max(self.component.pieces, key=lambda piece: _thin_elements(piece.form, self.reduction.fineness))
+        if found is None or not isinstance(thin.form, Shaped):
+            return found
+        width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.thinnest))
+        ratio = f"{thin.name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
+        more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
+        return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
+
+    def work(self, call: Call) -> bytes:
+        """Ask for what the surface alone takes, or one side of it, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
+        from flexstage.solid.fea.geometry.cad import mirrors_of
+        from flexstage.solid.fea.meshing.mesh import mesh_component
+        from flexstage.solid.fea.solver.reduce import reduce_mesh
+
+        sides = mirrors_of(self.component).copies if self._is_plain else 1
+        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / sides, sides))
+        mesh = mesh_component(self.component, self.reduction.fineness, call.report, call.attempt, by_symmetry=self._is_plain)
+        size = mesh.mesh
+        share = float(np.mean(mesh.finer))
+        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne, sides).enriched(share, self.reduction.fineness.order))
+        element = reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
+        return to_bytes(element, self.key, call.made)

@@ -1,0 +1,363 @@
+"""Jobs of the solid model in processes of their own: as many at once as cores and memory allow, with time limits.
+
+One loop in the caller's thread starts, watches and ends them, so that an interruption, wherever it comes, ends every process.
+"""
+
+from __future__ import annotations
+
+import errno
+import queue
+import signal
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import Any, Generic, Self, TypeVar
+
+from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.processes.jobs import Heard, Word, Worker, cores
+from flexstage.base.processes.memory import available
+from flexstage.base.processes.progress import Progress, Step, time_left
+from flexstage.solid.fea.jobs.memory import Counts
+from flexstage.solid.fea.jobs.progress import Stage, overall
+from flexstage.solid.fea.jobs.store import versions
+from flexstage.solid.fea.jobs.worker import Job, Task, work
+
+_MOST_WORKERS = 2
+_PAUSE = 0.02
+WAITED = 2.5
+"""A job that takes less than so many times what it is spared by the process that did the like last waits for it where it is busy."""
+_TELL_EVERY = 0.5
+_MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What jobs may take.
+
+    `memory` in all [bytes] (absent: what the machine has left), `seconds` each, `mesh_seconds` for one attempt at a mesh, and
+    `workers` at once (absent: one a core, two at most).
+    """
+
+    memory: float | None = None
+    seconds: float = 3600.0
+    mesh_seconds: float = 600.0
+    workers: int | None = None
+
+
+AnyJob = TypeVar("AnyJob", bound=Job)
+
+
+class Pool:
+    """Processes that stay from one run of jobs to the next, as loading the solver takes longer than a small job; results at hand by key.
+
+    They end where its context is left.
+
+    >>> with Pool() as pool:
+    ...     work_all([], print, Limits(), pool=pool)
+    """
+
+    def __init__(self) -> None:
+        self.results: dict[str, Any] = {}
+        self.heard: Heard = queue.SimpleQueue()
+        self.idle: list[Worker] = []
+        self._latest: dict[str, Worker] = {}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        for worker in tuple(self.idle):
+            self.end(worker)
+
+    def choose(self, jobs: Iterable[Job]) -> int | None:
+        """Which of the jobs waiting is next: the first, but for those whose likes a busy process has done last, where there are others.
+
+        None where all that are left wait for such a process: they take little longer there than they are spared.
+        """
+        known = [(number, job, self._latest.get(job.kin)) for number, job in enumerate(jobs)]
+        free = (number for number, _, owner in known if owner is None or owner in self.idle)
+        worth = (number for number, job, _ in known if job.seconds() >= WAITED * job.spared())
+        return next(chain(free, worth), None)
+
+    def worker(self, job: Job) -> Worker:
+        """A process for a job: one that waits, best that which did the like last, else a new one. Raises `OSError` where none starts."""
+        for each in self.idle:
+            if each.process.poll() is not None:
+                self.end(each)
+        found = self._latest.get(job.kin)
+        if found is None or found not in self.idle:
+            found = self.idle[-1] if self.idle else Worker(work, self.heard)
+        self.idle = [each for each in self.idle if each is not found]
+        if job.kin:
+            self._latest[job.kin] = found
+        return found
+
+    def end(self, worker: Worker) -> None:
+        """End a process, or forget one that has ended."""
+        self.idle = [each for each in self.idle if each is not worker]
+        self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
+        worker.end()
+
+
+def work_all(
+    jobs: Iterable[AnyJob],
+    done: Callable[[AnyJob, bytes], None],
+    limits: Limits,
+    progress: Progress | None = None,
+    pool: Pool | None = None,
+) -> None:
+    """Do jobs in processes of their own; `done` is told of each as it is finished, with its result.
+
+    The processes stay where a `pool` is given. Raises `DesignError` with the findings of all that failed, after the others are done:
+    refused by themselves, crashed, out of time, without room. Raising from `progress` or an interruption ends all.
+
+    >>> work_all([], print, Limits())
+    """
+    with nullcontext(pool) if pool is not None else Pool() as used:
+        run = _Run(tuple(jobs), done, limits, progress or _nobody, used)
+        try:
+            run.finish()
+        finally:
+            run.end()
+    require(dict.fromkeys(run.findings))
+
+
+def _nobody(_step: Step) -> None:
+    """Nobody is told."""
+
+
+def workers(limits: Limits) -> int:
+    """How many jobs are done at once.
+
+    >>> workers(Limits(workers=1))
+    1
+    """
+    return limits.workers or min(_MOST_WORKERS, cores())
+
+
+@dataclass(eq=False)
+class _Child(Generic[AnyJob]):
+    """A running worker and what it said last."""
+
+    job: AnyJob
+    attempt: int
+    begun: float
+    worker: Worker
+    stage: Stage = Stage.STARTING
+    fraction: float = 0.0
+    since: float = field(default_factory=time.monotonic)
+    counts: Counts | None = None
+    granted: float | None = None
+
+    def note(self, told: Counts | tuple[Stage, float]) -> None:
+        """Note what it tells."""
+        if isinstance(told, Counts):
+            self.counts, self.granted = told, None
+        else:
+            (self.stage, self.fraction), self.since = told, time.monotonic()
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for the permission it asked for."""
+        return self.counts is not None and self.granted is None
+
+    @property
+    def wanted(self) -> float:
+        """Memory it is going to need [bytes]."""
+        return 0.0 if self.counts is None else self.job.needed(self.counts)
+
+    def permit(self) -> None:
+        """Let it assemble."""
+        self.granted, self.since = self.wanted, time.monotonic()
+        self.worker.ask()
+
+
+class _Run(Generic[AnyJob]):
+    """The jobs of one call: those to come, those running, those done."""
+
+    def __init__(
+        self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, bytes], None], limits: Limits, progress: Progress, pool: Pool
+    ) -> None:
+        self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
+        self.waiting = [(job, 0, time.monotonic()) for job in jobs]
+        self.children: list[_Child[AnyJob]] = []
+        self.findings: list[Finding] = []
+        self.planned = {job.mark: job.seconds() for job in jobs}
+        self.spent: dict[str, float] = {}
+        self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
+
+    def finish(self) -> None:
+        """Go on until nothing waits and nothing runs."""
+        while self.waiting or self.children:
+            while self.waiting and len(self.children) < workers(self.limits):
+                number = self.pool.choose(job for job, *_ in self.waiting)
+                if number is None:
+                    break
+                self._start(*self.waiting.pop(number))
+            self._hear()
+            for child in tuple(self.children):
+                self._check_time(child)
+            self._permit()
+            self._tell()
+
+    def end(self) -> None:
+        """Leave no process at work."""
+        for child in self.children:
+            self.pool.end(child.worker)
+
+    def _start(self, job: AnyJob, attempt: int, begun: float) -> None:
+        memory = available() if self.limits.memory is None else self.limits.memory
+        task = Task(job, attempt, memory, self.limits.seconds, versions())
+        try:
+            worker = self.pool.worker(job)
+        except OSError as error:
+            raise _refuse_start(job.name, error) from error
+        self.children.append(_Child(job, attempt, begun if attempt else time.monotonic(), worker))
+        worker.ask(task)
+
+    def _hear(self) -> None:
+        """Take in what the workers said, waiting a moment for it."""
+        try:
+            worker, word, value = self.pool.heard.get(timeout=_PAUSE)
+        except queue.Empty:
+            return
+        for child in self.children:
+            if child.worker is worker:
+                self._take(child, word, value)
+                return
+        if word is Word.ENDED:
+            self.pool.end(worker)
+
+    def _take(self, child: _Child[AnyJob], word: Word, value: Any) -> None:
+        match word:
+            case Word.TOLD:
+                child.note(value)
+            case Word.DONE:
+                self.done(child.job, value)
+                self._leave(child)
+                self.pool.idle.append(child.worker)
+            case Word.FAILED:
+                self._close(child, *_failure_findings(child, value))
+            case Word.ENDED:
+                if value == 1 or not self._again(child):
+                    self._close(child, _failure(child, value))
+
+    def _check_time(self, child: _Child[AnyJob]) -> None:
+        now = time.monotonic()
+        if child.stage is Stage.MESHING and not child.waits and now - child.since > self.limits.mesh_seconds:
+            if not self._again(child):
+                self._close(child, _out_of_time(child, self.limits.mesh_seconds))
+        elif now - child.begun > self.limits.seconds:
+            self._close(child, _out_of_time(child, self.limits.seconds))
+
+    def _again(self, child: _Child[AnyJob]) -> bool:
+        """Begin with the next attempt at a mesh, where one took the process down or did not end."""
+        attempt = round(child.fraction * child.job.attempts) + 1
+        if child.stage is not Stage.MESHING or attempt >= child.job.attempts:
+            return False
+        self.children.remove(child)
+        self.pool.end(child.worker)
+        self.waiting.insert(0, (child.job, attempt, child.begun))
+        return True
+
+    def _close(self, child: _Child[AnyJob], *findings: Finding) -> None:
+        self.findings += findings
+        self._leave(child)
+        self.pool.end(child.worker)
+
+    def _leave(self, child: _Child[AnyJob]) -> None:
+        self.spent[child.job.mark] = time.monotonic() - child.begun
+        self.children.remove(child)
+
+    def _permit(self) -> None:
+        """Permit what fits beside those that run; refuse what does not fit even alone."""
+        for child in tuple(self.children):
+            if child.counts is None or not child.waits:
+                continue
+            others = [each for each in self.children if each.granted is not None]
+            finding = child.job.refusal(child.counts, self._room(child, others))
+            if finding is None:
+                child.permit()
+            elif not others:
+                self._close(child, finding)
+
+    def _room(self, child: _Child[AnyJob], others: list[_Child[AnyJob]]) -> float:
+        if self.limits.memory is not None:
+            return self.limits.memory - sum(each.granted or 0.0 for each in others)
+        return available() + child.worker.resident() - sum(max(0.0, (each.granted or 0.0) - each.worker.resident()) for each in others)
+
+    def _tell(self) -> None:
+        text = ", ".join(f"{child.job.name}: {child.stage.value}" for child in self.children) or "done"
+        now = time.monotonic()
+        if text != self.text or now - self.told > _TELL_EVERY:
+            self.text, self.told = text, now
+            self.progress(self._step(text, now))
+
+    def _step(self, text: str, now: float) -> Step:
+        """Where the jobs stand, those that have a mesh planned anew."""
+        self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
+        whole = sum(self.planned.values())  # none where nothing is known of them, or every job fails at once
+        shares = {mark: seconds / whole if whole else 1.0 / len(self.planned) for mark, seconds in self.planned.items()}
+        stages = {child.job.mark: (child.stage, child.fraction) for child in self.children}
+        running = {child.job.mark: now - child.begun for child in self.children}
+        self.fraction = min(1.0, max(self.fraction, overall(stages, shares, self.spent)))
+        left = time_left([self.planned], self.spent, running, workers(self.limits))
+        return Step(text, self.fraction, left, dict(self.spent), running, dict(self.planned))
+
+
+def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
+    """What keeps a job from being done that its process lived to tell."""
+    if isinstance(error, DesignError):
+        return error.findings
+    if isinstance(error, MemoryError):
+        return (_memory_full(child),)
+    if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}:
+        return (_disk_full(child.job.name),)
+    return (_fault(child, f"{type(error).__name__}: {error}"),)
+
+
+def _failure(child: _Child[AnyJob], code: int) -> Finding:
+    doing = child.stage.value
+    if code == 1:
+        return _fault(child, child.worker.last_words())
+    tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
+    advice = "Ask for elements of another size or order, and report it with the design if it happens again"
+    if child.stage in {Stage.DRAWING, Stage.MESHING}:
+        advice = "Change the outline or the elements' sizes a little: slivers and faces that nearly touch bring the mesher down"
+    elif code == -signal.SIGKILL:
+        advice = "Something ended it, as systems do when memory runs out: ask for larger elements or a lower order, or state less memory"
+    return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
+
+
+def _fault(child: _Child[AnyJob], said: str) -> Finding:
+    advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
+    return Finding(child.job.name, f"its process failed while {child.stage.value} ({said})", advice)
+
+
+def _reason(code: int) -> str:
+    names = {-number.value: number.name for number in signal.Signals}
+    return names.get(code, f"exit code {code}")
+
+
+def _out_of_time(child: _Child[AnyJob], seconds: float) -> Finding:
+    advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
+    return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
+
+
+def _memory_full(child: _Child[AnyJob]) -> Finding:
+    advice = "Ask for larger elements or a lower order, or let it have more"
+    return Finding(child.job.name, f"it took more memory while {child.stage.value} than it may", advice)
+
+
+def _disk_full(name: str) -> Finding:
+    advice = "Free some of it, or let the environment variable TMPDIR name a folder with more room"
+    return Finding(name, f"no room is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
+
+
+def _refuse_start(name: str, error: OSError) -> Exception:
+    where = tempfile.gettempdir()
+    advice = "See that Python can be started and that the folder for temporary files (environment variable TMPDIR) has room"
+    return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)

@@ -1,0 +1,112 @@
+"""Jobs of the solid model, and what a process does with one: CAD and mesher may crash or hang; there they take nothing with them."""
+
+from __future__ import annotations
+
+import faulthandler
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from flexstage.base.finding import Finding
+from flexstage.base.processes.jobs import Line, limit_memory
+from flexstage.solid.fea.jobs.install import require_solver
+from flexstage.solid.fea.jobs.memory import Counts
+from flexstage.solid.fea.jobs.progress import Report, Stage
+from flexstage.solid.fea.jobs.store import Versions
+
+_SLACK, _SHARE = 5e8, 1.2
+"""What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
+USUAL_SECONDS = 2.0
+"""What a small job takes: a process that loads its libraries, draws and meshes."""
+_PATIENCE = 60.0
+"""How much longer than allowed it lives if nobody ends it [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """What a job is given where it works: whom to tell, whom to ask for memory, which attempt at a mesh to begin with.
+
+    `ask` waits until there is room for a mesh, expected or made.
+    """
+
+    report: Report
+    ask: Callable[[Counts], None]
+    attempt: int
+    made: Versions
+
+
+class Job(ABC):
+    """Work for a process of its own: a value that can be pickled, with a result in bytes."""
+
+    attempts: int = 1
+    """How many attempts at a mesh can be told apart by their number, so that one that takes the process down is followed by the next."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What it works on, as the user knows it."""
+
+    @property
+    def mark(self) -> str:
+        """What it is told apart by from all others."""
+        return self.name
+
+    @property
+    def kin(self) -> str:
+        """What it shares with jobs that a process does sooner when it did the like before; nothing where that does not matter."""
+        return ""
+
+    def seconds(self, _counts: Counts | None = None) -> float:
+        """What it usually takes on one core [s], before or after its mesh is known."""
+        return USUAL_SECONDS
+
+    def spared(self) -> float:
+        """How much less it usually takes [s] by a process that did the like before."""
+        return 0.0
+
+    @abstractmethod
+    def work(self, call: Call) -> bytes:
+        """Do it."""
+
+    def needed(self, _counts: Counts) -> float:
+        """Memory it is going to need for a mesh [bytes]."""
+        return 0.0
+
+    def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
+        """Why it does not fit into memory, with a smaller suggestion."""
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What a worker is told: the job, the attempt at its mesh to begin with, the memory [bytes] and time [s] it may take, who is asking."""
+
+    job: Job
+    attempt: int
+    memory: float
+    seconds: float
+    made: Versions
+
+
+def work(line: Line, task: Task) -> bytes:
+    """Do a task's job: stages and counts of meshes are told, and for room for each mesh it waits.
+
+    Raises a `DesignError` that names the remedy if the solver does not load.
+    """
+
+    def ask(counts: Counts) -> None:
+        line.tell(counts)
+        line.hear()
+
+    def report(stage: Stage, fraction: float) -> None:
+        line.tell((stage, fraction))
+
+    limit_memory(_SHARE * task.memory + _SLACK)
+    faulthandler.dump_traceback_later(task.seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
+    try:
+        return task.job.work(Call(report, ask, task.attempt, task.made))
+    except (ImportError, OSError):
+        require_solver()  # what did not load may be the solver
+        raise
+    finally:
+        faulthandler.cancel_dump_traceback_later()

@@ -1,0 +1,1 @@
+"""Meshes, how fine they are, and the errors that their sequence shows."""

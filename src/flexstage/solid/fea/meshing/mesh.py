@@ -1,0 +1,349 @@
+"""Meshes: tetrahedra graded to the thickness of each neck, curved to the drawn geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any
+
+import ngsolve
+import numpy as np
+from netgen import occ
+from netgen.meshing import MeshingParameters
+
+from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.number import Array
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.cad import Cad, cad, cut_component, half_extents, region
+from flexstage.solid.fea.geometry.mirror import Mirrors
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, span, thinnest
+from flexstage.solid.fea.jobs.content import content
+from flexstage.solid.fea.jobs.progress import Report, Stage, silent
+from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, Fineness
+from flexstage.solid.fea.meshing.straighten import straighten
+from flexstage.solid.fea.solver.component import Component
+
+_CURVATURE = 1.5
+"""Segments per radius of curved faces."""
+_NECK = 0.5
+"""Share of a link's length, about its middle, whose elements follow the drawing."""
+_CORE, _AWAY = 1.0 / 6.0, 0.1
+"""Elements within a round neck with an arc, on circles of half its radius about its axis: this share of those on its faces in the middle,
+larger by this share of the distance from it. From its surface alone the mesher fills it with flat ones, twice as wide."""
+_ROUND = 0.85
+"""Elements within round necks are this share of those of the same neck alone, as its faces are coarser."""
+_NOTCH = 5.0 / 3.0
+"""Elements of notches, which are of one order more, are as much larger than those on the faces of other hinges."""
+_SLENDER = 0.4
+"""Share for straight necks: as wide as thick, they cost little."""
+_ROOT = 2.0 / 15.0
+"""Elements around the ends of straight necks are this share of the usual: at the edge there the block they grow on yields most."""
+_HELD = 0.9
+"""Share of its length within which a round neck's inside is graded."""
+_PRINT = 1.0 / 3.0
+"""Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
+_MOST = 3e5
+"""Elements that may cover one link."""
+_WITHIN = 1e-6
+"""A face belongs to a piece when its centre is this near its bounding box [m]."""
+_AT_HAND = 8
+"""Drawings and meshes that are kept for the next order."""
+
+
+@dataclass(frozen=True)
+class PieceMesh:
+    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to.
+
+    Elements that are `finer` (mask) take one order more than the others: those of notches. Where it is the positive side of what is
+    symmetric about `mirrors`, `images` (copies - 1, elements) are the pieces that the mirror images of its elements belong to.
+    """
+
+    mesh: ngsolve.Mesh
+    media: tuple[Medium, ...]
+    faces: tuple[str, ...]
+    owner: Array
+    finer: Array
+    mirrors: Mirrors = Mirrors()
+    images: tuple[Array, ...] = ()
+
+
+def mesh_component(
+    component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
+) -> PieceMesh:
+    """Draw and mesh a component; `by_symmetry` the positive side alone where it is symmetric.
+
+    Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
+    turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
+    earlier one took the process down. What is drawn and meshed is kept at hand: at another order it is only curved anew. Raises
+    `DesignError` when none of that helps.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> from flexstage.solid.fea.meshing.fineness import Fineness
+    >>> whole = mesh_component(bar(), Fineness(order=2))
+    >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
+    (10000.0, ('end', 'foot'))
+    """
+    require(_thin_findings(component, fineness))
+    report(Stage.DRAWING, 0.0)
+    subject = _Subject.of(component, by_symmetry=by_symmetry)
+    drawing = _drawing(subject)
+    failure = "the mesher was not asked"
+    for number in range(first, len(ATTEMPTS)):
+        report(Stage.MESHING, number / len(ATTEMPTS))
+        outcome = _straight_mesh(subject, replace(fineness, order=1), number)
+        result = outcome if isinstance(outcome, str) else _finish(component.pieces, drawing, _curve(outcome, fineness.order))
+        if isinstance(result, PieceMesh):
+            return result
+        failure = result
+    raise _refuse_mesh(component, failure)
+
+
+def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding]:
+    """Links so thin for their length and width that elements of their size would never end."""
+    for piece in component.pieces:
+        size = _size(piece, fineness) / MILLIMETRES
+        sides = sorted(2.0 * half_extents(piece))
+        count = sides[1] * sides[2] / size**2
+        if piece.body is None and count > _MOST:
+            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
+            what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
+            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
+
+
+@dataclass(frozen=True)
+class _Subject:
+    """A component, told apart by what its mesh depends on: its content and what its faces are called."""
+
+    content: str
+    faces: tuple[str, ...]
+    by_symmetry: bool
+    component: Component = field(compare=False)
+
+    @staticmethod
+    def of(component: Component, *, by_symmetry: bool) -> _Subject:
+        joints = [*(item.joint for item in component.interfaces), *component.fixed]
+        return _Subject(content(component), tuple(joint.name for joint in joints), by_symmetry, component)
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _drawing(subject: _Subject) -> Cad:
+    whole = cad(subject.component)
+    return cut_component(subject.component, whole) if subject.by_symmetry else whole
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolve.Mesh | str:
+    """An attempt at a mesh, not curved yet; else what went wrong."""
+    component, drawing = subject.component, _drawing(subject)
+    shrink, grading, curvature = ATTEMPTS[number]
+    sizes = {
+        "mp": _refine_necks(component.pieces, shrink * fineness.neck, drawing.mirrors),
+        "maxh": _set_sizes(component, drawing, fineness, shrink),
+        "grading": grading * fineness.grading,
+        "curvaturesafety": curvature * _CURVATURE,
+    }
+    return generate_mesh(drawing.shape, sizes)
+
+
+def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
+    """A copy of a mesh, curved to its drawing."""
+    mesh = ngsolve.Mesh(straight.ngmesh.Copy())
+    mesh.Curve(order)
+    return mesh
+
+
+def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
+    """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
+
+    By one thread: several may make another mesh from run to run, and spend most of their time waiting for one another.
+
+    >>> generate_mesh(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
+    True
+    """
+    try:
+        raw = occ.OCCGeometry(shape).GenerateMesh(**sizes, parallel_meshing=False)
+    except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
+        return str(error)
+    mesh = ngsolve.Mesh(raw)
+    return mesh if mesh.ne else "no elements came out"
+
+
+def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> PieceMesh | str:
+    """A mesh without folded elements, those of necks curved; else what is wrong with it."""
+    places = centroids(mesh)
+    owner = owners(pieces, places)
+    necks = np.zeros(len(places), dtype=bool)
+    for number, piece in enumerate(pieces):
+        if piece.body is None:
+            within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
+            necks |= within & (owner == number)
+    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if _is_notch(piece.form)])
+    images = tuple(owners(pieces, places * signs) for signs in drawing.mirrors.images)
+    return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer, drawing.mirrors, images)
+
+
+def _is_notch(form: Form) -> bool:
+    """Whether it is a hinge with arcs across a width: its strain changes from face to face and along it, but smoothly."""
+    return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
+
+
+def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> MeshingParameters:
+    """Smaller elements where the strain of hinges changes most from one to the next."""
+    return restrict_sizes(
+        (mirrors.within(points @ piece.frame.rotation.T + piece.frame.position), size)
+        for piece in pieces
+        if isinstance(piece.form, Shaped)
+        for points, size in _fine_points(piece.form, neck)
+    )
+
+
+def restrict_sizes(places: Iterable[tuple[Array, float]]) -> MeshingParameters:
+    """Elements of at most a size at points (n, 3) [m].
+
+    >>> restrict_sizes([(np.zeros((1, 3)), 1e-3)]) is not None
+    True
+    """
+    result = MeshingParameters()
+    for points, size in places:
+        for x, y, z in (points * MILLIMETRES).tolist():
+            result.RestrictH(x, y, z, h=size * MILLIMETRES)
+    return result
+
+
+def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
+    """Points (n, 3) of a hinge, in its frame, and the size of elements there [m]."""
+    if _is_strut(form):
+        size = _ROOT * neck * thinnest(form)
+        yield _root_points(form, size), size
+    if _is_notch(form):
+        size = NOTCH_MIDDLE * neck * thinnest(form)
+        yield _middle_points(form, size), size
+    yield from core_points(form, _ROUND * neck)
+
+
+def _middle_points(form: Shaped, size: float) -> Array:
+    """Points (n, 3) in the middle plane of a notch around its thinnest line, in its frame [m]."""
+    thickness, width = (float(np.real(value)) for value in (form.throat.height, form.throat.width))
+    reach = NOTCH_REACH * np.sqrt(0.5 * span(form) * thickness)
+    along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / size))) for half in (reach, 0.5 * width))
+    return np.array([(x, 0.0, z) for x in along for z in across])
+
+
+def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
+    """Points (n, 3) within a round neck with an arc, in its frame, and the size of elements there [m] that are `neck` thicknesses outside.
+
+    They lie on its axis and halfway to its surface. None in any other hinge.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
+    []
+    """
+    if not (form.has_arc and form.is_axisymmetric):
+        return
+    size = _CORE * neck * thinnest(form)
+    stations, sections = zip(*form.silhouette, strict=True)
+    place = 0.0
+    while place < _HELD * stations[-1]:
+        own = size + _AWAY * place
+        radius = 0.25 * float(np.interp(place, stations, [section.height for section in sections]))
+        turns = 2.0 * np.pi * np.linspace(0.0, 1.0, int(np.ceil(2.0 * np.pi * radius / own)), endpoint=False)
+        circle = np.stack([np.full_like(turns, place), radius * np.cos(turns), radius * np.sin(turns)], axis=1)
+        both = np.vstack([circle, [(place, 0.0, 0.0)]])
+        yield np.vstack([both, both * (-1.0, 1.0, 1.0)]), own
+        place += 0.5 * own
+
+
+def _root_points(form: Shaped, size: float) -> Array:
+    """Points (n, 3) along the edges of both end faces of a hinge, in its frame [m]."""
+    half, high, wide = (0.5 * float(np.real(value)) for value in (form.span, form.end.height, form.end.width))
+    along = np.linspace(-1.0, 1.0, 1 + int(np.ceil(2.0 * max(high, wide) / size)))
+    one = np.ones_like(along)
+    edges = [(along, one), (along, -one), (one, along), (-one, along)]
+    if form.is_axisymmetric:
+        edges = [(np.cos(np.pi * along), np.sin(np.pi * along))]
+    across = np.hstack(edges)
+    return np.vstack([np.stack([np.full_like(across[0], end), high * across[0], wide * across[1]], axis=1) for end in (-half, half)])
+
+
+def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
+    """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
+    sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
+    scale = _PRINT * fineness.neck * shrink * MILLIMETRES
+    prints = {item.joint.name: scale * item.joint.area**0.5 for item in component.interfaces if item.footprint}
+    for face in drawing.shape.faces:
+        own = min(_near(component.pieces, sizes, face), default=max(sizes))
+        face.maxh = min(own, prints.get(face.name or "", own))
+    return max(sizes)
+
+
+def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
+    """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
+    middle = face.center  # worked out each time it is asked for
+    centre = np.array([[middle.x, middle.y, middle.z]]) / MILLIMETRES
+    corners = np.array([[vertex.p.x, vertex.p.y, vertex.p.z] for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
+    held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
+    # A wall of a block around the end of a hinge has its centre on the hinge.
+    whole = [piece.body is not None or bool(np.all(region(piece, corners) <= _WITHIN)) for piece in pieces]
+    return [
+        size * _thicker(piece, centre)
+        for piece, size, centred, all_of_it in zip(pieces, sizes, held, whole, strict=True)
+        if centred and all_of_it
+    ]
+
+
+def _thicker(piece: Piece, centre: Array) -> float:
+    """How many times thicker than at its throat a leaf in pieces is at a point (1, 3) [m]; 1 for what is thick at its ends alone."""
+    if not isinstance(piece.form, Shaped) or piece.form.is_prismatic or not piece.form.slender:
+        return 1.0
+    stations, sections = zip(*piece.form.silhouette, strict=True)
+    place = float(((centre - piece.frame.position) @ piece.frame.rotation)[0, 0])
+    return float(np.interp(place, stations, [section.thinnest for section in sections])) / thinnest(piece.form)
+
+
+def _size(piece: Piece, fineness: Fineness) -> float:
+    if piece.body is not None:
+        return fineness.block * thinnest(piece.form) * MILLIMETRES
+    slender = isinstance(piece.form, Shaped) and _is_strut(piece.form)
+    factor = _SLENDER if slender else _NOTCH if _is_notch(piece.form) else 1.0
+    return factor * fineness.neck * thinnest(piece.form) * MILLIMETRES
+
+
+def _is_strut(form: Shaped) -> bool:
+    """Whether it is a neck of one section, which ends on blocks wider than itself."""
+    return form.is_prismatic and not form.slender and form.bends_both_ways
+
+
+def _refuse_mesh(component: Component, reason: str) -> Exception:
+    thin = min(component.pieces, key=lambda piece: thinnest(piece.form))
+    return refuse(
+        component.name,
+        f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
+        "Ask for a finer mesh, or look for steps and slivers between outlines that are much smaller than the neck",
+    )
+
+
+def centroids(mesh: ngsolve.Mesh) -> Array:
+    """Vertex means of all elements (n, 3) [m].
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> from flexstage.solid.fea.meshing.fineness import Fineness
+    >>> found = centroids(mesh_component(bar(), Fineness(order=2)).mesh)
+    >>> bool(np.all((0.0 < found[:, 0]) & (found[:, 0] < 0.1)))
+    True
+    """
+    corners = np.array([vertex.point for vertex in mesh.vertices])
+    members = np.array([[vertex.nr for vertex in element.vertices] for element in mesh.Elements(ngsolve.VOL)])
+    return corners[members].mean(axis=1) / MILLIMETRES
+
+
+def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
+    """The piece (index) each point belongs to: the nearest by bounding box, links before bodies where both hold it.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()
+    [0]
+    """
+    away = np.stack([region(piece, points) - (1e-9 if piece.body is None else 0.0) for piece in pieces])
+    return np.argmin(away, axis=0)

@@ -1,0 +1,1 @@
+"""Finite elements, their reduction to superelements and the assembled model."""

@@ -1,0 +1,63 @@
+"""Casings: the bending stiffness that an encapsulated stack has beyond its ceramic's, as a sleeve that slides along the axis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.finding import refuse
+from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import PlacedLink
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.geometry.piece import stack_medium
+from flexstage.solid.fea.solver.component import Component
+from flexstage.spatial.frame import twist_transform
+
+
+def casing(link: PlacedLink) -> Array | None:
+    """Stiffness (6, 6) of a stack's casing about its centre, in its frame: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
+
+    B is the stated bending rigidity less the ceramic's E I; nothing along the axis, where the casing slides. `None` without a stated one.
+    Raises `DesignError` when the stated rigidity is below the ceramic's own.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> law = casing(expand(double_triangle()).links["B1/pzt"])  # B 387.2 N m^2, of which the ceramic has 17.2
+    >>> float(law[0, 0]), round(float(law[4, 4]) * 0.162, 1)
+    (0.0, 370.0)
+    """
+    part = link.part
+    if not isinstance(part, Piezo) or part.bending_rigidity is None:
+        return None
+    length, diameter = float(np.real(part.length)), float(np.real(part.diameter))
+    own = stack_medium(part).young * np.pi * diameter**4 / 64.0
+    stated = float(np.real(part.bending_rigidity))
+    if stated < own:
+        raise refuse(
+            link.name,
+            f"its bending rigidity {stated:.4g} N m^2 is below the {own:.4g} N m^2 of its ceramic alone",
+            "State the encapsulated stack's rigidity, or leave it out",
+        )
+    extra = stated - own
+    across, bending = 12.0 * extra / length**3, extra / length
+    return np.diag([0.0, across, across, bending / (1.0 + float(np.real(part.poisson))), bending, bending])
+
+
+def end_face_twist(component: Component, link: PlacedLink) -> Array:
+    """Relative twist (6, 6 m) of a stack's end faces, second against first, at its centre in its frame, by the component's interfaces.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> from flexstage.solid.fea.solver.component import components
+    >>> stage = parallelogram()
+    >>> stack = next(part for part in components(stage) if part.name == "B/pzt")
+    >>> apart = end_face_twist(stack, expand(stage).links["B/pzt"])
+    >>> [float(value) for value in apart[0, [0, 6]]]  # along the stack
+    [-1.0, 1.0]
+    """
+    frame = next(piece.frame for piece in component.pieces if piece.name == link.name)
+    rows = np.zeros((6, 6 * len(component.interfaces)))
+    for number, item in enumerate(component.interfaces):
+        if item.joint.link == link.name:
+            sign = 1.0 if item.joint.body == link.joins[1] else -1.0
+            rows[:, 6 * number : 6 * number + 6] = sign * twist_transform(frame, item.joint.frame.position)
+    return rows

@@ -1,0 +1,278 @@
+"""Components: a stage cut where units meet other bodies, at the ends of stacks and at rigid bodies.
+
+A body with outlines is elastic, one without is rigid. A component is a set of pieces that are one solid: links and elastic bodies of one
+unit's copy (or of the stage itself) that touch. Every other joint of a link with a body is an interface: a flat end face that stays plane.
+Stacks stand alone, between rigid end caps. Components drawn in their unit's frame (a lone link in its own) repeat, and are reduced once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from flexstage.base.finding import Finding, require
+from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, copies, expand
+from flexstage.mechanism.mechanism import GROUND, Mechanism
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.geometry.piece import Form, Piece, end_area, form_of, medium, span, stack_medium
+from flexstage.solid.fea.solver.ties import End, ends
+from flexstage.spatial.frame import Frame, identity
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Where a link's end face meets a body: its name (`B1/front:platform`), frame, x along the link out of its end face, and area [m^2]."""
+
+    name: str
+    link: str
+    body: str
+    frame: Frame
+    area: float
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """A joint as a component sees it: on its own end face, or (`footprint`) printed on its body by another component's link.
+
+    It `yields` where both sides are elastic: the face may deform, both sides alike. End caps of stacks and rigid bodies keep it plane.
+    """
+
+    joint: Joint
+    footprint: Form | None = None
+    stamp: Frame | None = None
+    yields: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Component:
+    """One solid in its own axes: `pieces`, the `interfaces` it is joined by, the joints `fixed` to the ground.
+
+    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends
+    of parts without a shape on it.
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    interfaces: tuple[Interface, ...]
+    fixed: tuple[Joint, ...]
+    bodies: Mapping[str, Array]
+    place: Frame
+    seats: tuple[End, ...] = ()
+
+    @property
+    def floats(self) -> bool:
+        """Whether no joint holds it: it hangs on parts without a shape alone, and moves as a whole."""
+        return not self.interfaces and not self.fixed
+
+
+@dataclass(frozen=True, eq=False)
+class _Graph:
+    assembly: Assembly
+    materials: Mapping[str, Material]
+    forms: Mapping[str, Form]
+    joints: Mapping[str, tuple[Joint, Joint]]
+    owner: Mapping[str, str]
+
+
+class Cut(Enum):
+    """Where a stage is cut: at units and stacks, or nowhere (stacks keep their rigid end caps)."""
+
+    UNITS = "units"
+    NONE = "none"
+
+
+def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, ...]:
+    """Cut a stage into components, each in its own axes.
+
+    Raises `DesignError` naming every link that has no shape.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [part.name for part in components(double_triangle())][:4]
+    ['platform', 'B1/base', 'B1/tip', 'B1/pzt']
+    """
+    assembly = expand(mechanism)
+    forms = _forms(assembly)
+    joints = {name: link_joints(assembly.links[name], form) for name, form in forms.items()}
+    graph = _Graph(assembly, mechanism.materials, forms, joints, _owners(assembly, forms, cut))
+    frames = {name: frame.right_handed for name, _, frame in copies(mechanism)}
+    members: dict[str, list[str]] = {}
+    for node, owner in graph.owner.items():
+        members.setdefault(owner, []).append(node)
+    return tuple(_component(graph, nodes, frames) for nodes in members.values())
+
+
+def groups(component: Component) -> dict[str, tuple[int, ...]]:
+    """Pieces that count under one name, in order: every link by itself, all solids of a body together.
+
+    The order is the same in every copy, so that one copy's superelement serves all.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> groups(bar())
+    {'bar': (0,)}
+    """
+    result: dict[str, tuple[int, ...]] = {}
+    for number, piece in enumerate(component.pieces):
+        name = piece.name if piece.body is None else piece.body
+        result[name] = (*result.get(name, ()), number)
+    return result
+
+
+def with_yielding_ends(component: Component) -> Component:
+    """The same component with the ends of its links on rigid bodies yielding too: what it is on elastic ones, where all else is equal.
+
+    A unit drawn alone ends on a rigid output, in its stage on an elastic platform; with all warps nought both are one.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
+    (False, True)
+    """
+    stacks = {piece.name for piece in component.pieces if isinstance(piece.form, Piezo)}
+    if not component.bodies:
+        return component
+    own = (item.footprint is None and item.joint.link not in stacks for item in component.interfaces)
+    return replace(
+        component, interfaces=tuple(replace(item, yields=item.yields or end) for item, end in zip(component.interfaces, own, strict=True))
+    )
+
+
+def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
+    """The joints of a link: its first body at the end face towards -x of the link frame, its second at +x.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> link = next(iter(expand(parallelogram()).links.values()))
+    >>> [joint.body for joint in link_joints(link, form_of(link))] == list(link.joins)
+    True
+    """
+    half = 0.5 * span(form)
+    first, second = link.joins
+    about = Frame(link.frame.rotation @ np.diag([-1.0, -1.0, 1.0]), link.frame.point(np.array([-half, 0.0, 0.0])))
+    along = Frame(link.frame.rotation, link.frame.point(np.array([half, 0.0, 0.0])))
+    area = end_area(form)
+    return Joint(f"{link.name}:{first}", link.name, first, about, area), Joint(f"{link.name}:{second}", link.name, second, along, area)
+
+
+def is_elastic(assembly: Assembly, body: str) -> bool:
+    """Whether a body has outlines: then it is a solid, else rigid.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> is_elastic(expand(double_triangle()), "platform"), is_elastic(expand(double_triangle()), "ground")
+    (True, False)
+    """
+    return body != GROUND and bool(assembly.bodies[body].solids)
+
+
+def _forms(assembly: Assembly) -> dict[str, Form]:
+    drawn = {name: form_of(link) for name, link in assembly.links.items()}
+    require(form for form in drawn.values() if isinstance(form, Finding))
+    return {name: form for name, form in drawn.items() if form is not None and not isinstance(form, Finding)}
+
+
+def _group(name: str) -> str:
+    return name.rpartition("/")[0]
+
+
+def _owners(assembly: Assembly, forms: Mapping[str, Form], cut: Cut) -> dict[str, str]:
+    """Which component each elastic body and link belongs to, named after its first body (a lone link: itself)."""
+    bodies = [body for body in assembly.bodies if is_elastic(assembly, body)]
+    nodes = sorted([*bodies, *forms], key=lambda name: _order(assembly, name))
+    owner = {node: node for node in nodes}
+    for name, form in forms.items():
+        for body in assembly.links[name].joins:
+            if body in owner and (cut is Cut.NONE or (_group(body) == _group(name) and not isinstance(form, Piezo))):
+                _unite(owner, name, body)
+    return {node: _root(owner, node) for node in nodes}
+
+
+def _order(assembly: Assembly, name: str) -> tuple[int, int]:
+    groups = list(dict.fromkeys(_group(node) for node in [*assembly.bodies, *assembly.links]))
+    places = [*assembly.bodies, *assembly.links]
+    return groups.index(_group(name)), places.index(name)
+
+
+def _root(owner: dict[str, str], node: str) -> str:
+    while owner[node] != node:
+        node = owner[node]
+    return node
+
+
+def _unite(owner: dict[str, str], link: str, body: str) -> None:
+    first, second = _root(owner, link), _root(owner, body)
+    order = list(owner)
+    keep, drop = sorted((first, second), key=order.index)
+    owner[drop] = keep
+
+
+def _component(graph: _Graph, nodes: list[str], frames: Mapping[str, Frame]) -> Component:
+    links = [node for node in nodes if node in graph.forms]
+    bodies = [node for node in nodes if node not in graph.forms]
+    place = graph.assembly.links[links[0]].frame if not bodies and len(links) == 1 else frames.get(_group(nodes[0]), identity())
+    pieces = [*_body_pieces(graph, bodies, place), *_link_pieces(graph, links, place)]
+    name = bodies[0] if bodies else links[0]
+    own, fixed = _own_joints(graph, links, graph.owner[nodes[0]])
+    foreign = _footprints(graph, bodies, graph.owner[nodes[0]])
+    return Component(
+        name=name,
+        pieces=tuple(Piece(piece.name, piece.form, piece.medium, _in_frame(piece.frame, place), piece.body) for piece in pieces),
+        interfaces=tuple(
+            replace(item, joint=_place(item.joint, place), stamp=None if item.stamp is None else _in_frame(item.stamp, place))
+            for item in (*own, *foreign)
+        ),
+        fixed=tuple(_place(joint, place) for joint in fixed),
+        bodies={body: _in_frame(Frame(np.eye(3), graph.assembly.bodies[body].reference), place).position for body in bodies},
+        place=place,
+        seats=tuple(
+            replace(end, point=_in_frame(Frame(np.eye(3), end.point), place).position) for end in ends(graph.assembly) if end.body in bodies
+        ),
+    )
+
+
+def _body_pieces(graph: _Graph, bodies: list[str], place: Frame) -> Iterator[Piece]:
+    for body in bodies:
+        for address, placed in graph.assembly.bodies[body].solids.items():
+            yield Piece(address, placed.solid, medium(graph.materials[placed.solid.material], place.rotation), placed.frame, body)
+
+
+def _link_pieces(graph: _Graph, links: list[str], place: Frame) -> Iterator[Piece]:
+    for name in links:
+        link, form = graph.assembly.links[name], graph.forms[name]
+        if isinstance(form, Piezo):
+            yield Piece(name, form, stack_medium(form), link.frame)
+        elif link.material is not None:
+            yield Piece(name, form, medium(link.material, place.rotation), link.frame)
+
+
+def _own_joints(graph: _Graph, links: list[str], owner: str) -> tuple[list[Interface], list[Joint]]:
+    ends = [joint for name in links for joint in graph.joints[name]]
+    joints = [joint for joint in ends if graph.owner.get(joint.body) != owner or isinstance(graph.forms[joint.link], Piezo)]
+    free = [Interface(joint, yields=_yields(graph, joint)) for joint in joints if joint.body != GROUND]
+    return free, [joint for joint in joints if joint.body == GROUND]
+
+
+def _yields(graph: _Graph, joint: Joint) -> bool:
+    return is_elastic(graph.assembly, joint.body) and not isinstance(graph.forms[joint.link], Piezo)
+
+
+def _footprints(graph: _Graph, bodies: list[str], owner: str) -> list[Interface]:
+    return [
+        Interface(joint, graph.forms[joint.link], graph.assembly.links[joint.link].frame, yields=_yields(graph, joint))
+        for pair in graph.joints.values()
+        for joint in pair
+        if joint.body in bodies and graph.owner[joint.link] != owner
+    ]
+
+
+def _place(joint: Joint, place: Frame) -> Joint:
+    return replace(joint, frame=_in_frame(joint.frame, place))
+
+
+def _in_frame(frame: Frame, place: Frame) -> Frame:
+    """A frame of the stage in the axes of `place`, without the last bits of rounding: copies of one unit must come out equal."""
+    back = np.swapaxes(place.rotation, -1, -2)
+    rotation, position = back @ frame.rotation, back @ (frame.position - place.position)
+    return Frame(np.round(rotation, 12) + 0.0, np.round(position, 12) + 0.0)

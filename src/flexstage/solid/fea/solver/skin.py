@@ -1,0 +1,152 @@
+"""Skins: displacement and stress of the basis motions at the surface, for pictures and for the highest stress."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import ngsolve
+import numpy as np
+import scipy
+
+from flexstage.base.number import Array
+from flexstage.solid.fea.geometry.mirror import MIRRORS
+from flexstage.solid.fea.geometry.piece import MILLIMETRES
+from flexstage.solid.fea.solver.field import Columns, Field, hooke
+from flexstage.solid.fea.solver.superelement import Skin
+
+_VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+_FROM_VOIGT = [0, 1, 2, 5, 3, 4]
+"""Stresses as xx, yy, zz, xy, yz, zx, from the order of a medium's law."""
+_AT_ONCE = 32
+"""Motions that are worked out at once."""
+
+_WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
+"""Points within a triangle, in the order of its corners."""
+_CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
+"""Values at the corners of what is linear, from those at the points within: 5/3 of the own less 1/3 of the others."""
+_EVEN = frozenset((order + 1) * (order + 2) * (order + 3) // 6 for order in range(1, 12))
+"""Functions of elements that are of one order."""
+_LEAST_WEIGHT = 1e-12
+_NEAR = 1e-9
+"""Relative to the drawing's size: what counts as lying in a plane."""
+
+
+def skin(space: Field, motions: Columns) -> Skin:
+    """The surface of a field's mesh with motions on it: of a mesh with mirrors the surface of the whole.
+
+    Stresses are taken within each triangle and continued to its corners; at a vertex they are means over its triangles, weighted by the
+    Jacobian: where an element is nearly folded, strains have no meaning.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> from flexstage.solid.fea.solver.field import field
+    >>> from flexstage.solid.fea.meshing.fineness import Fineness
+    >>> from flexstage.solid.fea.meshing.mesh import mesh_component
+    >>> space = field(mesh_component(bar(), Fineness(order=2)), ["foot"], 2)
+    >>> skin(space, Columns.of(np.zeros((space.size, 1)))).motion.max().item()
+    0.0
+    """
+    mesh, basis = space.meshed.mesh, motions.values
+    elements = list(mesh.Elements(ngsolve.BND))
+    outside = np.array([element.mat not in MIRRORS.values() for element in elements])
+    corners = np.array([[vertex.nr for vertex in element.vertices] for element in elements])[outside]
+    used, triangles = np.unique(corners, return_inverse=True)
+    triangles = triangles.reshape(corners.shape)
+    places = np.array([mesh.vertices[int(number)].point for number in used]) / MILLIMETRES
+    behind = np.array([mesh[element.faces[0]].elements[0].nr for element in elements], dtype=int)[outside]
+    within = mesh.MapToAllElements(ngsolve.IntegrationRule(_WITHIN, [0.0, 0.0, 0.0]), ngsolve.BND)
+    within = within.reshape(len(elements), -1)[outside].ravel()
+    gradient = _gradient(space, corners, behind, within)
+    laws = np.array([hooke(medium) for medium in space.meshed.media])[_media(space)[behind]]
+    weights = _weights(within)
+    average = _mean_by_vertex(triangles, weights[:, 0])
+    columns, points = basis.shape[1], 3 * len(behind)
+    motion = basis.reshape(3, -1, columns)[:, used].transpose(1, 0, 2).astype(np.float32)  # a vertex has a function of its own
+    stress = np.empty((len(used), 6, columns), dtype=np.float32)
+    for first in range(0, columns, _AT_ONCE):
+        part = basis[:, first : first + _AT_ONCE]
+        moved = part.reshape(3, -1, part.shape[1]).transpose(1, 0, 2).reshape(-1, 3 * part.shape[1])
+        slopes = (gradient @ moved).reshape(points, 3, 3, -1)  # by point, derivative, component, column
+        strains = np.stack([slopes[:, i, j] if i == j else slopes[:, i, j] + slopes[:, j, i] for i, j in _VOIGT], axis=1)
+        found = np.einsum("tij,tpjc->tpic", laws, strains.reshape(len(behind), 3, 6, -1))
+        ends = np.einsum("ab,tbic->taic", _CONTINUED, found)[:, :, _FROM_VOIGT]
+        stress[..., first : first + _AT_ONCE] = (average @ ends.reshape(points, -1)).reshape(len(used), 6, -1)
+    found, meshed = Skin(places, triangles, motion, stress, space.meshed.owner[behind]), space.meshed
+    for axis in meshed.mirrors.axes:
+        found = _with_image(found, axis, meshed.mirrors.is_odd(motions.kinds, axis))
+    return replace(found, owner=np.concatenate([owner[behind] for owner in (meshed.owner, *meshed.images)]))
+
+
+def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
+    """A surface and its mirror image across an axis, motions that are `odd` (k,) turned round there."""
+    signs, turn = np.where(np.arange(3) == axis, -1.0, 1.0), np.where(odd, -1.0, 1.0)
+    apart = np.abs(side.vertices[:, axis]) > _NEAR * np.max(np.abs(side.vertices))
+    images = np.where(apart, len(apart) + np.cumsum(apart) - 1, np.arange(len(apart)))
+    motion = (side.motion * (signs[:, None] * turn)).astype(np.float32)
+    stress = (side.stress * (np.array([signs[i] * signs[j] for i, j in _VOIGT])[_FROM_VOIGT, None] * turn)).astype(np.float32)
+    mean = np.where(apart[:, None, None], side.stress, 0.5 * (side.stress + stress))
+    return Skin(
+        np.vstack([side.vertices, (side.vertices * signs)[apart]]),
+        np.vstack([side.triangles, images[side.triangles][:, ::-1]]),
+        np.concatenate([side.motion, motion[apart]]),
+        np.concatenate([mean, stress[apart]]),
+        np.tile(side.owner, 2),
+    )
+
+
+def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Any:
+    """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind.
+
+    Elements whose corners are numbered in the same order have the same functions where all are of one order: those are evaluated once.
+    """
+    scalar, mesh = space.space.components[0], space.meshed.mesh
+    turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
+    inverse = MILLIMETRES * np.linalg.inv(np.asarray(turned).reshape(len(behind), 3, 3, 3))
+    weights = np.array([(a, b, 1.0 - a - b) for a, b in _WITHIN])
+    elements = [ngsolve.ElementId(ngsolve.VOL, int(number)) for number in behind]
+    nodes = [scalar.GetDofNrs(element) for element in elements]
+    alike: dict[tuple[int, ...], list[int]] = {}
+    for triangle, element in enumerate(elements):
+        members = [vertex.nr for vertex in mesh[element].vertices]
+        places = (members.index(corner) for corner in corners[triangle])
+        own = len(nodes[triangle])
+        key = (own, *places, *np.argsort(members)) if own in _EVEN else (-triangle,)
+        alike.setdefault(key, []).append(triangle)
+    starts = np.concatenate([[0], np.cumsum(np.repeat([len(each) for each in nodes], 9))])
+    values, columns = np.empty(starts[-1]), np.empty(starts[-1], dtype=np.int64)
+    for triangles in alike.values():
+        first = triangles[0]
+        members = [vertex.nr for vertex in mesh[elements[first]].vertices]
+        share = np.zeros((3, 4))
+        share[:, [members.index(corner) for corner in corners[first]]] = weights
+        function = scalar.GetFE(elements[first])
+        shapes = np.stack([np.array(function.CalcDShape(*point[:3]).NumPy()) for point in share])
+        slopes = (shapes @ inverse[triangles]).transpose(0, 1, 3, 2)  # by triangle, point, derivative, function
+        at = starts[9 * np.array(triangles)][:, None] + np.arange(slopes[0].size)
+        values[at] = slopes.reshape(len(triangles), -1)
+        columns[at] = np.tile(np.array([nodes[triangle] for triangle in triangles]), 9)
+    return scipy.sparse.csr_array((values, columns, starts), shape=(len(starts) - 1, scalar.ndof))
+
+
+def _media(space: Field) -> Array:
+    """The medium (index) of each element."""
+    return np.array([int(element.mat.rpartition(" ")[2]) for element in space.meshed.mesh.Elements(ngsolve.VOL)])
+
+
+def _weights(points: Any) -> Array:
+    """Jacobian of the element behind each triangle (3 t, 1) at points within it, never quite zero."""
+    values = np.asarray(ngsolve.BoundaryFromVolumeCF(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3)))(points)).reshape(-1, 1)
+    return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
+
+
+def _mean_by_vertex(triangles: Array, weights: Array) -> Any:
+    """What makes weighted means at vertices of values at the corners of all triangles."""
+    count = int(triangles.max()) + 1
+    shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
+    return scipy.sparse.csr_array((shares, (triangles.ravel(), np.arange(len(shares)))), shape=(count, len(shares)))
+
+
+def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
+    """The piece of the element behind each triangle."""
+    behind = [mesh[face.facets[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)]
+    return owner[np.array(behind, dtype=int)]

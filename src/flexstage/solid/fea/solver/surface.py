@@ -1,0 +1,93 @@
+"""Surfaces: displacement and stress at the skins of all components, for given coordinates of the stage's linear model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.solid.fea.solver.assemble import Placed
+
+
+def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
+    """A component's coordinates (n, k) that its stress follows, for the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
+
+    A stack that expands freely is without stress, so its free stroke must not count.
+
+    >>> from types import SimpleNamespace as Of
+    >>> stack = Of(name="B/pzt", body=None)
+    >>> element = Of(stiffness={"A/pzt": None}, resultants={"A/pzt": None}, free_strokes={"A/pzt": np.array([1.0])})
+    >>> copy = Of(component=Of(pieces=(stack,)), element=element, operator=np.array([[2.0]]))
+    >>> element_coordinates(copy, np.array([[3.0]]), {"B/pzt": np.array([5.0])}).tolist()  # 2 x 3 - 5
+    [[1.0]]
+    """
+    own = item.operator @ motion
+    for name, free in _stacks(item):
+        stroke = (strokes or {}).get(name)
+        if stroke is not None:
+            own = own - free[:, None] * stroke
+    return own
+
+
+def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
+    """The names of the component's stacks in this copy (the superelement may be another copy's), with their free strokes."""
+    reduced = [name for name in item.element.stiffness if name in item.element.resultants]
+    links = [piece.name for piece in item.component.pieces if piece.body is None]
+    for name, free in item.element.free_strokes.items():
+        yield links[reduced.index(name)], free
+
+
+def stresses(item: Placed, coordinates: Array) -> Array:
+    """Stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes.
+
+    >>> from types import SimpleNamespace as Of
+    >>> one = Of(element=Of(skin=Of(stress=np.ones((1, 6, 2)))))
+    >>> stresses(one, np.array([[2.0], [3.0]]))[0, :, 0].tolist()
+    [5.0, 5.0, 5.0, 5.0, 5.0, 5.0]
+    """
+    skin = item.element.skin.stress
+    return (skin.reshape(-1, skin.shape[-1]) @ coordinates).reshape(len(skin), 6, -1)
+
+
+def von_mises(stress: Array) -> Array:
+    """Equivalent stress (...) of stresses (..., 6) as xx, yy, zz, xy, yz, zx: sqrt((differences squared)/2 + 3 (shears squared)).
+
+    >>> von_mises(np.array([[2.0, 0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])).round(9).tolist()
+    [2.0, 1.732050808]
+    """
+    x, y, z, xy, yz, zx = np.moveaxis(np.asarray(stress, dtype=float), -1, 0)
+    return np.sqrt(0.5 * ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2))
+
+
+def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
+    """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,).
+
+    >>> from types import SimpleNamespace as Of
+    >>> from flexstage.spatial.frame import identity
+    >>> skin = Of(vertices=np.zeros((1, 3)), motion=np.array([[[1.0], [0.0], [0.0]]]))
+    >>> item = Of(element=Of(skin=skin), operator=np.eye(1), component=Of(place=identity()))
+    >>> vertex_places(item, np.array([0.5]), 2.0).tolist()
+    [[1.0, 0.0, 0.0]]
+    """
+    skin = item.element.skin
+    own = item.operator @ motion
+    shift = (skin.motion.reshape(-1, skin.motion.shape[-1]) @ own).reshape(-1, 3)
+    return np.asarray(item.component.place.point(skin.vertices + factor * shift))
+
+
+def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
+    """Every link and body of a component in this copy's names, with the vertices (indices) of its skin.
+
+    >>> from types import SimpleNamespace as Of
+    >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))
+    >>> pieces = (Of(name="B/tip.block", body="B/tip"), Of(name="B/front", body=None))
+    >>> [(name, at.tolist()) for name, at in piece_vertices(Of(element=Of(skin=skin), component=Of(pieces=pieces)))]
+    [('B/tip', [0, 1, 2]), ('B/front', [1, 2, 3])]
+    """
+    skin = item.element.skin
+    names: dict[str, list[int]] = {}
+    for number, piece in enumerate(item.component.pieces):
+        names.setdefault(piece.name if piece.body is None else piece.body, []).append(number)
+    for name, numbers in names.items():
+        yield name, np.unique(skin.triangles[np.isin(skin.owner, numbers)])

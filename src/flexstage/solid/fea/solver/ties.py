@@ -1,0 +1,172 @@
+"""Ties: what parts without a shape do in a stage of solids, by the numbers that they state.
+
+A spring, a force actuator, a given 6x6, a contact or a superelement has no outline to mesh. Its stiffness and mass are data, the same for
+every model; where it ends on an elastic body is found here: it moves with the surface around its end (`field.seat_motion`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, PlacedSuperelement
+from flexstage.mechanism.mechanism import GROUND
+from flexstage.models.linear.model import Contribution
+from flexstage.parts.condensation import Condensed, condense
+from flexstage.parts.given import Joint
+from flexstage.parts.part import Restricted, strut_of
+from flexstage.parts.shape import Shaped
+from flexstage.parts.stated import Stated
+from flexstage.spatial.frame import Frame, spatial_rotation, twist_transform
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """Where a part without a shape ends: the `name` of the end (`motor:platform`, `frame.left:platform`), its body, the point (3,)."""
+
+    name: str
+    body: str
+    point: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Tie:
+    """What a part without a shape adds: stiffness over its `strain`, `inertia` over the motion of its ends and its inner coordinates.
+
+    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin; `passed` (w, s) makes the wrenches that are
+    outputs of the forces (s,) of its strain; viscous `damping` over the strain.
+    """
+
+    strain: Contribution
+    inertia: Contribution
+    carried: Array
+    passed: Array
+    damping: Array | None = None
+
+
+def stated_of(link: PlacedLink) -> Stated | None:
+    """What a link without a shape is stated to do; `None` where it has a shape, is ideal or restricted, or states nothing.
+
+    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> links = expand(voice_coil_stage()).links
+    >>> stated_of(links["motor"]).stiffness.any(), stated_of(links["G1/inner_left"])
+    (np.False_, None)
+    """
+    return None if isinstance(link.part, (Shaped, Joint, Restricted)) else link.part.stated(link.material)
+
+
+def ends(assembly: Assembly) -> Iterator[End]:
+    """The ends of all parts without a shape on bodies that move, in order.
+
+    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> [end.name for end in ends(expand(voice_coil_stage()))]
+    ['motor:platform']
+    """
+    for name, link in assembly.links.items():
+        if stated_of(link) is not None:
+            half = 0.5 * float(np.real(strut_of(link.part) or 0.0))
+            for body, away in zip(link.joins, (-half, half), strict=True):
+                if body != GROUND:
+                    yield End(f"{name}:{body}", body, link.frame.point(np.array([away, 0.0, 0.0])))
+    for name, element in assembly.superelements.items():
+        for place, port in element.ports.items():
+            if port.body != GROUND:
+                yield End(f"{name}.{place}:{port.body}", port.body, port.frame.position)
+
+
+def inner_coordinates(element: PlacedSuperelement) -> tuple[str, ...]:
+    """The names of a superelement's modes with its ports held."""
+    return tuple(f"{element.name}.mode{number + 1}" for number in range(len(_condensed(element).squares)))
+
+
+Twist = Callable[[str, str, Frame], Array]
+"""The twist (6, N) of a tie's end, by the end's name and its body, at a frame's origin in its axes."""
+
+
+def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> Tie:
+    """The tie of a link of two bodies.
+
+    >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
+    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> link = expand(voice_coil_stage()).links["motor"]
+    >>> link_tie(link, spring, lambda end, body, frame: np.eye(6) * (body != "ground"), 0.0).strain.operator.trace().item()
+    6.0
+    """
+    first, second = (twist(f"{link.name}:{body}", body, link.frame) for body in link.joins)
+    carry = twist_transform(link.frame, np.zeros(3))
+    return Tie(
+        strain=Contribution(second - first, np.real(stated.stiffness), loss_factor),
+        inertia=Contribution(np.vstack([first, second]), np.real(stated.mass)),
+        carried=np.vstack([carry, carry]),
+        passed=np.eye(6),
+        damping=None if stated.damping is None or not np.any(stated.damping) else np.real(stated.damping),
+    )
+
+
+def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> Tie:
+    """The tie of a superelement: the twists of its ports against the body of the first, and its modes, rows `inner` (m, N)."""
+    found = _condensed(element)
+    names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
+    ports = list(element.ports.values())
+    moved = [twist(name, port.body, port.frame) for name, port in zip(names, ports, strict=True)]
+    size, modes = 6 * len(ports) - 6, len(found.squares)
+    law = np.zeros((size + modes, size + modes))
+    law[:size, :size], law[size:, size:] = found.stiffness, np.diag(found.squares)
+    relative = [own - _carry(ports[0].frame, port.frame) @ moved[0] for own, port in zip(moved[1:], ports[1:], strict=True)]
+    loss = element.part.loss_factor
+    carried = [twist_transform(port.frame, np.zeros(3)) for port in ports]
+    return Tie(
+        strain=Contribution(np.vstack([*relative, inner]), law, 0.0 if loss is None else float(np.real(loss))),
+        inertia=Contribution(np.vstack([*moved, inner]), found.inertia),
+        carried=np.vstack([*carried, np.zeros((modes, 6))]),
+        passed=np.hstack([_all_ports([port.frame for port in ports]), np.zeros((6 * len(ports), modes))]),
+        damping=found.damping,
+    )
+
+
+def _condensed(element: PlacedSuperelement) -> Condensed:
+    return condense(element.part, f"parts.{element.link.part}")
+
+
+def _carry(start: Frame, end: Frame) -> Array:
+    """What makes the twist at one frame, in its axes, of that at another one on the same rigid body."""
+    return twist_transform(end, start.position) @ spatial_rotation(start.rotation)
+
+
+def _all_ports(frames: Sequence[Frame]) -> Array:
+    """What makes the wrenches (6 p, 6 (p - 1)) at all ports of those at all but the first, which balances them."""
+    balance = -np.hstack([_carry(frames[0], frame).T for frame in frames[1:]])
+    return np.vstack([balance, np.eye(balance.shape[1])])
+
+
+def stated_links(assembly: Assembly) -> dict[str, str]:
+    """The links that are taken as stated, with the kind of their part.
+
+    >>> from flexstage.cases.voice_coil_stage import voice_coil_stage
+    >>> from flexstage.mechanism.assembly.expand import expand
+    >>> stated_links(expand(voice_coil_stage()))
+    {'motor': 'voice_coil'}
+    """
+    links = {name: link.part.kind for name, link in assembly.links.items() if stated_of(link) is not None}
+    return links | {name: element.part.kind for name, element in assembly.superelements.items()}
+
+
+def in_words(stated: Mapping[str, str]) -> str:
+    """How many links of each kind are taken as stated; nothing where none is.
+
+    >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
+    '2 springs, 1 voice coil as stated'
+    """
+    counts = Counter(_NOUNS.get(kind, kind.replace("_", " ")) for kind in stated.values())
+    said = ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
+    return f"{said} as stated" if said else ""
+
+
+_NOUNS = {"given": "given part", "force": "force actuator", "amplified": "amplified actuator", "stepper": "stepping drive"}

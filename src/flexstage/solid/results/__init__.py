@@ -1,0 +1,1 @@
+"""Results of the solid model: stage, units, hinges, verification and calibration."""

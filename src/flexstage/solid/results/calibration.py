@@ -1,0 +1,178 @@
+"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped model has FEA's accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import Finding, require
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array, stack
+from flexstage.base.record import INNER, VIEW
+from flexstage.beams.compliance import compliance
+from flexstage.beams.mass import mass
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.checks.orientation import is_axisymmetric
+from flexstage.mechanism.drawn import calibrated_parts
+from flexstage.mechanism.mechanism import Link, Mechanism
+from flexstage.mechanism.store import loads
+from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
+from flexstage.parts.compound import Compound
+from flexstage.parts.given import Given, Origin
+from flexstage.solid.fea.geometry.piece import is_mirrored, medium
+from flexstage.solid.fea.hinges.hinge_form import LEAVE, NO_ESTIMATE
+from flexstage.solid.results.hinges import STANDARD_HINGES, Hinges, SolidHinge, solid_hinges
+from flexstage.spatial.frame import COMPONENTS, mirror, spatial_rotation
+
+TAG = "derived FEA"
+_DIGITS = 7
+_LARGEST_ERROR = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration(InNotebook):
+    """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
+
+    hinges: Mapping[str, SolidHinge]
+    parts: Mapping[str, Given]
+    text: Annotated[str, INNER]
+
+    @property
+    def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
+        """By part, FEA's direct compliances over beam theory's, less one, along and about x, y, z."""
+        return {
+            name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
+            for name, hinge in self.hinges.items()
+        }
+
+
+@check_arguments
+def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
+    """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
+
+    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, that are members of a compound, or whose
+    6x6 FEA could not find.
+    """
+    mechanism = loads(text, where=where)
+    require(_refuse_calibrated(mechanism))
+    require([*_refuse_members(mechanism), *_refuse_departures(mechanism)])
+    found = solid_hinges(mechanism, compute)
+    parts = stand_ins(found)
+    errors = max(hinge.found.error for hinge in found.values())
+    stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
+    return Calibration(found, parts, write_stand_ins(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
+
+
+def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
+    """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
+
+    The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
+    keeps beam theory's. Raises `DesignError` for a 6x6 that is known to worse than 10 %.
+
+    >>> stand_ins({})
+    {}
+    """
+    parts: dict[str, Given] = {}
+    findings: list[Finding] = []
+    for name, hinge in found.items():
+        matrix = _symmetrise(hinge)
+        if hinge.error is None or hinge.error > _LARGEST_ERROR:
+            findings.append(_doubt(name, hinge.error))
+            continue
+        parts[name] = Given(
+            compliance=tuple(tuple(float(f"{value:.{_DIGITS}g}") for value in row) for row in matrix),
+            free=hinge.form.part.intended,
+            mass=_mass(hinge),
+            origin=Origin.FEA,
+            source=_source(hinge),
+            stands_for=hinge.shared + KEPT,
+        )
+    require(findings)
+    return parts
+
+
+def _doubt(name: str, error: float | None) -> Finding:
+    if error is None:
+        return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is not known: {NO_ESTIMATE}", LEAVE)
+    what = f"its 6x6 by FEA is known to {100.0 * error:.2g} % only, no better than beam theory's"
+    return Finding(f"parts.{name}", what, "Ask for more accuracy")
+
+
+def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
+    """The stage with the computed hinges as given parts, those of which no copy departs; members of compounds stay as they are drawn.
+
+    Raises `DesignError` where copies depart from a shared hinge.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> substitute_parts(double_triangle(), {}) == double_triangle()
+    True
+    """
+    require(_refuse_departures(mechanism))
+    found = {name: hinge for name, hinge in found.items() if not isinstance(mechanism.parts[hinge.shared], Compound)}
+    parts = stand_ins(found)
+    kept = {hinge.shared + KEPT: hinge.form.part for hinge in found.values()}
+    others = {name: part for name, part in mechanism.parts.items() if name + KEPT not in kept}
+    names = {link: name for name, hinge in found.items() for link in hinge.links}
+    units = {unit: replace(drawn, links=_rename_parts(drawn.links, names, f"{unit}/")) for unit, drawn in mechanism.units.items()}
+    return replace(mechanism, parts={**others, **kept, **parts}, units=units, links=_rename_parts(mechanism.links, names, "links."))
+
+
+def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
+    """Links with the parts that stand in for theirs."""
+    return {name: replace(link, part=names.get(owner + name, link.part)) for name, link in links.items()}
+
+
+def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
+    for name in calibrated_parts(mechanism):
+        yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
+
+
+def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
+    for name in {link.link.part: link for link in expand(mechanism).links.values() if link.of is not None}:
+        what = "it consists of several hinges: no 6x6 can stand for one of them"
+        yield Finding(f"parts.{name}", what, "Draw them as links of their own to calibrate them")
+
+
+def _refuse_departures(mechanism: Mechanism) -> Iterator[Finding]:
+    for link in expand(mechanism).links.values():
+        if link.described.part != mechanism.parts[link.link.part]:
+            yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
+
+
+_TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+"""A quarter turn about x."""
+
+
+def _symmetrise(hinge: SolidHinge) -> Array:
+    """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
+
+    Reflected across y and z a hinge is itself, and across x if its roots are alike; a round one is alike all round. What cannot be told
+    from the stubs is as beam theory has it, alone.
+    """
+    matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
+    matrix[~known] = matrix[:, ~known] = 0.0
+    matrix += np.diag(np.where(known, 0.0, np.diag(compliance(hinge.form.part, hinge.form.material))))
+    material, own = hinge.form.material, medium(hinge.form.material)
+    axes = (0, 1, 2) if hinge.roots == hinge.roots.mirrored else (1, 2)
+    mirrors = [mirror(axis) for axis in axes if is_mirrored(own, axis)]
+    for symmetry in [*mirrors, *([_TURN] if is_axisymmetric(hinge.form.part) and not material.is_cubic else [])]:
+        matrix = 0.5 * (matrix + symmetry @ matrix @ symmetry.T)
+    return matrix
+
+
+def _source(hinge: SolidHinge) -> str:
+    found = hinge.found
+    kept = [axis for axis, known in zip(COMPONENTS, hinge.separable, strict=True) if not known]
+    beam = f"; {', '.join(kept)} by beam theory" if kept else ""
+    return f"finite elements of order {found.order}, {found.freedoms} freedoms, error {100.0 * found.error:.2g} %{beam}"
+
+
+def _mass(hinge: SolidHinge) -> float:
+    """Mass of the drawn hinge [kg]: that of a unit translation of both of its ends."""
+    both = np.zeros(12)
+    both[[0, 6]] = 1.0
+    return float(both @ np.real(mass(hinge.form.part, hinge.form.material))[:12, :12] @ both)

@@ -1,0 +1,233 @@
+"""The 6x6 of every distinct hinge of a stage, as a solid by itself, with the roots it has in the stage.
+
+The roots are part of a hinge: what a block yields where a hinge grows out of it no model with rigid bodies has anywhere else. A part that
+is used with different roots is as many hinges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, TypeAlias
+
+import numpy as np
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix, ratio_units
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.storage.digest import digest
+from flexstage.base.units.quantity import RATIO
+from flexstage.mechanism.assembly.expand import PlacedLink, expand
+from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.hinges.hinge_form import NO_ESTIMATE, HingeForm, HingeSolid
+from flexstage.solid.fea.hinges.roots import Roots, roots_of
+from flexstage.solid.fea.jobs.hinge_cache import hinges_from_cache
+from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.solid.results.read import STANDARD_WAYS, Notice
+from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS, mirror
+
+_MOST_STUB = 0.9
+
+Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
+"""Computes hinges by name: plainly, or from a cache and telling its progress."""
+
+
+@dataclass(frozen=True, eq=False)
+class DistinctHinge:
+    """A distinct hinge: the `shared` part that it is, its form, and the drawn `links` that are like it."""
+
+    shared: Annotated[str, INNER]
+    form: Annotated[HingeForm, INNER]
+    links: tuple[str, ...]
+
+    @property
+    def roots(self) -> Annotated[Roots, VIEW]:
+        """Which of its ends grow on blocks."""
+        return self.form.roots
+
+
+@dataclass(frozen=True, eq=False)
+class SolidHinge(DistinctHinge, InNotebook):
+    """A distinct hinge and its 6x6 about its centre in the link frame, between the ends of its arcs."""
+
+    found: Annotated[HingeSolid, INNER]
+
+    @property
+    def compliance(self) -> Annotated[Matrix, VIEW]:
+        """C (6, 6) with names and units."""
+        return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
+
+    @property
+    def stiffness(self) -> Annotated[Matrix, VIEW]:
+        """K (6, 6) with names and units."""
+        return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
+
+    @property
+    def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
+        """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
+
+        In torsion a wide notch is stiffer than its stubs, which are taken off as beams held from warping (Vlasov): a small difference of
+        two larger numbers, and beams are too rough for it.
+        """
+        whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
+        return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
+
+    @property
+    def error(self) -> Annotated[float | None, RATIO]:
+        """Relative error estimated of any entry of the compliance at the hinge's end."""
+        return self.found.error if np.isfinite(self.found.error) else None
+
+    @property
+    def errors(self) -> Annotated[Array | None, RATIO]:
+        """Relative errors estimated of the direct compliances (6,) about the centre."""
+        if self.error is None:
+            return None
+        return np.maximum(self.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
+
+    @property
+    def reasons(self) -> Mapping[str, str]:
+        """Why its errors are not known."""
+        return {} if self.error is not None else dict.fromkeys(("error", "errors"), NO_ESTIMATE)
+
+    @property
+    def order(self) -> Annotated[int, VIEW]:
+        """Order of the elements of the last solve."""
+        return self.found.order
+
+    @property
+    def elements(self) -> Annotated[int, VIEW]:
+        """Their number."""
+        return self.found.elements
+
+    @property
+    def freedoms(self) -> Annotated[int, VIEW]:
+        """Its number of unknowns."""
+        return self.found.freedoms
+
+
+def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Hinges:
+    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`."""
+    asked = accuracy_of(accuracy, order)
+
+    def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
+        return hinges_from_cache(forms, asked, ways, notice)
+
+    return compute
+
+
+def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
+    """What is asked of hinges where a stage is to reach an accuracy, with elements of at most an order.
+
+    >>> accuracy_of(0.01, 2).orders
+    (2, 3)
+    """
+    return Accuracy(error=accuracy) if order is None else Accuracy(error=accuracy, orders=(2, max(3, order)))
+
+
+STANDARD_HINGES = hinges()
+"""To 1 %, by the cache of the user."""
+
+
+def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
+    """Every distinct hinge of a stage.
+
+    It is called as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> found = distinct_hinges(double_triangle())
+    >>> list(found), found["lever_notch"].links
+    (['neck-back', 'neck-front', 'foot_notch-back', 'foot_notch-front', 'lever_notch', 'pole_neck'], ('vertical/pivot',))
+    """
+    shape = with_drawn_parts(mechanism)
+    assembly = expand(shape)
+    forms: dict[str, HingeForm] = {}
+    alike: dict[str, list[PlacedLink]] = {}
+    for link in assembly.links.values():
+        if isinstance(link.part, Shaped) and link.material is not None:
+            form = HingeForm(link.part, link.material, roots_of(assembly, link))
+            whole = "" if link.of is None else link.link.part
+            key = f"{digest(form.part, physics=True)} {digest(form.material, physics=True)} {form.roots} {whole}"
+            forms[key] = form
+            alike.setdefault(key, []).append(link)
+    links = {key: tuple(dict.fromkeys(link.drawn for link in each)) for key, each in alike.items()}
+    names = {key: _name(shape, each, list(alike.values())) for key, each in alike.items()}
+    return {names[key]: DistinctHinge(each[0].link.part, forms[key], links[key]) for key, each in alike.items()}
+
+
+def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[PlacedLink]]) -> str:
+    first = links[0]
+    if first.described.part != shape.parts[first.link.part]:
+        return first.name
+    others = [each[0] for each in everything if each is not links and each[0].link.part == first.link.part]
+    same = [other for other in others if other.described.part == first.described.part]
+    if not same:
+        return first.link.part
+    unit, _, link = first.drawn.rpartition("/")
+    clear = all(other.drawn.rpartition("/")[2] != link for other in same)
+    return f"{first.link.part}-{link if clear else f'{unit}-{link}'}"
+
+
+@check_arguments
+def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
+    """Compute the 6x6 of every distinct hinge that is drawn.
+
+    Raises `DesignError` where a stage has none, and for kinds whose shape nobody offers.
+
+    >>> solid_hinges(Mechanism("bare"))
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    """
+    found = distinct_hinges(mechanism)
+    require_hinges(found)
+    solved = compute(turned_forms(found))
+    return {name: as_drawn(each, solved[name]) for name, each in found.items()}
+
+
+def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
+    """Raise a `DesignError` where a stage has no hinge that is drawn.
+
+    >>> require_hinges({})
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    """
+    if not found:
+        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
+
+
+def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
+    """A hinge with what was computed of its form as `turned_forms` gives it, turned back to how it is drawn."""
+    return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
+
+
+def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
+    """The forms that are computed of hinges: with the root at their second end where one end has one.
+
+    >>> turned_forms({})
+    {}
+    """
+    return {name: _turn(hinge.form) for name, hinge in found.items()}
+
+
+def _is_turned(form: HingeForm) -> bool:
+    """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end; not of a crystal."""
+    return form.roots.first and not form.roots.second and not form.material.is_cubic
+
+
+def _turn(form: HingeForm) -> HingeForm:
+    return form._replace(roots=form.roots.mirrored) if _is_turned(form) else form
+
+
+def _turn_back(found: HingeSolid, form: HingeForm) -> HingeSolid:
+    if not _is_turned(form):
+        return found
+    across = mirror(0)  # hinges are symmetric but for their roots
+    compliance, stiffness, whole = (across @ each @ across for each in (found.compliance, found.stiffness, found.whole))
+    return replace(found, compliance=compliance, stiffness=stiffness, whole=whole)

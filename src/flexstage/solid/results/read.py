@@ -1,0 +1,134 @@
+"""How studies read solids: a stage, reduced by whoever is asked to (from a cache, with progress, or plainly)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from flexstage.base.finding import Finding
+from flexstage.base.storage.digest import digest
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.drawn import with_drawn_parts
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+from flexstage.solid.fea.geometry.sound import sound_components
+from flexstage.solid.fea.jobs.parts import Parts, Ways, content_in_stage, reduce_parts
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.assemble import Placed, linear_model, place_parts
+
+Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
+"""Reduces the components of a stage."""
+
+Notice: TypeAlias = Callable[[Finding], None]
+"""Told what is to be known but stops nothing: a damaged file of the cache."""
+
+STANDARD_WAYS = Ways()
+
+
+@dataclass(frozen=True, eq=False)
+class SolidRead:
+    """A stage read as solids: its linear model, and the components with the operators that give their fields."""
+
+    mechanism: Mechanism
+    model: LinearModel
+    placed: tuple[Placed, ...]
+
+    @property
+    def elements(self) -> int:
+        """Number of finite elements of all distinct components."""
+        return sum(item.element.elements for item in self._distinct)
+
+    @property
+    def freedoms(self) -> int:
+        """Number of unknowns of all distinct components before they were reduced."""
+        return sum(item.element.freedoms for item in self._distinct)
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Unknowns of every distinct component, by the content that orders are raised by."""
+        return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
+
+    @property
+    def _distinct(self) -> list[Placed]:
+        return list({id(item.element): item for item in self.placed}.values())
+
+
+def solids(ways: Ways = STANDARD_WAYS, notice: Notice | None = None) -> Solids:
+    """Checks outlines and reduces components by `ways`: from a cache, telling the progress; `notice` is told what is to be said about it.
+
+    >>> solids()(Mechanism("nothing"), Reduction())
+    ()
+    """
+
+    def reduce(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        found = reduce_parts(sound_components(mechanism, ways.cache, pool=ways.pool), reduction, ways)
+        for finding in found.notices:
+            (notice or _ignore)(finding)
+        return found.parts
+
+    return reduce
+
+
+def remember(reduce: Solids) -> Solids:
+    """The same, but what was reduced is kept at hand: of two orders known, parts of either are put together without asking again.
+
+    >>> remember(solids())(Mechanism("nothing"), Reduction())
+    ()
+    """
+    known: dict[tuple[str, Reduction], Parts] = {}
+
+    def again(mechanism: Mechanism, reduction: Reduction) -> Parts:
+        name, plain = digest(mechanism), replace(reduction, raised=frozenset())
+        if (name, reduction) in known:
+            return known[name, reduction]
+        higher = replace(plain, fineness=replace(plain.fineness, order=plain.fineness.order + 1))
+        if reduction.raised and (name, plain) in known and (name, higher) in known:
+            pairs = zip(known[name, plain], known[name, higher], strict=True)
+            return tuple(more if content_in_stage(less[0]) in reduction.raised else less for less, more in pairs)
+        known[name, reduction] = reduce(mechanism, reduction)
+        return known[name, reduction]
+
+    return again
+
+
+def _ignore(_finding: Finding) -> None:
+    """Nobody is told."""
+
+
+STANDARD_SOLIDS = solids()
+"""By the cache of the user, told to nobody."""
+
+STANDARD_REDUCTION = Reduction()
+
+
+def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
+    """Read a stage as solids; calibrated hinges as the shapes they stand for.
+
+    Raises `DesignError` for parts without a shape, outlines that do not meet, overlap or leave slivers, and when the stage can move freely.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.mechanism.restrict import restrict
+    >>> from flexstage.parts.freedom import Freedom
+    >>> read_solid(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}), Reduction(), solids())
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
+    """
+    shape = with_drawn_parts(mechanism)
+    assembly = expand(shape)
+    parts = reduce(shape, reduction)
+    order = reduction.fineness.order
+    orders = f"{order} and {order + 1}" if reduction.raised else f"{order}"
+    bare = f", none in those of order {order + 1}" if reduction.raised and reduction.static else ""
+    said = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component{bare}"
+    return SolidRead(shape, linear_model(shape, assembly, parts, said), place_parts(assembly, parts))
+
+
+def coarsen(reduction: Reduction) -> Reduction:
+    """The resolution that an error is estimated against: the same mesh, one order less.
+
+    >>> coarsen(Reduction()).fineness.order
+    2
+    """
+    return replace(reduction, fineness=replace(reduction.fineness, order=reduction.fineness.order - 1))

@@ -1,0 +1,95 @@
+"""Highest von Mises stress at every link and body of a stage read as solids, against yield."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import Along, Heading
+from flexstage.base.units.quantity import PRESSURE, RATIO
+from flexstage.mechanism.assembly.expand import Assembly, expand
+from flexstage.parts.material import Material
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.solver.assemble import Placed
+from flexstage.solid.fea.solver.surface import element_coordinates, piece_vertices, stresses, von_mises
+from flexstage.solid.results.read import SolidRead
+
+
+@dataclass(frozen=True, eq=False)
+class LinkStress(InNotebook):
+    """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, stacks left out.
+
+    `case` (L,) is the number of the worst case, `yield_stress` (L,) [Pa] that of the material, or its
+    fatigue limit or allowable stress where that is less (NaN: none is stated). At sharp inner corners the
+    true stress has no limit, and what is computed grows with the resolution.
+    """
+
+    names: tuple[str, ...]
+    highest: Annotated[Array, PRESSURE, Along("names"), Heading("highest stress", digits=4)]
+    case: Array
+    yield_stress: Annotated[Array, PRESSURE, Along("names"), Heading("yield", digits=5)]
+
+    @property
+    def safety(self) -> Annotated[Array, RATIO, Along("names"), Heading(digits=4)]:
+        """Yield over highest stress (L,)."""
+        return self.yield_stress / self.highest
+
+    @property
+    def weakest(self) -> str:
+        """The name with the least safety, or with the highest stress where no yield stress is known."""
+        safety = self.safety
+        return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
+
+    def largest(self, count: int) -> LinkStress:
+        """The links and bodies with the highest stress, highest first, `count` of them at most."""
+        order = np.argsort(-self.highest, kind="stable")[:count]
+        return LinkStress(tuple(self.names[index] for index in order), self.highest[order], self.case[order], self.yield_stress[order])
+
+    def at(self, name: str) -> float:
+        """Highest stress of one link or body [Pa]."""
+        return float(self.highest[self.names.index(name)])
+
+
+def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress | None:
+    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them.
+
+    `None` where nothing but stacks is drawn.
+    """
+    assembly = expand(read.mechanism)
+    by_link = {assembly.actuators[name]: values for name, values in strokes.items()}
+    found = [row for item in read.placed for row in _component(item, element_coordinates(item, motion, by_link), assembly)]
+    if not found:
+        return None
+    names, highest, case = zip(*found, strict=True)
+    limits = [_yield(read, assembly, name) for name in names]
+    return LinkStress(tuple(names), np.array(highest), np.array(case), np.array(limits))
+
+
+def _component(item: Placed, coordinates: Array, assembly: Assembly) -> list[tuple[str, float, int]]:
+    rows: list[tuple[str, float, int]] = []
+    chosen = [(name, at) for name, at in piece_vertices(item) if name not in assembly.links or not _is_stack(assembly, name)]
+    if not chosen:
+        return rows
+    worst = np.array([von_mises(stresses(item, coordinates[:, [case]])[:, :, 0]) for case in range(coordinates.shape[1])])
+    for name, at in chosen:
+        highest = worst[:, at].max(axis=1)
+        rows.append((name, float(highest.max()), int(np.argmax(highest))))
+    return rows
+
+
+def _is_stack(assembly: Assembly, name: str) -> bool:
+    return isinstance(assembly.links[name].part, Piezo)
+
+
+def _yield(read: SolidRead, assembly: Assembly, name: str) -> float:
+    material: Material | None
+    if name in assembly.links:
+        material = assembly.links[name].material
+    else:
+        material = read.mechanism.materials[next(iter(assembly.bodies[name].solids.values())).solid.material]
+    return np.nan if material is None or material.limit is None else float(np.real(material.limit))

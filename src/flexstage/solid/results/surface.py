@@ -1,0 +1,60 @@
+"""Surfaces of a stage read as solids, moved and with values on them, for pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.solid.fea.solver.assemble import Placed
+from flexstage.solid.fea.solver.surface import element_coordinates, stresses, vertex_places, von_mises
+from flexstage.solid.results.read import SolidRead
+
+_SHOWN = 0.06
+"""Largest displacement in a picture, relative to the stage's size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles (t, 3) between places (v, 3) [m] in the stage's frame, with a value (v,) at each."""
+
+    places: Array
+    triangles: Array
+    values: Array
+
+
+def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
+    """The stage moved by a mode's coordinates (N,), magnified to be seen; values: displacement relative to the largest."""
+    factor, largest = magnification(read, shape)
+    return tuple(
+        Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
+        for item in read.placed
+    )
+
+
+def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
+    """The stage moved by static coordinates (N,), magnified to be seen; values: von Mises stress [Pa]. `strokes` [m] belong to them."""
+    assembly = expand(read.mechanism)
+    factor, _ = magnification(read, motion)
+    by_link = {assembly.actuators[name]: np.array([value]) for name, value in strokes.items()}
+    found: list[Surface] = []
+    for item in read.placed:
+        own = element_coordinates(item, motion[:, None], by_link)
+        values = von_mises(stresses(item, own)[:, :, 0])
+        found.append(Surface(vertex_places(item, motion, factor), item.element.skin.triangles, values))
+    return tuple(found)
+
+
+def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:
+    """By how much a motion (N,) is magnified in a picture, and its largest displacement [m]."""
+    places = np.concatenate([vertex_places(item, motion, 0.0) for item in read.placed])
+    size = float(np.max(places.max(axis=0) - places.min(axis=0)))
+    largest = max((float(np.max(_displacement(item, motion))) for item in read.placed), default=0.0) or 1.0
+    return _SHOWN * size / largest, largest
+
+
+def _displacement(item: Placed, motion: Array) -> Array:
+    return np.linalg.norm(vertex_places(item, motion, 1.0) - vertex_places(item, motion, 0.0), axis=1)

@@ -1,0 +1,143 @@
+"""Each distinct unit alone, as a solid: stiffness at its output, gain and lost motion (Table 2 of Shin & Moon), stress at the command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.linear_statics.unit_output import UnitOutput
+from flexstage.analysis.linear_statics.units import as_vector, driven_units
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import refuse
+from flexstage.base.notebook import InNotebook
+from flexstage.base.number import Array
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import COMPLIANCE, LENGTH, RATIO
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.models.ideal import ideal
+from flexstage.models.linear.static import displacement, static_gain
+from flexstage.parts.piezo import Piezo
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.results.read import STANDARD_REDUCTION, STANDARD_SOLIDS, SolidRead, Solids, read_solid
+from flexstage.solid.results.stress import LinkStress, link_stress
+from flexstage.spatial.frame import COMPONENTS
+
+_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
+_STEPS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class SolidUnit(UnitOutput, InNotebook):
+    """One unit alone by the solid model.
+
+    With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m],
+    linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    """
+
+    strokes: Annotated[Array, LENGTH]
+    stress: LinkStress | None
+    motion: Array
+    read: Annotated[SolidRead, INNER]
+
+    @property
+    def elements(self) -> Annotated[int, VIEW]:
+        """Number of elements."""
+        return self.read.elements
+
+    @property
+    def freedoms(self) -> Annotated[int, VIEW]:
+        """Number of freedoms before reduction."""
+        return self.read.freedoms
+
+    @property
+    def loss(self) -> Annotated[float, RATIO]:
+        """Share of the ideal output that is lost."""
+        return 1.0 - self.gain / self.ideal_gain
+
+    @property
+    def load_compliance(self) -> Annotated[float, COMPLIANCE]:
+        """Give of the guided output under a force along it [m/N]."""
+        return 1.0 / self.axial
+
+    @property
+    def commands(self) -> Annotated[Array, LENGTH]:
+        """Ideal outputs (k,) [m] of the strokes: what was commanded."""
+        return self.ideal_gain * self.strokes
+
+    @property
+    def outputs(self) -> Annotated[Array, LENGTH]:
+        """Outputs (k,) [m] of the strokes."""
+        return self.gain * self.strokes
+
+
+@check_arguments
+def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
+    """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
+
+    Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
+    `DesignError` where no unit of the stage is of this kind.
+
+    >>> from flexstage.cases.bridge import bridge
+    >>> solid_units(bridge())
+    Traceback (most recent call last):
+        ...
+    flexstage.base.finding.DesignError: units: none of the stage's units drives an output of its own by one actuator. ...
+    """
+    found = driven_units(mechanism)
+    if not found:
+        raise refuse(
+            "units",
+            "none of the stage's units drives an output of its own by one actuator",
+            "Ask for the whole stage instead: --what stage",
+        )
+    return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}
+
+
+def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduction: Reduction, reduce: Solids) -> SolidUnit:
+    alone = isolate(mechanism, copy)
+    read = read_solid(alone, reduction, reduce)
+    stiffness = statics(read.model).stiffness
+    along = np.concatenate([direction, np.zeros(3)])
+    driven = static_gain(read.model, _TWIST, (copy,)).values[:, 0]
+    axial = float(along @ stiffness.values @ along)
+    gain = float(along @ stiffness.values @ driven) / axial
+    guide = stiffness.values @ (along * gain - driven)
+    full = full_stroke(mechanism, copy)
+    motion = full * _full_motion(read, copy, guide)
+    return SolidUnit(
+        unit=unit,
+        copy=copy,
+        direction=direction,
+        stiffness=stiffness,
+        gain=gain,
+        ideal_gain=float(direction @ ideal(isolate(mechanism, copy, guide=as_vector(direction))).jacobian.values[:3, 0]),
+        strokes=full * np.arange(1, _STEPS + 1) / _STEPS,
+        stress=link_stress(read, motion[:, None], {copy: np.array([full])}),
+        motion=motion,
+        read=read,
+    )
+
+
+def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
+    """Coordinates (N,) under a unit stroke while the guide holds the output by a wrench (6,)."""
+    model = read.model
+    platform = model.output[model.output_index(_TWIST)]
+    load = model.input_matrix[:, model.input_index((copy,))[0]] + platform.T @ guide
+    return displacement(model, load[:, None])[:, 0]
+
+
+def full_stroke(mechanism: Mechanism, copy: str) -> float:
+    """The full stroke of a copy's stack [m].
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> round(full_stroke(double_triangle(), "B4"), 9)
+    0.0002
+    """
+    assembly = expand(mechanism)
+    part = assembly.links[assembly.actuators[copy]].part
+    return float(np.real(part.stroke)) if isinstance(part, Piezo) else np.nan

@@ -1,0 +1,468 @@
+"""Verification: theory beside finite elements for hinges, units and the whole stage, with the error of both and which to trust where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, pair_modes
+from flexstage.analysis.linear_statics.statics import statics
+from flexstage.analysis.linear_statics.units import UnitResult, driven_units, unit_alone, units
+from flexstage.analysis.trust import Trust
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
+from flexstage.base.record import INNER, VIEW
+from flexstage.base.units.quantity import RATIO
+from flexstage.beams.compliance import compliance
+from flexstage.mechanism.assembly.expand import expand
+from flexstage.mechanism.drawn import calibrated_parts, with_drawn_parts
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.restrict import isolate
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.lumped import lumped
+from flexstage.models.mapped import mapped
+from flexstage.solid.fea.jobs.remote import Pool
+from flexstage.solid.fea.meshing.estimate import Accuracy
+from flexstage.solid.fea.meshing.fineness import Reduction
+from flexstage.solid.fea.solver.ties import stated_links
+from flexstage.solid.results.calibration import substitute_parts
+from flexstage.solid.results.hinges import STANDARD_HINGES, Hinges, SolidHinge, hinges, solid_hinges
+from flexstage.solid.results.plan import verification_plan, work_ahead
+from flexstage.solid.results.read import STANDARD_SOLIDS, STANDARD_WAYS, Solids, remember, solids
+from flexstage.solid.results.resolution import DEFAULT, NOT_ESTIMATED, Converged, Resolution, converge
+from flexstage.solid.results.stage import SolidStage, solid_stage, stage_figures, stiffness_figures
+from flexstage.solid.results.units import SolidUnit, solid_units
+from flexstage.spatial.frame import COMPONENTS
+
+_CLOSE = 0.02
+_TIMES = 1.5
+"""A factor from which differences are told as factors."""
+_WORDS = {
+    "Hz": ("high", "low"),
+    "N/m": ("stiff", "soft"),
+    "N m/rad": ("stiff", "soft"),
+    "m/N": ("soft", "stiff"),
+    "rad/(N m)": ("soft", "stiff"),
+}
+"""What a figure that is too large makes of theory, and one that is too small, by unit."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number by theory and by FEA, SI.
+
+    `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
+    lumped model with the hinges' FEA 6x6; `fea_error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
+    the theory contains. `modal_assurance` is that of paired modes. Absent is unknown, and `reason` says why: without `theory` and
+    `fea_error` there is no verdict.
+    """
+
+    group: str
+    figure: str
+    unit: str
+    theory: float | None
+    fea: float
+    fea_error: float | None
+    mapped: float | None = None
+    calibrated: float | None = None
+    calibration: tuple[str, ...] = ()
+    modal_assurance: float | None = None
+    reason: str | None = None
+
+    @property
+    def difference(self) -> Annotated[float | None, RATIO]:
+        """Theory over FEA less one."""
+        return None if self.theory is None else _relative(self.theory, self.fea)
+
+    @property
+    def calibrated_difference(self) -> Annotated[float | None, RATIO]:
+        """Calibrated theory over FEA less one."""
+        return None if self.calibrated is None else _relative(self.calibrated, self.fea)
+
+    @property
+    def independent(self) -> Annotated[bool, VIEW]:
+        """Whether theory contains nothing of FEA origin."""
+        return not self.calibration
+
+    @property
+    def trust(self) -> Annotated[Trust | None, VIEW]:
+        """Which of them to trust; absent where there is no verdict."""
+        if self.calibration:
+            return Trust.DEPENDENT
+        if self.difference is None or self.fea_error is None:
+            return None
+        away = abs(self.difference)
+        if self.fea_error > max(0.5 * away, _CLOSE):
+            return Trust.UNCLEAR
+        if away <= self.fea_error:
+            return Trust.EITHER
+        if away <= _CLOSE:
+            return Trust.THEORY
+        if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.fea_error:
+            return Trust.CALIBRATED
+        return Trust.FEA
+
+
+def _relative(value: float, reference: float) -> float:
+    return value / reference - 1.0 if reference else float("inf") if value else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Verification(InNotebook):
+    """The rows of a verification, and the solid results behind them; `reasons` say why a group is not there."""
+
+    mechanism: Mechanism
+    rows: tuple[Row, ...]
+    hinges: Annotated[Mapping[str, SolidHinge], INNER]
+    units: Annotated[Converged[dict[str, SolidUnit]] | None, INNER]
+    stage: Annotated[Converged[SolidStage] | None, INNER]
+    reasons: Mapping[str, str]
+
+    @property
+    def groups(self) -> dict[str, tuple[Row, ...]]:
+        """The rows by what they are about, in order."""
+        return groups(self.rows)
+
+    @property
+    def headline(self) -> str:
+        """For how many figures of the widest group that was compared theory will do, and where it differs from finite elements."""
+        name, rows = list(self.groups.items())[-1]
+        good = sum(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows)
+        words = departures(rows)
+        return f"{name.capitalize()}: theory will do for {good} of {len(rows)} figures{f'; {words}' if words else ''}."
+
+    @property
+    def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
+        """The links without a shape, with the kind of their part: theory and FEA alike have the stiffness and mass that they state."""
+        return stated_links(expand(with_drawn_parts(self.mechanism)))
+
+    @property
+    def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
+        """For every group, in words, which theory to trust."""
+        return {name: verdict(rows) for name, rows in self.groups.items()}
+
+
+def groups(rows: Iterable[Row]) -> dict[str, tuple[Row, ...]]:
+    """Rows by what they are about, in order.
+
+    >>> groups(())
+    {}
+    """
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(row.group, []).append(row)
+    return {name: tuple(each) for name, each in found.items()}
+
+
+@check_arguments
+def verify(
+    mechanism: Mechanism,
+    asked: Resolution = DEFAULT,
+    reduce: Solids = STANDARD_SOLIDS,
+    compute: Hinges = STANDARD_HINGES,
+    tell: Callable[[tuple[Row, ...]], None] | None = None,
+) -> Verification:
+    """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
+
+    Theory is the description as it stands; FEA the shapes it draws. Hinges come first, as they are soon done; `tell` is told of the rows of
+    hinges, stage and units as they are known. Unless it is told how to `reduce` and `compute`, all that is needed in any case is worked in
+    one queue. Raises `DesignError` where the stage cannot be read as a solid.
+    """
+    if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
+        with Pool() as pool:
+            ways = replace(STANDARD_WAYS, pool=pool)
+            work_ahead(verification_plan(mechanism, asked, ways, Accuracy()), ways)
+            return verify(mechanism, asked, solids(ways), hinges(ways=ways), tell)
+    missing = dict[str, str]()
+    told = tell or _nobody
+    found = solid_hinges(mechanism, compute)
+    of_hinges = tuple(hinge_rows(mechanism, found))
+    told(of_hinges)
+    stage = stage_solid(mechanism, asked, reduce)
+    of_stage = tuple(stage_rows(mechanism, substitute_parts(mechanism, found), stage))
+    told(of_stage)
+    try:
+        alone = units_solid(mechanism, asked, reduce) if driven_units(mechanism) else None
+    except DesignError as error:
+        alone, missing["units"] = None, str(error)
+    if alone is None:
+        missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
+    of_units = () if alone is None else tuple(unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone))
+    told(of_units)
+    return Verification(mechanism, (*of_hinges, *of_units, *of_stage), found, alone, stage, missing)
+
+
+def _nobody(_rows: tuple[Row, ...]) -> None:
+    """Nobody is told."""
+
+
+def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
+    """The whole stage as a solid, to the accuracy asked."""
+    again = remember(reduce)
+    return converge(
+        lambda way: solid_stage(mechanism, way, again),
+        lambda found: found.figures,
+        asked,
+        lambda found: found.read.sizes,
+        lambda way: stage_figures(mechanism, way, again),
+    )
+
+
+def units_solid(
+    mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
+) -> Converged[dict[str, SolidUnit]]:
+    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
+
+    Its components have modes, as the stage's they may be shared with, unless they are `bare`: nothing moves, so figures are the same.
+    """
+
+    def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
+        return {f"{name}: {figure}": value for name, unit in found.items() for figure, value in unit.figures.items()}
+
+    def sizes(found: dict[str, SolidUnit]) -> dict[str, int]:
+        return {part: size for unit in found.values() for part, size in unit.read.sizes.items()}
+
+    again = remember(reduce)
+
+    def work(way: Reduction) -> dict[str, SolidUnit]:
+        return solid_units(mechanism, replace(way, modes=0 if bare else way.modes, static=True), again)
+
+    return converge(work, figures, asked, sizes)
+
+
+def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
+    """The six direct compliances of every hinge, by beam theory (or as the file gives them) and by FEA.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(hinge_rows(double_triangle(), {}))
+    []
+    """
+    given = calibrated_parts(mechanism)
+    links = {link.drawn: link for link in expand(mechanism).links.values()}
+    for name, hinge in found.items():
+        link = links.get(hinge.links[0]) or links[hinge.links[0].removeprefix("links.")]
+        theory = np.diag(compliance(link.part, link.material))  # pyright: ignore[reportArgumentType]
+        touched = (link.link.part,) if link.link.part in given else ()
+        for index, axis in enumerate(COMPONENTS):
+            if not hinge.separable[index]:
+                continue
+            unit = "m/N" if index < 3 else "rad/(N m)"
+            value = float(np.real(theory[index]))
+            fea = float(hinge.found.compliance[index, index])
+            error = None if hinge.errors is None else float(hinge.errors[index])
+            yield Row(f"hinge {name}", f"compliance {axis}", unit, value, fea, error, calibration=touched, reason=_why_unestimated(error))
+
+
+def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
+    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
+    found: dict[str, UnitResult] = {}
+    for unit, (copy, direction) in driven_units(mechanism).items():
+        alone = isolate(mechanism, copy)
+        found[unit] = unit_alone(substitute_parts(alone, solid_hinges(alone, compute)), copy, unit, direction, omissions=False)
+    return found
+
+
+def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
+    """K_a, K_l, gain and loss of every unit alone; `better` are the units with calibrated hinges.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
+    []
+    """
+    theory = units(mechanism, omissions=False)
+    for name, unit in found.result.items():
+        touched = _calibrated_parts(mechanism, name)
+        first, second = theory[name].figures, better[name].figures
+        simple = _mapped_unit(theory[name])
+        for figure, value in unit.figures.items():
+            dimension = "1" if figure == "gain" else "N/m"
+            error = _finite(found.errors.get(f"{name}: {figure}"))
+            yield Row(
+                group=f"unit {name}",
+                figure=figure,
+                unit=dimension,
+                theory=first[figure],
+                fea=value,
+                fea_error=error,
+                mapped=simple.get(figure),
+                calibrated=second[figure],
+                calibration=touched,
+                reason=_why_unestimated(error, f"{name}: {figure}", found),
+            )
+        if unit.loss > 1e-4:
+            gain = _finite(found.errors.get(f"{name}: gain"))
+            error = None if gain is None else gain * (1.0 - unit.loss) / unit.loss
+            values = (theory[name].loss, unit.loss, error)
+            yield Row(
+                f"unit {name}",
+                "loss",
+                "1",
+                *values,
+                None,
+                better[name].loss,
+                touched,
+                reason=_why_unestimated(error, f"{name}: gain", found),
+            )
+
+
+def _mapped_unit(unit: UnitResult) -> dict[str, float]:
+    """What the paper's springs give of a unit: Eq. 11 for levers, the series of axial springs for direct ones."""
+    if unit.lever is not None:
+        return {"axial stiffness": float(1.0 / unit.lever.tip_compliance), "gain": float(unit.lever.gain)}
+    return {} if unit.series is None else {"axial stiffness": unit.series}
+
+
+def _calibrated_parts(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
+    """The calibrated parts that a unit, or with `None` the stage, is built of."""
+    given = calibrated_parts(mechanism)
+    links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
+    return tuple(name for name in given if any(link.part == name for link in links))
+
+
+def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidStage]) -> Iterator[Row]:
+    """Stiffness of the platform by direction, and its modes, paired by shape."""
+    touched = _calibrated_parts(mechanism, None)
+    theories = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped_model(mechanism)}
+    known = {name: model for name, model in theories.items() if model is not None}
+    fea = found.result
+    tables = {name: stiffness_figures(statics(model)) for name, model in known.items()}
+    for figure, value in stiffness_figures(fea.statics).items():
+        unit = "N m/rad" if figure.endswith(("rx", "ry", "rz")) else "N/m"
+        extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
+        error = _finite(found.errors.get(figure))
+        values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
+        reason = _why_unestimated(error, figure, found) if "theory" in extra else "theory gives no finite value"
+        yield Row("stage", figure, unit, *values, touched, reason=reason)
+    own = Moving(fea.modes, fea.read.model)
+    pairs = {name: pair_modes(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
+    for number, index in enumerate(fea.modes.platform):
+        figure = f"platform mode {number + 1}"
+        best = {name: pair[index] for name, pair in pairs.items() if index in pair}
+        alike = {name: pair.frequency for name, pair in best.items() if pair.reliable}
+        error = _finite(found.errors.get(figure))
+        unestimated = _why_unestimated(error, figure, found)
+        yield Row(
+            group="stage",
+            figure=f"{figure} ({fea.modes.names[index]})",
+            unit="Hz",
+            theory=alike.get("theory"),
+            fea=float(fea.modes.frequencies[index]),
+            fea_error=error,
+            mapped=alike.get("mapped"),
+            calibrated=alike.get("calibrated"),
+            calibration=touched,
+            modal_assurance=best["theory"].assurance if "theory" in best else None,
+            reason=unestimated if "theory" in alike else _why_unpaired(best.get("theory")),
+        )
+
+
+def _why_unpaired(best: Pair | None) -> str:
+    if best is None:
+        return "theory has fewer modes"
+    return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
+
+
+def _finite(error: float | None) -> float | None:
+    """An error that is a number."""
+    return error if error is not None and np.isfinite(error) else None
+
+
+def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any] | None = None) -> str | None:
+    if error is not None:
+        return None
+    is_locked = found is not None and figure in found.unestimated
+    return NOT_ESTIMATED if is_locked else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+
+
+def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
+    try:
+        return mapped(mechanism)
+    except DesignError:
+        return None
+
+
+def verdict(rows: tuple[Row, ...]) -> str:
+    """In words, what the rows of one group say about which theory to trust.
+
+    >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
+    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
+    """
+    open_rows = [row for row in rows if row.difference is None or (row.fea_error is None and not row.calibration)]
+    judged = [row for row in rows if row not in open_rows]
+    if not judged:
+        return f"No verdict. {_reasons(open_rows)}"
+    said = _verdict_of_known(tuple(judged))
+    return f"{said} No verdict on {len(open_rows)} of {len(rows)} figures. {_reasons(open_rows)}" if open_rows else said
+
+
+def _reasons(rows: Iterable[Row]) -> str:
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        reasons.setdefault(row.reason or "unknown", []).append(row.figure)
+    return " ".join(f"{', '.join(figures)}: {reason}." for reason, figures in reasons.items())
+
+
+def departures(rows: Iterable[Row]) -> str:
+    """In words, where theory and finite elements differ: of every kind of figure the one that theory has most wrong, and why.
+
+    >>> row = Row("stage", "softest in plane, others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
+    >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
+    'softest in plane, others free: theory 4.5 times too stiff (rigid bodies bend)'
+    """
+    worst: dict[str, Row] = {}
+    for row in rows:
+        if row.trust in {Trust.FEA, Trust.CALIBRATED} and _factor(row) > _factor(worst.get(row.unit)):
+            worst[row.unit] = row
+    return "; ".join(f"{row.figure}: theory {_departure(row)}" for row in worst.values())
+
+
+def _factor(row: Row | None) -> float:
+    """By what factor theory is off, 1 and more; without a row, 1."""
+    ratio = 1.0 if row is None or row.difference is None else 1.0 + row.difference
+    return max(ratio, 1.0 / ratio) if ratio > 0.0 else float("inf")
+
+
+def _departure(row: Row) -> str:
+    above, factor = (row.difference or 0.0) > 0.0, _factor(row)
+    more, less = _WORDS.get(row.unit, ("large", "small"))
+    size = f"{factor:.2g} times" if factor >= _TIMES else _percent(_size_of_difference(row))
+    rigid = above and more in {"stiff", "high"} and row.trust is Trust.FEA and row.calibrated is not None
+    return f"{size} too {more if above else less}{' (rigid bodies bend)' if rigid else ''}"
+
+
+def _verdict_of_known(rows: tuple[Row, ...]) -> str:
+    """What rows say whose difference is known, and, unless they are not independent, whose error is."""
+    worst = max(rows, key=_size_of_difference)
+    least = max((row.fea_error for row in rows if row.fea_error is not None), default=0.0)
+    off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
+    if any(row.calibration for row in rows):
+        names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
+        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
+    name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
+    if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
+    known = departures(rows)
+    if any(row.trust is Trust.UNCLEAR for row in rows):
+        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+        return f"{known[:1].upper()}{known[1:]}. {said}" if known else said
+    better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
+    if not better:
+        return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
+    after = f"with calibrated hinges {_percent(max(better))}"
+    if all(row.trust is not Trust.FEA for row in rows):
+        return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
+    rest = "the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
+    return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"
+
+
+def _size_of_difference(row: Row) -> float:
+    return abs(row.difference or 0.0)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"

@@ -1,0 +1,45 @@
+"""The report of the solid model: one HTML file that stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from flexstage.base.finding import Finding
+from flexstage.base.storage.digest import digest
+from flexstage.base.version import __version__
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.page import Head, Headline, Section, page
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import turning_section
+from flexstage.show.viewer.data import stage_data
+from flexstage.show.viewer.motions import Motion
+
+
+def solid_report(
+    mechanism: Mechanism,
+    said: Headline,
+    sections: Iterable[Section | None],
+    cautions: tuple[Finding, ...] = (),
+    more: tuple[Motion, ...] = (),
+) -> str:
+    """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, cautions, the others.
+
+    `cautions` are those about the result; those about the description stand with them. Sections that are absent are left out. `more` are
+    motions of the viewer beside those of theory.
+
+    >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
+    '<!doctype html>'
+    """
+    origin = (
+        ("model", "solid"),
+        ("physics", digest(mechanism, physics=True)[:16]),
+        ("document", digest(mechanism)[:16]),
+        ("flexstage", __version__),
+    )
+    head = Head(mechanism.name or "stage", "A flexure stage as solids", origin, said)
+    first, *rest = sections
+    data = stage_data(mechanism)
+    data = replace(data, motions=(*data.motions, *more))
+    shown = (turning_section(mechanism, data), first, caveat_section(mechanism, cautions), *rest)
+    return page(head, [each for each in shown if each is not None], {"stage": data})

@@ -1,0 +1,164 @@
+"""Sections of the solid model: hinges, units and stage by finite elements, theory beside them, and pictures of deformed solids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from flexstage.analysis.complete import platform_modes
+from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
+from flexstage.analysis.trust import Trust
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.lumped import lumped
+from flexstage.show.display import number
+from flexstage.show.figures.directional import directional_figure
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Abreast, Block, Folded, Headline, Picture, Prose, Section, section
+from flexstage.show.scene.stage import scene
+from flexstage.show.sections.stage import joined_viewers
+from flexstage.show.tables.modes import mode_table
+from flexstage.show.tables.statics import centre_table, direction_table, principal_table, stiffness_table
+from flexstage.show.viewer.motions import Group, Motion, Skeleton, body_twists
+from flexstage.solid.results.stage import worst_strokes
+from flexstage.solid.results.surface import Surface, mode_surfaces, stress_surfaces
+from flexstage.solid.show.skin_figures import png_picture, skin_figure
+from flexstage.solid.show.tables import (
+    block_table,
+    command_table,
+    hinge_matrices,
+    hinge_table,
+    solid_unit_table,
+    stress_table,
+    verdict_table_of,
+    verification_table,
+)
+
+if TYPE_CHECKING:
+    from flexstage.solid.results.hinges import SolidHinge
+    from flexstage.solid.results.resolution import Converged
+    from flexstage.solid.results.stage import SolidStage
+    from flexstage.solid.results.units import SolidUnit
+    from flexstage.solid.results.verification import Verification
+
+_STRESS_EXPONENT = 0.4
+
+
+def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
+    """The 6x6 of every distinct hinge.
+
+    >>> hinge_section({}) is None
+    True
+    """
+    if not found:
+        return None
+    matrices = tuple(hinge_matrices(found))
+    return section("Hinges", [hinge_table(found), Folded("The full 6x6", matrices)])
+
+
+def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
+    """Every distinct unit alone, with its stress at the full stroke."""
+    blocks: list[Block] = [solid_unit_table(found)]
+    for name, unit in found.result.items():
+        stroke = float(unit.strokes[-1])
+        surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
+        picture = png_picture(
+            skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT),
+            f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified.",
+        )
+        stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
+        tables = (command_table(name, unit), *(() if stress is None else (stress,)))
+        blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
+    return section("Units alone", blocks)
+
+
+def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+    return tuple(replace(each, values=1e-6 * each.values) for each in surfaces)
+
+
+def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
+    """Stiffness, modes and stress of the whole stage."""
+    from flexstage.solid.results.resolution import NOT_ESTIMATED  # takes long to import
+
+    stage = found.result
+    worst = max(found.errors, key=lambda name: found.errors[name], default=None)
+    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
+    if found.unestimated:
+        error += f"; of {', '.join(found.unestimated)} {NOT_ESTIMATED}"
+    text = (
+        f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
+        f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest error estimated, from a coarser "
+        f"resolution: {error}."
+    )
+    polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
+    table = stress_table("Highest stress", stage.stress)
+    stress = [] if table is None else [Abreast((_stress_picture(stage), table))]
+    return section(
+        "The whole stage",
+        [
+            Prose(text),
+            stiffness_table(stage.statics),
+            Abreast((Picture(polar, "Stiffness in the plane by direction of the force."), principal_table(stage.statics))),
+            Folded("Stiffness by angle, centre of stiffness", (direction_table(stage.statics), centre_table(stage.statics))),
+            mode_table(stage.modes),
+            Abreast(tuple(_mode_pictures(stage)), narrow=True),
+            block_table(stage),
+            *stress,
+        ],
+    )
+
+
+def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
+    for index in stage.modes.platform:
+        figure = skin_figure(mode_surfaces(stage.read, stage.modes.shapes[:, index]), "")
+        caption = f"{stage.modes.names[index]}, {stage.modes.frequencies[index]:.1f} Hz: displacement relative to the largest."
+        yield png_picture(figure, caption, dots_per_inch=100)
+
+
+def _stress_picture(stage: SolidStage) -> Picture:
+    assert stage.worst is not None  # noqa: S101  there is a worst corner wherever there is a stress
+    surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
+    caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
+    return png_picture(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), caption)
+
+
+def verification_headline(found: Verification) -> Headline:
+    """The headline of a verification, and whether theory will do for all of the widest group."""
+    rows = list(found.groups.values())[-1]
+    return Headline(found.headline, all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows))
+
+
+def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
+    """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
+    return fea_motions(Skeleton(scene(mechanism).references), Moving(stage.modes, stage.read.model), theory)
+
+
+def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
+    """The same of any model of finite elements, on the bodies of a viewer."""
+    found: list[Motion] = []
+    for index in moving.modes.platform:
+        twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
+        frequency = float(moving.modes.frequencies[index])
+        pair = theory.get(index)
+        told = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
+        label = f"FEA {index + 1}  {number(frequency)} Hz  {moving.modes.names[index]}"
+        found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{told}", frequency))
+    return tuple(found)
+
+
+def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
+    """The modes of theory that those of finite elements are paired with, by index, and both side by side."""
+    model = lumped(mechanism)
+    pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
+    alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
+    partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
+    text = "Left theory, right finite elements: a chosen mode plays beside its partner. Bodies move as rigid ones; signs are arbitrary."
+    joined = joined_viewers(partners)
+    return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
+
+
+def verification_section(found: Verification) -> Section | None:
+    """Theory beside finite elements, with the verdicts in words first."""
+    tables = [verification_table(name, rows) for name, rows in found.groups.items()]
+    return section("Theory and finite elements", [verdict_table_of(found), *tables])

@@ -1,0 +1,1 @@
+"""Search for an optimum: problem, steps and fronts."""

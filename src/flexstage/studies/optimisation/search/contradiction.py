@@ -1,0 +1,84 @@
+"""Which limits contradict each other within the ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from flexstage.base.number import Array
+from flexstage.studies.optimisation.result import Contradiction
+from flexstage.studies.optimisation.search.problem import SPARE, Problem
+from flexstage.studies.optimisation.search.search import run_searches, search
+from flexstage.studies.optimisation.setting import Setting
+from flexstage.studies.optimisation.values import Point
+
+Told = Callable[[int], None]
+_MOST = 6
+_COUNTS = 1e-4
+
+
+def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None = None) -> tuple[Contradiction, ...]:
+    """Sets of limits that cannot be kept together, from any of the starts; none where all can after all.
+
+    The largest relative violation is made least; then limits are left out one at a time for good, as long as the rest cannot be kept
+    either. What remains is irreducible: without any one of them the others can be kept. It is set aside, and the rest is looked through
+    for further sets.
+    """
+    return tuple(_irreducible_sets(setting, list(starts), told))
+
+
+def _irreducible_sets(setting: Setting, starts: list[Array], told: Told | None) -> Iterator[Contradiction]:
+    left = tuple(range(len(setting.kept)))
+    for _ in range(_MOST):
+        found = _least_violation(setting, left, starts, told)
+        if found is None or found.violation <= SPARE:
+            return
+        begins = [found.point.shares, starts[0]]
+        held = tuple(number for number, weight in zip(left, found.weights, strict=True) if weight > _COUNTS)
+        alone = _least_violation(setting, held, begins[:1], told)
+        suspects = held if alone is not None and alone.violation > SPARE else left
+        chosen, ended = _irreducible_set(setting, suspects, begins, told)
+        yield Contradiction(tuple(setting.kept[number] for number in chosen), ended.violation, ended.point)
+        left = tuple(number for number in left if number not in chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class _Least:
+    """The least largest violation of some limits, the design there, and how much each limit holds it up."""
+
+    violation: float
+    point: Point
+    weights: tuple[float, ...]
+
+
+def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[Array], told: Told | None) -> tuple[tuple[int, ...], _Least]:
+    """A set of limits that cannot be kept though each left out the others can; halves are tried before single ones."""
+    ended = _least_violation(setting, suspects, starts, told)
+    assert ended is not None  # noqa: S101  one of the starts is a design already found
+    size = max(1, len(suspects) // 2)
+    place = 0
+    while place < len(suspects):
+        rest = (*suspects[:place], *suspects[place + size :])
+        without = _least_violation(setting, rest, starts, told) if rest else None
+        if without is not None and without.violation > SPARE:
+            suspects, ended = rest, without
+            starts = [without.point.shares, *starts[1:]]
+        elif size > 1:
+            size = max(1, size // 2)
+        else:
+            place += 1
+    return suspects, ended
+
+
+def _least_violation(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], told: Told | None) -> _Least | None:
+    """The least largest violation, found from any of the starts; `None` where nothing is asked or no start can be evaluated."""
+    if not chosen:
+        return None
+    problem = Problem(tuple(setting.side(number) for number in chosen), ())
+    traces = run_searches([search(problem, start, enough=SPARE) for start in starts], setting.values, told)
+    ended = [
+        _Least(problem.worth(trace.point), trace.point, tuple(each.total for each in trace.weights) or (1.0,) * len(chosen))
+        for trace in traces
+        if trace.point is not None
+    ]
+    return min(ended, key=lambda item: item.violation, default=None)

@@ -1,0 +1,193 @@
+"""What a search minimises and keeps: sides of measures, each normalised, and what they are to first order around a design."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.assessment.measures import Extreme
+from flexstage.analysis.assessment.requirements import Sense
+from flexstage.base.number import Array
+from flexstage.studies.optimisation.values import Numbered, Point, Scalars
+
+SPARE = 1e-8
+"""Share of its scale by which a limit is kept with room to spare, so that rounding does not break it."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of the measure number `index`: c = (limit - value) / scale for `at least`, its negative for `at most`; good where c <= 0."""
+
+    index: int
+    sense: Sense
+    limit: float
+    scale: float
+
+    def of(self, value: float) -> float:
+        """c for a value of the measure.
+
+        >>> Side(0, Sense.AT_LEAST, 100.0, 100.0).of(90.0)
+        0.1
+        """
+        spare = (value - self.limit) / self.scale
+        return -spare if self.sense is Sense.AT_LEAST else spare
+
+    def at(self, point: Point) -> float:
+        """c at a design."""
+        return self.of(point.found[self.index].value)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Minimise the largest c of `objective` while no c of `limits` is above 0."""
+
+    objective: tuple[Side, ...]
+    limits: tuple[Side, ...]
+
+    def worth(self, point: Point) -> float:
+        """The largest c of the objective."""
+        return max(side.at(point) for side in self.objective)
+
+    def excess(self, point: Point) -> float:
+        """The largest violation, normalised; 0 where all limits are kept."""
+        return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
+
+    def violation(self, point: Point) -> float:
+        """The largest violation, none negative."""
+        return max(0.0, self.excess(point))
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """One side around a design: c = the largest eigenvalue of constant + sum_p d_p slope_p, matrices (k, k) and (n, k, k).
+
+    For scalars the matrices are diagonal and only their diagonals are given: (m,) and (n, m).
+    """
+
+    constant: Array
+    slope: Array
+
+    @property
+    def diagonal(self) -> bool:
+        """Whether these are scalars."""
+        return self.constant.ndim == 1
+
+    def project(self, vector: Array) -> tuple[float, Array]:
+        """Constant and gradient (n,) of v^T C v, never more than c for a unit vector."""
+        return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
+
+    def after(self, change: Array) -> tuple[Array, Array]:
+        """Eigenvalues ascending and vectors of the matrix after a change (n,)."""
+        return np.linalg.eigh(self.constant + np.tensordot(change, self.slope, axes=1))
+
+
+def linear(side: Side, point: Point) -> Linear:
+    """A side to first order around a design.
+
+    The pieces of a least above a limit are all to be above it, likewise below; of frequencies, those from the one asked for upward are to
+    be above it, or up to it below. The other way round, only the piece that the measure now is counts.
+
+    >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
+    >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()
+    [-2.0, -1.0]
+    """
+    found, sign = point.found[side.index], -1.0 if side.sense is Sense.AT_LEAST else 1.0
+    if isinstance(found, Scalars):
+        values, gradient = _pieces(found, side.sense)
+        return Linear(sign * (values - side.limit) / side.scale, sign * gradient.T / side.scale)
+    chosen = members(side, found)
+    constant = np.diag(found.spectrum.frequencies[chosen] - side.limit)
+    return Linear(sign * constant / side.scale, sign * found.spectrum.slopes[:, chosen, chosen] / side.scale)
+
+
+def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
+    """A side around a design with its slopes, but lifted so that at another design it is what was found there.
+
+    >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
+    >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
+    [2.0]
+    """
+    here, there = linear(side, point), linear(side, tried)
+    if here.constant.shape != there.constant.shape:
+        return here
+    turned = there.constant if here.diagonal else _change_basis(side, there.constant, tried, point)
+    return Linear(turned - np.tensordot(tried.shares - point.shares, here.slope, axes=1), here.slope)
+
+
+def members(side: Side, found: Numbered) -> slice:
+    """Which modes of the spectrum a side is about.
+
+    >>> from flexstage.studies.optimisation.search.spectrum import Spectrum
+    >>> one = Numbered(Spectrum(np.ones(3), np.zeros((0, 3, 3)), np.eye(3), np.eye(3)), 2)
+    >>> members(Side(0, Sense.AT_LEAST, 1.0, 1.0), one), members(Side(0, Sense.AT_MOST, 1.0, 1.0), one)
+    (slice(1, None, None), slice(0, 2, None))
+    """
+    return slice(found.count - 1, None) if side.sense is Sense.AT_LEAST else slice(0, found.count)
+
+
+def _pieces(found: Scalars, sense: Sense) -> tuple[Array, Array]:
+    if (found.extreme is Extreme.LEAST) == (sense is Sense.AT_LEAST) or len(found.values) == 1:
+        return found.values, found.gradient
+    own = int(np.argmin(found.values) if found.extreme is Extreme.LEAST else np.argmax(found.values))
+    return found.values[own : own + 1], found.gradient[own : own + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Weights:
+    """Multipliers of one side: of its pieces (m,), or a positive semidefinite matrix (k, k) of its modes."""
+
+    values: Array
+
+    @property
+    def total(self) -> float:
+        """How much the side counts in all."""
+        return float(np.trace(self.values) if self.values.ndim == 2 else np.sum(self.values))
+
+    def gradient(self, at: Linear) -> Array:
+        """What the side adds to the gradient (n,) of the Lagrangian."""
+        if self.values.ndim == 1:
+            return at.slope @ self.values
+        return np.einsum("pij,ij->p", at.slope, self.values)
+
+
+def sides(problem: Problem) -> Iterator[Side]:
+    """All sides, the objective's first.
+
+    >>> len(list(sides(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()))))
+    1
+    """
+    yield from problem.objective
+    yield from problem.limits
+
+
+def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], seen_from: Point | None = None) -> Array | None:
+    """Gradient (n,) of the Lagrangian at a design, with weights of the modes and pieces of the design `seen_from` (absent: of this one).
+
+    `None` where pieces do not correspond.
+
+    >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
+    >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()
+    [2.0]
+    """
+    total = np.zeros(len(point.shares))
+    for side, weight in zip(sides(problem), weights, strict=True):
+        at, own = linear(side, point), weight
+        if own.values.shape[0] != at.constant.shape[0]:
+            return None
+        if seen_from is not None and not at.diagonal:
+            own = Weights(_change_basis(side, own.values, seen_from, point))
+        total = total + own.gradient(at)
+    return total
+
+
+def _change_basis(side: Side, values: Array, before: Point, now: Point) -> Array:
+    """A matrix in the modes of one design, in those of another."""
+    first, second = before.found[side.index], now.found[side.index]
+    assert isinstance(first, Numbered)  # noqa: S101  a side with a matrix is of frequencies
+    assert isinstance(second, Numbered)  # noqa: S101
+    chosen = members(side, first)
+    left, _, right = np.linalg.svd(first.spectrum.weighted[:, chosen].T @ second.spectrum.shapes[:, chosen])
+    turn = left @ right
+    return turn.T @ values @ turn

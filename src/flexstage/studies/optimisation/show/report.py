@@ -1,0 +1,100 @@
+"""Reports of optimisations: one HTML file each that stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.base.storage.digest import digest
+from flexstage.base.version import __version__
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.show.display import format_value
+from flexstage.show.figures.export import to_svg
+from flexstage.show.page import Abreast, Head, Headline, Legend, Picture, Prose, Section, Viewer, page, section
+from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.scene.stage import Scene, scene
+from flexstage.show.scene.view import legend
+from flexstage.show.sections.caveats import caveat_section
+from flexstage.show.sections.stage import first_motion, stage_section, turning_section
+from flexstage.show.viewer.data import StageData, stage_data
+from flexstage.studies.optimisation.result import Front, Optimum
+from flexstage.studies.optimisation.show.figures import convergence_figure, front_figure
+from flexstage.studies.optimisation.show.tables import front_tables, optimise_tables
+from flexstage.studies.optimisation.values import values_of
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
+
+_SEARCH = (
+    "Left: accepted designs of every start; open: some limit is not kept. Right: each variable in its range, as it stands and at the end."
+)
+
+
+def optimise_report(found: Optimum) -> str:
+    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence.
+
+    Raises `DesignError` where the best design does not hold under its dead load.
+    """
+    study = found.study
+    cautions = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
+    objective, variables, limits, *rest = optimise_tables(found)
+    search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
+    final = None if found.final is None else study.mechanism_for(values_of(study, found.final.shares))
+    stages = {"stage": stage_data(study.design if final is None else final)} | (
+        {} if final is None else {"before": stage_data(study.design)}
+    )
+    sections: list[Section | None] = [
+        _stage(study, final, stages),
+        section("Objective", [objective, search]),
+        caveat_section(study.design, cautions),
+        section("Variables", [variables]),
+        section("Limits", [limits, *rest[:-1]]),
+        section("Starts", rest[-1:]),
+    ]
+    return page(_head(study, "An optimisation", _headline(found)), [each for each in sections if each is not None], stages)
+
+
+def _stage(study: Study, final: Mechanism | None, stages: Mapping[str, StageData]) -> Section | None:
+    """The optimum, with the design as it stands behind it and, where nothing turns, beside it."""
+    if final is None:
+        return stage_section(scene(study.design), motion=first_motion(stages["stage"]))
+    drawn = {"as it stands": scene(study.design), "the optimum": scene(final)}
+    pictures = [_still(seen, f"stage{place}", f"The stage, {name}.") for place, (name, seen) in enumerate(drawn.items())]
+    viewer = Viewer("stage", (Abreast(tuple(pictures)),), first_motion(stages["stage"]), "before")
+    said = "Drawn is the optimum; where it turns, the outline behind it is the design as it stands."
+    return section("The stage", [viewer, Legend(legend(drawn["the optimum"])), Prose(said)])
+
+
+def _still(seen: Scene, name: str, caption: str) -> Picture:
+    return Picture(stage_picture(seen, width=4.4).svg(name, caption), caption)
+
+
+def front_report(found: Front) -> str:
+    """A front as a page of HTML."""
+    picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
+    data = stage_data(found.study.design)
+    sections = [
+        turning_section(found.study.design, data),
+        section("Front", [picture, *front_tables(found)]),
+        caveat_section(found.study.design, loaded_findings(found.study)),
+    ]
+    said = Headline(f"{len(found.points)} designs, none of them better than another in both objectives.")
+    return page(_head(found.study, "A front of two objectives", said), [each for each in sections if each is not None], {"stage": data})
+
+
+def _headline(found: Optimum) -> Headline:
+    """The objective before and after, and how many limits are kept."""
+    asked, point = found.wanted.objectives[0], found.final
+    if point is None:
+        return Headline(f"No design was found: {found.failure}.", good=False)
+    before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
+    limits = zip(found.limits, point.values[len(found.wanted.objectives) :], strict=True)
+    kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
+    told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
+    return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))
+
+
+def _head(study: Study, kind: str, said: Headline) -> Head:
+    origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
+    return Head(study.name, kind, origin, said)

@@ -1,0 +1,148 @@
+"""Tables of optimisations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.base.number import Array
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import show
+from flexstage.show.display import format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.studies.optimisation.result import Binding, Contradiction, Front, Optimum
+from flexstage.studies.optimisation.values import Point, values_of
+from flexstage.studies.sweeps.definition import Study
+
+
+def optimise_tables(found: Optimum) -> list[Table]:
+    """Objective and variables before and after, limits, what binds and what it costs, the starts.
+
+    >>> from flexstage.studies.optimisation.example import leaf_study
+    >>> from flexstage.studies.optimisation.search.optimum import optimise
+    >>> [table.title for table in optimise_tables(optimise(*leaf_study()))]
+    ['Objective', 'Variables', 'Limits', 'What binds', 'Starts']
+    """
+    return [_objective(found), _variables(found), _limits(found), *([_binding(found)] if found.binding else []), _starts(found)]
+
+
+def front_tables(found: Front) -> list[Table]:
+    """The designs of a front: objectives and variables."""
+    objectives = found.wanted.objectives
+    heads = [f"{each.name} ({each.aim.value})" for each in objectives]
+    rows = []
+    for index, point in enumerate(found.points):
+        cells = [format_value(float(point.values[number]), each.measure.quantity.si, 6) for number, each in enumerate(objectives)]
+        rows.append((str(index + 1), *cells, *_value_texts(found.study, values_of(found.study, point.shares))))
+    columns = ["design", *(Column(head) for head in heads), *(Column(each.name) for each in found.study.variables)]
+    notes = [f"{found.evaluated} designs evaluated with derivatives. None of these is better in both objectives than another."]
+    return [make_table("Front", columns, rows, notes=[*notes, *_notes(interrupted=found.interrupted, idle=found.idle)])]
+
+
+def _notes(*, interrupted: bool, idle: tuple[str, ...]) -> list[str]:
+    notes = ["Interrupted: the best so far."] if interrupted else []
+    return [*notes, *([f"Move nothing that is asked for: {', '.join(idle)}."] if idle else [])]
+
+
+def _value_texts(study: Study, values: Array) -> list[str]:
+    return [_value(float(value), each.quantity, relative=each.relative) for each, value in zip(study.variables, values, strict=True)]
+
+
+def _value(value: float, quantity: Quantity, *, relative: bool) -> str:
+    return f"{100.0 * (value - 1.0):+.4g} %" if relative else show(value, quantity, digits=6)
+
+
+def _objective(found: Optimum) -> Table:
+    objective = found.wanted.objectives[0]
+    unit = objective.measure.quantity.si
+    rows = [("as it stands", format_value(found.value(found.before), unit, 6), "")]
+    for title, point in (("optimum", found.point), ("rounded", None if found.rounded is None else found.rounded.point)):
+        if point is not None:
+            change = found.value(point) / (found.value(found.before) or np.nan) - 1.0
+            rows.append((title, format_value(found.value(point), unit, 6), f"{100.0 * change:+.2f} %"))
+    notes = [f"{found.agreeing} of {len(found.starts)} starts agree. {found.evaluated} designs evaluated with derivatives."]
+    if found.rounded is not None and found.rounded.point is not None:
+        notes.append(f"Rounding costs {format_value(found.rounded.loss, unit, 3)} ({found.rounded.tried} neighbours tried).")
+    elif found.rounded is not None:
+        notes.append(f"Not rounded: {found.rounded.reason}.")
+    notes += _notes(interrupted=found.interrupted, idle=found.idle)
+    heads = [f"{objective.aim.value} {objective.name}", Column(objective.measure.key), Column("change")]
+    return make_table("Objective", heads, rows, notes=notes)
+
+
+def _variables(found: Optimum) -> Table:
+    study = found.study
+    columns = [values_of(study, found.before.shares)]
+    heads = [Column("as it stands")]
+    if found.point is not None:
+        columns.append(values_of(study, found.point.shares))
+        heads.append(Column("optimum"))
+    if found.rounded is not None and found.rounded.values is not None:
+        columns.append(found.rounded.values)
+        heads.append(Column("rounded"))
+    shown = [_value_texts(study, values) for values in columns]
+    rows = []
+    for index, each in enumerate(study.variables):
+        ends = [_value(end, each.quantity, relative=each.relative) for end in (each.low, each.high)]
+        rows.append((Cell(each.name, Mark.STRONG), ends[0], *(texts[index] for texts in shown), ends[1]))
+    return make_table("Variables", ["variable", Column("from"), *heads, Column("to")], rows)
+
+
+def _limits(found: Optimum) -> Table:
+    first = len(found.wanted.objectives)
+    point = found.final or found.point or found.before
+    rows = []
+    for index, each in enumerate(found.limits):
+        verdict = Verdict(each, np.asarray(point.values[first + index]))
+        kept = bool(verdict.passed)
+        values = [format_value(float(at.values[first + index]), each.quantity.si, 5) for at in (found.before, point)]
+        mark = Cell("kept" if kept else "not kept", Mark.PASS if kept else Mark.FAIL)
+        rows.append((Cell(each.key, Mark.STRONG), each.text, *values, f"{100.0 * float(verdict.margin):+.3g} %", mark))
+    heads = ["limit", "demand", Column("as it stands"), Column("final"), Column("margin"), "verdict"]
+    return make_table("Limits", heads, rows)
+
+
+def _binding(found: Optimum) -> Table:
+    unit = found.wanted.objectives[0].measure.quantity.si
+    rows = [(Cell(each.name, Mark.STRONG), format_value(each.limit, each.unit, 6), *_price(each, unit)) for each in found.binding]
+    note = (
+        "What the objective gains when the limit, or end of the range, gives way by 1 % of its value; and its change per unit it is raised."
+    )
+    return make_table("What binds", ["binds", Column("at"), Column("1 % of it buys"), Column("per unit")], rows, notes=[note])
+
+
+def _price(each: Binding, unit: str) -> tuple[str, str]:
+    gain = abs(each.price) * (abs(each.limit) or 1.0) * 0.01
+    per = f"{unit}/{each.unit}" if each.unit != "1" else unit
+    return format_value(gain, unit, 3), f"{number(each.price, 4)} {per}"
+
+
+def _starts(found: Optimum) -> Table:
+    unit = found.wanted.objectives[0].measure.quantity.si
+    rows = []
+    for index, each in enumerate(found.starts):
+        ended = each.reason or ("converged" if each.converged else "no further step found")
+        agrees = Cell("yes", Mark.PASS) if each.agrees else Cell("no", Mark.WARN)
+        worst = f"{100.0 * each.violation:.2g} %" if each.violation > 1e-8 else "none"
+        value = "" if np.isnan(each.value) else format_value(each.value, unit, 6)
+        rows.append(("as it stands" if index == 0 else f"Sobol {index}", value, worst, str(each.evaluated), ended, agrees))
+    heads = ["start", Column("objective"), Column("violation"), Column("designs"), "end", "agrees"]
+    return make_table("Starts", heads, rows)
+
+
+def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
+    """What contradicts and how nearly the limits can be met, in words: what was found, and the advice."""
+    said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
+    at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
+    least = f"the least violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"
+    if len(said) == 1:
+        return f"{said[0]} cannot hold within these ranges; {least}", "Loosen it, or widen the ranges"
+    both = "both " if len(said) == 2 else "all "
+    joined = f"{', '.join(said[:-1])} and {said[-1]}"
+    return f"{joined} cannot {both}hold within these ranges; {least}", "Loosen one of them, or widen the ranges"
+
+
+def _nearest_value(key: str, point: str, at: Point, found: Optimum | Front) -> str:
+    index = next(number for number, limit in enumerate(found.limits) if (limit.key, limit.point) == (key, point))
+    value = float(at.values[len(found.wanted.objectives) + index])
+    return f"{key} {format_value(value, found.limits[index].quantity.si, 5)}"

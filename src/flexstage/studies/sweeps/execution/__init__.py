@@ -1,0 +1,1 @@
+"""Execution of a study: designs evaluated, stored and gathered."""

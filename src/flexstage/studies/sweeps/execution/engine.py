@@ -1,0 +1,132 @@
+"""Platform frequencies of a study's designs, thousands a second: planned once for a study, then asked for any designs of it.
+
+Which way a design goes, and whether descriptions are fitted, depends on the study alone: not on how its designs are cut into pieces, nor on
+how many of them are left to compute.
+"""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from flexstage.analysis.assessment.measures import platform_frequency
+from flexstage.base.finding import DesignError
+from flexstage.base.number import Array, Table
+from flexstage.base.version import __version__
+from flexstage.models.batch.engine import Plan, Status, plan_family, platform_modes
+from flexstage.models.batch.kernel import kernel_name
+from flexstage.models.batch.parameters.numbers import Family, drawn_family, family
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.loaded import needs_load_check
+from flexstage.studies.sweeps.numbers import Numbers
+
+_MODES = 6
+_FIT = 4_700
+"""Descriptions that fitting takes, and `_EACH` more for every number: so many more designs must there be that it pays, `_TIMES` over."""
+_EACH = 34
+_TIMES = 4
+_BEYOND = 1e-9
+"""How much of a range is added at its ends, so that rounding leads no design out of it."""
+_SURE = (Status.ITERATED, Status.WHOLE)
+
+
+@dataclass(frozen=True, eq=False)
+class Engine:
+    """What the engine answers of a study: platform modes (from 0) by name of the response, none where there is no `plan`.
+
+    The plan is for `numbers`, or else for the variables themselves. `loaded`: designs may not hold under their dead load.
+    """
+
+    modes: Mapping[str, int]
+    plan: Plan | None = None
+    numbers: Numbers | None = None
+    loaded: bool = False
+
+    def answers(self, values: Array) -> tuple[Array, Array]:
+        """Frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d) of the variables, and which designs (n,) have them.
+
+        A design without them may have fewer such modes, or move freely: reading it by itself tells.
+
+        >>> from flexstage.studies.sweeps.example import neck_study
+        >>> engine_of(neck_study()).answers(np.array([[0.00154]]))[0].round(1).tolist()
+        [[106.0]]
+        """
+        if self.plan is None:
+            return np.zeros((len(values), 0)), np.ones(len(values), dtype=bool)
+        found = platform_modes(self.plan, values if self.numbers is None else self.numbers.at(values))
+        return found.frequencies[:, list(self.modes.values())], np.isin(found.status, _SURE)
+
+    @property
+    def provenance(self) -> str:
+        """By which versions of what numbers are computed here: where all are the same, results are the same to the bit.
+
+        >>> Engine(Table({})).provenance
+        'flexstage ..., numpy ... on ...'
+        """
+        solver = "" if self.plan is None else f", {kernel_name()}"
+        return f"flexstage {__version__}, numpy {np.__version__}, scipy {scipy.__version__} on {platform.machine()}{solver}"
+
+
+def engine_covers(study: Study) -> bool:
+    """Whether a study that describes its designs in a way of its own does so for complex numbers too, or names the numbers.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> engine_covers(neck_study())
+    True
+    """
+    kind = type(study)
+    return kind.mechanism_for is Study.mechanism_for or kind.mechanism_at is not Study.mechanism_at or study.numbers is not None
+
+
+def engine_of(study: Study) -> Engine:
+    """The engine for a study: its plan, over the variables' ranges where the study has designs enough for that to pay.
+
+    What it does not cover is left to dense matrices: designs described in a way of the study's own. Raises nothing.
+
+    >>> from flexstage.studies.sweeps.example import neck_study
+    >>> dict(engine_of(neck_study()).modes)
+    {'tilt': 0}
+    """
+    return replace(_engine_of(study), loaded=needs_load_check(study))
+
+
+def _engine_of(study: Study) -> Engine:
+    wanted = {name: int(each.name) - 1 for name, each in study.columns.items() if each.kind is platform_frequency}
+    modes = Table({name: mode for name, mode in wanted.items() if mode < _MODES})
+    if not modes or not engine_covers(study):
+        return Engine(Table({}))
+    numbers = study.numbers
+    try:
+        return Engine(modes, plan_family(_family(study, numbers), ranges=_ranges(study, numbers)), numbers)
+    except DesignError:
+        return Engine(Table({}))
+
+
+def _family(study: Study, numbers: Numbers | None) -> Family:
+    if numbers is not None:
+        return family(study.design, numbers.addresses)
+    return drawn_family(study.mechanism_at, tuple(each.name for each in study.variables), _nominal(study))
+
+
+def _ends(study: Study) -> Array:
+    """Least and largest values (2, d) of the variables."""
+    return np.array([[each.low, each.high] for each in study.variables]).T
+
+
+def _nominal(study: Study) -> Array:
+    """Values (d,) of the design as it stands, or as near to it as the ranges allow."""
+    low, high = _ends(study)
+    return np.clip([each.nominal(study.design) for each in study.variables], low, high)
+
+
+def _ranges(study: Study, numbers: Numbers | None) -> tuple[Array, Array] | None:
+    """Over what the descriptions are to be fitted."""
+    low, high = _ends(study)
+    if study.plan.designs < _TIMES * (_FIT + _EACH * (len(low) if numbers is None else len(numbers.addresses))):
+        return None
+    more = _BEYOND * (high - low)
+    return (low - more, high + more) if numbers is None else numbers.ranges(low, high)

@@ -1,0 +1,161 @@
+"""Tables of studies of many designs."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+
+import numpy as np
+
+from flexstage.analysis.assessment.requirements import Verdict
+from flexstage.base.labelled import NOISE
+from flexstage.show.display import NO_VALUE, format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.studies.sweeps.definition import Study
+from flexstage.studies.sweeps.effects import Effects
+from flexstage.studies.sweeps.execution.store import Results
+from flexstage.studies.sweeps.result import Sweep
+
+_MOST_FAILURES = 8
+_MOST_PAIRS = 6
+_LEAST = 0.01
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
+
+
+def study_tables(sweep: Sweep) -> list[Table]:
+    """What was varied, how the responses are distributed, what does it, and designs that failed."""
+    study, results, found = sweep.study, sweep.results, sweep.effects
+    tables = [variable_table(study, results), response_table(study, results, found), share_table(found)]
+    tables += [pair_table(found)] if np.any(np.isfinite(found.pairs)) else []
+    return tables + ([failure_table(results)] if results.failures else [])
+
+
+def variable_table(study: Study, results: Results) -> Table:
+    """Variables with their ranges, and how many designs there are."""
+    rows = [
+        (
+            Cell(each.name, Mark.STRONG),
+            ", ".join(each.addresses) if each.variant is None else f"parameter {', '.join(each.addresses)}",
+            each.text(each.low),
+            each.text(each.high),
+        )
+        for each in study.variables
+    ]
+    plan = study.plan
+    note = f"{len(results.designs)} of {results.planned} designs, {plan.sampling.value}" + ("" if plan.levels else f", seed {plan.seed}")
+    return make_table("Varied", ["variable", "number", "from", "to"], rows, notes=[f"{note}."])
+
+
+def response_table(study: Study, results: Results, found: Effects) -> Table:
+    """Responses with their distributions, and how many designs keep the limits on them."""
+    rows = []
+    for index, (name, measure) in enumerate(study.columns.items()):
+        unit = measure.quantity.si
+        noise = NOISE * abs(found.mean[index])
+        spread = 0.0 if found.deviation[index] < noise else found.deviation[index]
+        cells = [
+            format_value(float(each), unit, 5) if found.used else NO_VALUE
+            for each in (found.low[index], found.mean[index], spread, found.high[index])
+        ]
+        rows.append(
+            (
+                Cell(name, Mark.STRONG),
+                f"{measure.key} at {measure.point}" if measure.kind.pointed else measure.key,
+                *cells,
+                _share_within_limits(study, results, name),
+            )
+        )
+    heads = ["least", "mean", "deviation", "largest"]
+    return make_table(
+        "Responses",
+        ["response", "measure", *(Column(head) for head in heads), Column("limit met by", "%")],
+        rows,
+        notes=_limit_notes(study, results),
+    )
+
+
+def _share_within_limits(study: Study, results: Results, name: str) -> str:
+    """Share of all designs that keep the limits on a measure; a failed design keeps none."""
+    measure, values = study.columns[name], results.column(name)
+    verdicts = [Verdict(each, values) for each in study.limits if (each.key, each.point) == (measure.key, measure.point)]
+    if not verdicts or not len(values):
+        return ""
+    return number(100.0 * float(np.mean(np.all([verdict.passed for verdict in verdicts], axis=0))), 4)
+
+
+def _limit_notes(study: Study, results: Results) -> list[str]:
+    """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
+    kept = study.feasible(results.responses)
+    if not study.limits or not len(kept):
+        return []
+    if np.any(kept):
+        return [f"All limits together are met by {number(100.0 * float(np.mean(kept)), 4)} % of the designs."]
+    alone = {f"{each.key} {each.text}": study.feasible(results.responses, (each,)) for each in study.limits}
+    never = [text for text, met in alone.items() if not np.any(met)]
+    if never:
+        return [f"No design meets {' nor '.join(never)}: widen the ranges, or ask for less."]
+    pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
+    told = "; ".join(f"{first} and {second}" for first, second in pairs)
+    return [f"No design meets all limits at once{f': no design meets both {told}' if told else ''}."]
+
+
+def share_table(found: Effects) -> Table:
+    """First-order and, where known, total indices."""
+    columns: list[Column | str] = ["variable"]
+    for name in found.responses:
+        columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
+    rows = []
+    for row, variable in enumerate(found.variables):
+        cells: list[Cell | str] = [Cell(variable, Mark.STRONG)]
+        for column in range(len(found.responses)):
+            cells.append(_share(float(found.first[row, column])))
+            cells += [] if found.total is None else [_share(float(found.total[row, column]))]
+        rows.append(cells)
+    note = "Alone: share of the response's variance by the variable alone"
+    note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
+    return make_table("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
+
+
+def _error_note(found: Effects, order: int) -> list[str]:
+    """How well indices are known."""
+    told = [f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)]
+    return [f"Standard errors up to: {', '.join(told)}."] if told else []
+
+
+def pair_table(found: Effects) -> Table:
+    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first."""
+    known = np.nan_to_num(found.pairs).max(axis=2)
+    ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
+    shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
+    rows = [
+        [
+            Cell(f"{found.variables[first]}, {found.variables[second]}", Mark.STRONG),
+            *(_share(float(each)) for each in found.pairs[first, second]),
+        ]
+        for first, second in shown_pairs
+    ]
+    less = "No pair" if not rows else "No other pair"
+    notes = ["Share of variance that only both together explain.", f"{less} explains 1 % of anything." if len(rows) < _MOST_PAIRS else ""]
+    notes += _error_note(found, 1)
+    return make_table(
+        "Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note]
+    )
+
+
+def _share(value: float) -> Cell:
+    if not np.isfinite(value):
+        return Cell("-", Mark.FAINT)
+    return Cell(f"{round(100.0 * value, 1) + 0.0:.1f} %", Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
+
+
+def failure_table(results: Results) -> Table:
+    """Reasons of failed designs, the most frequent first."""
+    reasons: dict[str, list[int]] = {}
+    for design, reason in results.failures.items():
+        reasons.setdefault(_NUMBER.sub("", reason), []).append(design)
+    ranked = sorted(reasons.values(), key=lambda designs: -len(designs))
+    rows = [(number(len(designs)), str(designs[0]), results.failures[designs[0]]) for designs in ranked[:_MOST_FAILURES]]
+    rest = len(ranked) - _MOST_FAILURES
+    notes = ["Reasons that differ in numbers only are told once, as the first design has them; the results file holds all."]
+    notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
+    return make_table("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)

@@ -1,0 +1,213 @@
+"""Tables of tolerance studies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.show.display import display_unit_of, format_value, number
+from flexstage.show.table import Cell, Column, Mark, Table, make_table
+from flexstage.spatial.frame import COMPONENTS
+from flexstage.studies.sweeps.show.tables import failure_table
+from flexstage.studies.tolerances.allowance import Allowance
+from flexstage.studies.tolerances.crosstalk import OPEN
+from flexstage.studies.tolerances.distribution import Distribution, Shape
+from flexstage.studies.tolerances.run import Toleranced
+from flexstage.studies.tolerances.scatter import Scatter
+from flexstage.studies.tolerances.summary import Crosstalk, Yield
+
+_FAR = 10.0
+_FINE = 1e3
+_COLUMNS = (
+    "alone: the others as stated; equal shares: all at once, each with the same share of the room; all alike: all at once, in the "
+    "proportions stated."
+)
+_NO_YIELD = "There is no yield: neither the design's [require] nor the study's [limits] state what a good stage is."
+
+
+def tolerance_tables(found: Toleranced) -> list[Table]:
+    """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk."""
+    tables = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
+    if found.summary.lines:
+        tables.append(allowance_table(found))
+    tables += [crosstalk_table(found, each) for each in found.summary.crosstalk]
+    return [*tables, *([failure_table(found.results)] if found.results.failures else [])]
+
+
+def scatter_table(found: Toleranced) -> Table:
+    """What scatters, how far, and in how many numbers."""
+    rows = [
+        (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
+        for each in found.study.scatters
+    ]
+    plan = found.study.plan
+    copies = f"{found.summary.copies} copies of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
+    alone = getattr(plan, "alone", 0)
+    notes = [f"{copies}." + (f" {alone} more for each line, which then scatters alone." if alone else "")]
+    return make_table("What scatters", ["", "number", "deviation", "in"], rows, notes=notes)
+
+
+def _reach_text(scatter: Scatter) -> str:
+    count = len(scatter.members)
+    if scatter.each:
+        return f"each of {count}"
+    reached = sum(len(member) for member in scatter.members)
+    return f"common to {reached}" if reached > 1 else "one"
+
+
+def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
+    """A distribution in words: `5 um (sigma), within 10 um`.
+
+    >>> from flexstage.studies.tolerances.example import leaf_study
+    >>> [distribution_text(each, each.distribution) for each in leaf_study().scatters]
+    ['5 um (sigma)', '+-5 um']
+    """
+    text = _size(scatter, distribution.size)
+    if distribution.shape is Shape.UNIFORM:
+        return f"+-{text}"
+    return f"{text} (sigma)" + (f", within +-{_size(scatter, distribution.within)}" if distribution.within is not None else "")
+
+
+def _size(scatter: Scatter, value: float) -> str:
+    return f"{number(100.0 * value, 4)} %" if scatter.relative else format_value(value, scatter.quantity.si, 4)
+
+
+def yield_table(found: Toleranced) -> Table:
+    """Each line of the specification, its nominal value and its yield; or that there is none."""
+    if found.summary.together is None:
+        return make_table("Yield", [""], [(_NO_YIELD,)])
+    spread = found.summary.spread
+    rows = []
+    for line in found.summary.lines:
+        column, unit = spread.names.index(line.column), line.requirement.quantity.si
+        numbers = [format_value(value, unit) for value in (line.nominal, float(spread.deviation[column]))]
+        rows.append((Cell(line.column, Mark.STRONG), line.requirement.text, *numbers, *_yield(line.kept)))
+    rows.append((Cell("all together", Mark.STRONG), "", "", "", *_yield(found.summary.together)))
+    heads = ["line", "wanted", Column("as drawn"), Column("deviation"), Column("yield", "%"), Column("95 % interval", "%")]
+    failed = found.summary.failed
+    notes = [f"{failed} of {found.summary.copies} copies have no values and count as missing every line."] if failed else []
+    return make_table("Yield", heads, rows, notes=notes)
+
+
+def _yield(kept: Yield) -> tuple[Cell, Cell]:
+    mark = Mark.PASS if kept.kept == kept.copies else Mark.WARN if kept.share > 0.9 else Mark.FAIL
+    return Cell(_percent(kept.share), mark, bar=kept.share), Cell(f"{_percent(kept.low)} to {_percent(kept.high)}")
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2f}"
+
+
+def spread_table(found: Toleranced) -> Table:
+    """Distributions of the responses."""
+    spread, rows = found.summary.spread, []
+    for column, (name, measure) in enumerate(found.study.measures.items()):
+        values = [
+            spread.nominal[column],
+            spread.mean[column],
+            spread.deviation[column],
+            *spread.percentiles[:, column],
+            spread.linear[column],
+        ]
+        largest = float(np.nanmax(np.abs(values[:-1]), initial=0.0))
+        form = display_unit_of(measure.quantity.si, largest)
+        cells = [number(float(value) * form.factor, 4) for value in values]
+        if not spread.trusted[column]:
+            cells[-1] = "-"
+        rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
+    heads = ["as drawn", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
+    note = "linear: the deviation by exact derivatives, sqrt(sum (dy/dx s)^2); - where several equal things compete, or it bends."
+    return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
+
+
+def share_table(found: Toleranced) -> Table:
+    """Which scatter each response's variance is from."""
+    spread, rows, sampled = found.summary.spread, [], False
+    for column, name in enumerate(found.study.measures):
+        trusted = bool(spread.trusted[column])
+        sampled |= not trusted
+        shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
+        rows.append((Cell(name, Mark.STRONG), *(_share(float(value), exact=trusted) for value in shares)))
+    heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
+    about = "~: from copies in which it scatters alone, over the sum of all such variances."
+    return make_table("What does it", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])])
+
+
+def _share(value: float, *, exact: bool) -> Cell:
+    if not np.isfinite(value):
+        return Cell("-", Mark.FAINT)
+    text = f"{'' if exact else '~'}{100.0 * value:.1f}"
+    return Cell(text, Mark.STRONG if value > 0.1 else Mark.PLAIN, bar=float(np.clip(value, 0.0, 1.0)))
+
+
+def allowance_table(found: Toleranced) -> Table:
+    """How far each entry may deviate."""
+    allowed = found.allowance
+    rows = [
+        (
+            Cell(each.name, Mark.STRONG),
+            _size(each, each.distribution.size),
+            _scaled_size(each, float(allowed.alone[index])),
+            allowed.binds[index],
+            _scaled_size(each, float(allowed.equal[index])),
+            _scaled_size(each, allowed.together),
+        )
+        for index, each in enumerate(found.study.scatters)
+    ]
+    heads = ["", Column("stated"), Column("alone"), "decided by", Column("equal shares"), Column("all alike")]
+    return make_table("What is allowed", heads, rows, notes=_allowed_notes(allowed))
+
+
+def _scaled_size(scatter: Scatter, factor: float) -> Cell:
+    if factor > _FAR:
+        return Cell(f"> {_size(scatter, _FAR * scatter.distribution.size)}", Mark.FAINT)
+    mark = Mark.PLAIN if factor >= 1.0 else Mark.FAIL
+    return Cell("none" if factor == 0.0 else _size(scatter, factor * scatter.distribution.size), mark)
+
+
+def _allowed_notes(allowed: Allowance) -> list[str]:
+    notes = [f"So that each line keeps {100.0 * allowed.wanted:g} %, to first order. {_COLUMNS}"]
+    if allowed.together == 0.0:
+        return [*notes, f"{allowed.binding} is missed as drawn: no tolerance mends that."]
+    if allowed.then is not None and allowed.together <= _FAR:
+        then = f"the sample's copies, their changes scaled, keep all lines to {_percent(allowed.then.share)} %"
+        notes.append(f"All alike: {number(allowed.together, 3)} times what is stated, decided by {allowed.binding}; then {then}.")
+    return notes
+
+
+def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
+    """Deviations of the pose per command, and the worst."""
+    opened = crosstalk.kind == OPEN
+    title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, kept by gauges through the nominal R_s^-1"
+    heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]
+    rows = [
+        [Cell(f"{row} [{'nrad' if row.startswith('r') else 'nm'}]", Mark.STRONG), *(_entry(value) for value in values)]
+        for row, values in zip(COMPONENTS, crosstalk.deviation, strict=True)
+    ]
+    reference = ", ".join(number(round(1e3 * float(value), 6) + 0.0, 6) for value in _reference(found))
+    where = f"At {crosstalk.point}, ({reference}) mm"
+    note = f"{where}: deviation over the copies, row unit per unit of command; on the diagonal of the gain."
+    how = "Lost motion of the drawn stage made up for, strokes by the nominal stacks' volts" if opened else "The loop is ideal"
+    return make_table(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
+
+
+def _reference(found: Toleranced) -> Array:
+    return found.study.commanded.reference if found.study.commanded is not None else np.zeros(3)
+
+
+def _entry(value: float) -> Cell:
+    scaled = _FINE * float(value)
+    return Cell(number(scaled, 3) if scaled > 1e-3 else "0", Mark.PLAIN if scaled > 1e-3 else Mark.FAINT)
+
+
+def _worst(crosstalk: Crosstalk) -> str:
+    """The worst copies' motion along axes that were not commanded, translations and rotations apart."""
+    parts = []
+    for rows, unit in ((slice(0, 3), "nm"), (slice(3, 6), "nrad")):
+        for kind, per in (("", "um"), ("r", "urad")):
+            columns = [index for index, name in enumerate(crosstalk.coordinates) if name.startswith("r") == bool(kind)]
+            off = np.array([[row != crosstalk.coordinates[column] for column in columns] for row in COMPONENTS[rows]], dtype=bool)
+            values = crosstalk.worst[rows][:, columns][off] if columns else np.zeros(0)
+            if values.size and np.isfinite(values).all():
+                parts.append(f"{number(_FINE * float(values.max()), 3)} {unit}/{per}")
+    return f"Worst of all copies off the diagonal: {', '.join(parts)}." if parts else ""
