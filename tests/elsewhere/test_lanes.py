@@ -17,6 +17,7 @@ from flexstage.cases.double_triangle import double_triangle
 from flexstage.models.batch import compiled
 from flexstage.models.batch.compiled import kernel_job
 from flexstage.models.batch.engine import iterate, plan
+from flexstage.models.batch.kernel import kernel  # noqa: F401  (the conditions of skipif name it)
 from flexstage.models.batch.parameters.numbers import numbers_of, slopes_of
 from flexstage.models.batch.solution import Solution, Stage
 

@@ -74,7 +74,7 @@ def polygon(*corners: str) -> str:
         ('kind = "rod"', 'kind = "circular"', ["parts.wire.kind", "notch", "profile"]),
         ('kind = "rod"', 'kind = "cross"', ["parts.wire.kind", "called cross_hinge here"]),
         ('kind = "rod"', 'kind = "vcm"', ["parts.wire.kind", "called voice_coil here"]),
-        ('kind = "rod"', 'kind = "PZT stack"', ["parts.wire.kind", "PZT stack", "notch"]),
+        ('kind = "rod"', 'kind = "PZT stack"', ["parts.wire.kind", "PZT stack", "neck"]),
         ('like = "SUS420" ', 'like = "SUS420"\nE = "200 GPa" ', ["materials.steel.E", "called young here"]),
         ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "called density here"]),
         ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "called diameter here"]),

@@ -71,7 +71,7 @@ def _force(space: Field, face: str, axis: int) -> Array:
 
 def _mass(space: Field) -> sparse.csr_matrix:
     (one,) = inertia(space).scalar
-    return sparse.block_diag([sparse.csr_matrix((one.values, one.columns, one.starts))] * 3, format="csr")
+    return sparse.block_diag([one] * 3, format="csr")
 
 
 def _sparse(form: ngsolve.BilinearForm) -> sparse.csr_matrix:

@@ -82,7 +82,7 @@ def _shared_noise(power: Array, lines: float) -> Array:
     """Squared coherence (p, p) of what is left of the outputs, freed of its bias by the number of lines (Bendat & Piersol, ch. 9)."""
     size = np.sqrt(np.maximum(np.real(np.diagonal(power)), 1e-300))
     by_chance = 1.0 / max(lines, 2.0)
-    found = (np.abs(power / np.outer(size, size)) ** 2 - by_chance) / (1.0 - by_chance)
+    found = (np.minimum(np.abs(power) / np.outer(size, size), 1.0) ** 2 - by_chance) / (1.0 - by_chance)
     return np.where(np.eye(len(power), dtype=bool), 1.0, np.maximum(found, 0.0))
 
 
