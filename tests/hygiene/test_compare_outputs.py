@@ -149,7 +149,8 @@ def test_with_a_rule_the_words_of_a_text_count() -> None:
 
 def test_a_server_is_asked_until_it_answers_and_then_interrupted() -> None:
     server = """
-import socket, sys
+import signal, socket, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 with socket.create_server(("127.0.0.1", 0)) as listening:
     print(f"at 127.0.0.1:{listening.getsockname()[1]}: axes x", file=sys.stderr, flush=True)
     stream = listening.accept()[0].makefile("rw")
