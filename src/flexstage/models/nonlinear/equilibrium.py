@@ -217,7 +217,7 @@ def _continued(model: Nonlinear, asked: _Asked, found: Found, effort: Effort) ->
     known = np.flatnonzero(found.status == Status.CONVERGED)
     if not effort.arcs or effort.past or not known.size:
         return found
-    one, none = np.array([0]), np.zeros(1)
+    one, none = known[:1], np.zeros(1)
     loads, hold = asked.loads.of(one).times(none), replace(asked.hold.of(one), value=0.0 * asked.hold.value[one])
     drawn = equilibrate(model, _first(model, None, hold, 1), loads, hold)
     if drawn.status[0] != Status.CONVERGED:

@@ -122,7 +122,7 @@ def march(course: Course, begin: Point, length: float, *, longest: float = np.in
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
         after = step_along(course, last, length)
-        error = np.inf if after is None else _misfit(course.scale, before, last, after)
+        error = np.inf if after is None else misfit(course.scale, before, last, after)
         if after is not None and error <= 1.0:
             yield after
             most, before, last = max(most, length), last, after
@@ -133,7 +133,7 @@ def _change(error: float) -> float:
     return float(np.clip(_AIM / max(error, 1e-9), _SHORTER, _LONGER))
 
 
-def _misfit(scale: Array, before: Point | None, last: Point, after: Point) -> float:
+def misfit(scale: Array, before: Point | None, last: Point, after: Point) -> float:
     """The largest error of a step over its bound; 1 is the most that is accepted."""
     length = float(np.linalg.norm(after.step))
     turned, aside = (float(np.linalg.norm(each - scale * last.along)) for each in (scale * after.along, after.step / length))
@@ -241,8 +241,8 @@ def point_at(course: Course, found: Found, factor: float, *, step: Array, start:
     if start is None or reference is not None:
         scale = stiffness_scale(model, system) if reference is None else reference.scale
         own, whole = weakest_flexure(model, system)[0], lowest_stiffness(model, system, course.kept, scale)[0]
+        stiffness = (-1.0 if motions else 1.0) * (abs(whole / reference.stage * own / reference.flexure) if reference else 1.0)
         reference = reference or Reference(scale, whole, own)
-        stiffness = (-1.0 if motions else 1.0) * abs(whole / reference.stage * own / reference.flexure)
     steepest = max(abs(float(slope)), 0.0 if start is None else start.steepest)
     return Point(found, factor, step, system, along, float(slope), motions, stiffness, steepest, reference)
 

@@ -25,6 +25,8 @@ _MOST = 1e12
 """The largest factor."""
 _SEEN = 1e-6
 """Work of the load on the motion, over their sizes, below which it does none."""
+_EQUAL = 1e-3
+"""Relative difference of components of a shape that counts as none."""
 
 
 class NothingGivesWayError(DesignError):
@@ -42,6 +44,7 @@ class Kind(Enum):
 class Critical:
     """The `factor` on a load at which the stage gives way, the `shape` (n, 6) of its `bodies` doing so, and of which `kind` it is.
 
+    The shape's largest component, translations over the stage's size, is positive; of equal ones the first.
     `link` names the flexure that gives way by itself, its ends at rest; else it is empty. `state` is the last stable one. `bend` is the
     factor at which the path has bent off before, an imperfect bifurcation; None where it has not.
     """
@@ -98,9 +101,9 @@ def critical(  # noqa: PLR0913 (what stays, one by one)
     require(Finding(name, "no value holds it", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
     low = 0.0 if known is None else 1.0
     start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
+    require_equilibrium(start)
     course = course_of(start, load, low, NEAR, locked=locked)
     begin = first_point(course, start.pose, low)
-    require_equilibrium(start)
     if begin.motions:
         under = "with" if low else "without"
         raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Look at its weight and its stated forces")
@@ -172,6 +175,9 @@ def _critical(course: Course, followed: Followed, held: tuple[str, ...]) -> Crit
     work = abs(force @ motion) / (np.linalg.norm(force / scale) * np.linalg.norm(motion * scale))
     apart = inside and abs(value) > VANISHED * event.reference.stage
     kind = Kind.LIMIT if work > _SEEN and not apart else Kind.BIFURCATION
+    sizes = course.scale[: model.freedoms] * motion
+    first = np.argmax(np.abs(sizes) > (1.0 - _EQUAL) * np.max(np.abs(sizes)))
+    motion = np.copysign(1.0, sizes[first]) * motion
     last = state_at(course, followed.last, held)
     return Critical(followed.factor, model.bodies, motion.reshape(-1, 6), kind, link if inside else "", last, followed.bend)
 

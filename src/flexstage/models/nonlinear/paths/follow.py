@@ -10,12 +10,12 @@ import numpy as np
 import scipy
 
 from flexstage.base.finding import Finding, LowerBoundError
-from flexstage.models.nonlinear.graph import assemble
+from flexstage.base.number import Array
 from flexstage.models.nonlinear.newton import USUAL, Found, Task, search
-from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, march, step_along
-from flexstage.models.nonlinear.paths.inertia import count_descents
+from flexstage.models.nonlinear.paths.arc import Course, Point, first_point, march, misfit, point_at, step_along
 from flexstage.models.nonlinear.stage import Nonlinear
 from flexstage.models.nonlinear.state import Effort, Loads, Pose, Status
+from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
 """The first step in the motion of bodies, over the stage's size and in radians."""
@@ -31,8 +31,8 @@ _FLAT, _SOON, _WELL = 0.01, 1.01, 1.25
 """Slope over the steepest so far below which a path bends off; times the factor there, how far it is followed at least and at most."""
 _BESIDE = (1.0, 1.0 - 1e-8, 1.0 - 1e-7, 1.0 - 1e-6, 1.0 - 1e-5)
 """Shares of a step at which an equilibrium is looked for where it is singular."""
-_NEXT = 1e-9
-"""Of the last step: the last stable state before a critical one."""
+_NEXT, _ROUND = 1e-9, 1e-7
+"""Of the last step: the last stable state before a critical one; of the factor, how far that may be from there by rounding of the step."""
 
 Reserve = Callable[[Point], tuple[float, str]]
 """How much of the range of its laws a point has left, negative beyond it, and what is first beyond."""
@@ -87,9 +87,12 @@ def _first_event(course: Course, last: Point, point: Point, bent: Point | None, 
     if event is None or abs(event.stiffness) > VANISHED:
         return None
     length = float(np.linalg.norm(event.step))
-    before = step_along(course, last, (1.0 - _NEXT) * length)
-    factor = event.factor + event.slope * length * event.stiffness / (last.stiffness - event.stiffness)
-    return Followed(before if event.motions and before is not None else event, event, _bend(bent, event), factor)
+    before = step_along(course, last, (1.0 - _NEXT) * length) if event.motions else None
+    if before is None or before.motions or abs(before.factor - event.factor) > _ROUND * abs(event.factor):
+        before = event
+    slope = np.nan_to_num(event.slope)  # singular to the bit, it has none, and no stiffness is left
+    factor = event.factor + slope * length * event.stiffness / (last.stiffness - event.stiffness)
+    return Followed(before, event, _bend(bent, event), factor)
 
 
 def continued(start: Task, end: Task) -> Found:
@@ -102,12 +105,15 @@ def continued(start: Task, end: Task) -> Found:
     model, hold = end.model, end.hold
     whole = Found(end.start, np.array([Status.CONVERGED]), np.zeros(1, dtype=int), np.zeros(1), np.ones(1))
     kept = [*range(model.freedoms + len(model.hinges.locked) + len(hold.body))]
-    if apart(model, start.start, end.start) < _SAME or count_descents(model, assemble(model, end.start, end.loads, hold), kept)[0]:
+    if apart(model, start.start, end.start) < _SAME:
         return whole
     gain = Loads(*(getattr(end.loads, name) - getattr(start.loads, name) for name in ("inputs", "gravity", "constant")))
     course = Course(model, start.loads, start.hold, gain, hold.value - start.hold.value, NEAR, kept)
     begin = first_point(course, start.start, 0.0)
     if begin.motions or not np.isfinite(begin.slope):
+        return whole
+    after = point_at(course, whole, 1.0, step=course.scale * between(start.start, end.start), start=begin)
+    if after.motions or misfit(course.scale, None, begin, after) <= 1.0:  # one step of `march` would end there
         return whole
     try:
         followed = follow_to_event(course, begin, 1.0, 1e-6, length=1.0 / begin.slope)
@@ -123,6 +129,12 @@ def apart(model: Nonlinear, one: Pose, other: Pose) -> float:
     """How far bodies are from where another pose has them, over the stage's size and in radians."""
     moved = np.max(np.abs(one.position - other.position)) / model.size
     return float(max(moved, np.max(np.abs(one.turn - other.turn))))
+
+
+def between(one: Pose, other: Pose) -> Array:
+    """The motion of bodies (n,) from one pose to another, reactions left out."""
+    moved = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
+    return np.append(moved[0, :-1], np.zeros(other.held.shape[1]))
 
 
 def _stiffness(point: Point) -> float:

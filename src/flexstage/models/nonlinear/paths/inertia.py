@@ -30,7 +30,10 @@ def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
 
 
 def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Array) -> tuple[float, Array]:
-    """The lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among motions that constraints allow, and its motion (n,)."""
+    """The lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among motions that constraints allow, and its motion (n,).
+
+    1 and no motion where they allow none.
+    """
     freedoms = model.freedoms
     if not isinstance(whole.matrix, np.ndarray):
         value, motion = nearest_descent(whole.matrix[0][kept][:, kept], scale)
@@ -38,6 +41,8 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
     matrix = whole.matrix[0][np.ix_(kept, kept)]
     stiff = 0.5 * (matrix + matrix.T)[:freedoms, :freedoms] / scale / scale[:, None]
     free = scipy.linalg.null_space(matrix[freedoms:, :freedoms] / scale) if len(matrix) > freedoms else np.eye(freedoms)
+    if not free.size:
+        return 1.0, np.zeros(freedoms)
     values, vectors = np.linalg.eigh(free.T @ stiff @ free)
     return float(values[0]), free @ vectors[:, 0] / scale
 

@@ -251,8 +251,9 @@ def branch(
     """Equilibria on the branch that leaves the path of `load` where it first buckles, along the factor on the load.
 
     The first state is the last stable one before the bifurcation; the next goes along the motion that opens there, or, with `side` -1,
-    against it. Steps and points are as in `trace`. Raises `DesignError` as `critical` does; where the load turns instead (a limit, which
-    `trace` passes); where a flexure gives way by itself, its ends at rest; and where no equilibrium is found on the branch.
+    against it (the sign of `Critical.shape`). Steps and points are as in `trace`. Raises `DesignError` as `critical` does; where the load
+    turns instead (a limit, which `trace` passes); where a flexure gives way by itself, its ends at rest; and where no equilibrium is found
+    on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
