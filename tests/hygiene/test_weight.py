@@ -12,9 +12,9 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 46_000,
     "beams": 25_500,
-    "mechanism": 60_100,
+    "mechanism": 59_800,
     "cases": 13_700,
-    "models": 113_600,
+    "models": 113_800,
     "analysis": 68_600,
     "show": 77_300,
     "solid": 80_600,
@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 55_300,
     "apps": 39_000,
     ".": 400,
-    "all": 890_100,
+    "all": 890_400,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
