@@ -90,7 +90,7 @@ def _first_event(course: Course, last: Point, point: Point, bent: Point | None, 
     before = step_along(course, last, (1.0 - _NEXT) * length) if event.motions else None
     if before is None or before.motions or abs(before.factor - event.factor) > _ROUND * abs(event.factor):
         before = event
-    slope = np.nan_to_num(event.slope)  # singular to the bit, it has none, and no stiffness is left
+    slope = float(np.nan_to_num(event.slope))  # singular to the bit, it has none, and no stiffness is left
     factor = event.factor + slope * length * event.stiffness / (last.stiffness - event.stiffness)
     return Followed(before, event, _bend(bent, event), factor)
 

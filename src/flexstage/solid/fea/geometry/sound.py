@@ -67,7 +67,7 @@ def _remember(mark: Path, found: tuple[Finding, ...]) -> None:
 
 
 def _mark(mechanism: Mechanism, cache: Cache) -> Path:
-    return folder_of(cache) / f"{digest(mechanism, physics=True)[:32]}-{versions('contact').digest}.sound"
+    return folder_of(cache) / f"{digest(mechanism, physics=True)[:32]}-{versions('geometry.contact').digest}.sound"
 
 
 def has_imports(mechanism: Mechanism) -> bool:
