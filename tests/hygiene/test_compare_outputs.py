@@ -149,7 +149,7 @@ def test_with_a_rule_the_words_of_a_text_count() -> None:
 
 def test_a_server_is_asked_until_it_answers_and_then_interrupted() -> None:
     server = """
-import signal, socket, sys
+import signal, socket, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 with socket.create_server(("127.0.0.1", 0)) as listening:
     print(f"at 127.0.0.1:{listening.getsockname()[1]}: axes x", file=sys.stderr, flush=True)
@@ -158,7 +158,8 @@ with socket.create_server(("127.0.0.1", 0)) as listening:
         for number, line in enumerate(iter(stream.readline, "")):
             stream.write(f"{number} of \\n{line}" if "?" in line else "")
             stream.flush()
-        listening.accept()
+        while True:  # a call that blocks would miss a signal that comes just before it
+            time.sleep(0.01)
     except KeyboardInterrupt:
         print("ended", file=sys.stderr)
 """
