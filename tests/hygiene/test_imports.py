@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib import import_module
 
 import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from flexstage.apps.studio.engine import TASKS
 from tests.hygiene.source import expect_none
 from tools.imports import import_graph, named_modules, path_of, points_up, unread_loaders
 
@@ -84,3 +86,9 @@ def test_loaders_of_unknown_names_are_found(tmp_path) -> None:
 def test_upward_means_to_a_higher_or_an_independent_package(importer, imported, is_upward) -> None:
     assert points_up(f"flexstage.{importer}", f"flexstage.{imported}") is is_upward
     assert points_up(f"flexstage.{importer}", "flexstage")
+
+
+def test_every_task_of_the_studio_is_a_function() -> None:
+    """Its processes load tasks by name, relative to the studio: a page waits in vain for one that is nowhere."""
+    names = (text.partition(":") for text in TASKS.values())
+    assert all(callable(getattr(import_module(f"flexstage.apps.studio.{module}"), name)) for module, _, name in names)

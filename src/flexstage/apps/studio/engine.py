@@ -17,10 +17,10 @@ from flexstage.base.processes.threads import one_thread
 
 _HERE = "flexstage.apps.studio"
 TASKS: Mapping[str, str] = {
-    "read": "reading:read",
-    "write": "writing:written",
-    "follow": "reading:follow",
-    "insert": "palette:insert",
+    "read": "design.reading:read",
+    "write": "design.writing:written",
+    "follow": "design.reading:follow",
+    "insert": "design.palette:insert",
     "place": "questions:place",
     "fit": "dragging:fit",
     "drag": "dragging:drag",
