@@ -10,6 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from flexstage.base.renamed import new_name
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -88,12 +90,15 @@ def name_first(names: Sequence[str], most: int = 8) -> str:
 
 
 def suggest_nearest(name: str, names: Iterable[str]) -> str:
-    """Advice that names what is near to a misspelt name, or what there is.
+    """Advice that names what is near to a misspelt or renamed name, or what there is.
 
     >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
     ('The nearest name is platform', 'There are ground, platform')
     """
     known = sorted(set(names))
+    renamed = new_name(name, known)
+    if renamed is not None:
+        return f"It is called {renamed}"
     close = difflib.get_close_matches(name[:80], known, n=3, cutoff=0.6)
     if close:
         return f"The nearest name is {close[0]}" if len(close) == 1 else f"Near to it are {', '.join(close)}"

@@ -5,6 +5,8 @@ from importlib import import_module
 from sys import modules
 from typing import Any
 
+from flexstage.base.renamed import new_name
+
 
 def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
     """`__getattr__` and `__dir__` of a package whose names live in the modules that `homes` gives: module below the package -> names.
@@ -15,7 +17,8 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 
     def attribute(name: str) -> object:
         if name not in home:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            renamed = new_name(name, home)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}" + (f": it is called {renamed!r}" if renamed else ""))
         value = getattr(import_module(f"{package}.{home[name]}"), name)
         setattr(modules[package], name, value)
         return value

@@ -12,6 +12,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from flexstage.base.finding import Finding, require
+from flexstage.base.renamed import new_name
 from flexstage.show.command.models import Models
 
 
@@ -130,9 +131,6 @@ COMMANDS: tuple[Command, ...] = (
 MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
 """Models that commands of other wings may ask for."""
 
-_RENAMED = {"--reading": "--model"}
-"""Options by the name they had before."""
-
 
 class LazyCommand(TyperCommand):
     """Stands for a command in the help and in completion until it is called."""
@@ -160,8 +158,8 @@ class GroupedCommands(TyperGroup):
         known = {option for each in getattr(command, "params", ()) for option in each.opts}
         require(
             Finding(old, "this option is not known", f"It is called {new}")
-            for old, new in _RENAMED.items()
-            if new in known and any(word.partition("=")[0] == old for word in rest)
+            for old in dict.fromkeys(word.partition("=")[0] for word in rest)
+            if (new := new_name(old, known)) is not None
         )
         return name, command, rest
 

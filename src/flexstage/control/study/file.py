@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import DesignError, Finding
+from flexstage.base.finding import DesignError
 from flexstage.control.study.setup import FileMotion, LoopSetup
 from flexstage.mechanism.store.decode import record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
@@ -17,7 +17,6 @@ from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
 
 FORMAT = "flexstage loop 1"
-_RENAMED = {"reading": "model"}
 
 
 @check_arguments
@@ -51,12 +50,7 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
     try:
         return record_from(LoopSetup, raw, FORMAT)
     except DesignError as error:
-        raise DesignError(with_lines(map(_name_renamed_keys, error.findings), text, where)) from None
-
-
-def _name_renamed_keys(finding: Finding) -> Finding:
-    """A finding on a key by its name of before says the name of now."""
-    return replace(finding, advice=f"It is called {_RENAMED[finding.where]}") if finding.where in _RENAMED else finding
+        raise DesignError(with_lines(error.findings, text, where)) from None
 
 
 def setup_schema() -> dict[str, Any]:
