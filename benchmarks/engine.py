@@ -68,10 +68,10 @@ VARIED = (
     "bodies.platform.solids.plate.size.x",
     "bodies.platform.solids.plate.size.y",
     "bodies.platform.solids.plate.size.z",
-    "place.B1-B3.pattern.radius",
-    "place.B4-B6.pattern.radius",
-    "place.B4-B6.pattern.height",
-    "place.B4-B6.pattern.turn",
+    "placements.B1-B3.pattern.radius",
+    "placements.B4-B6.pattern.radius",
+    "placements.B4-B6.pattern.height",
+    "placements.B4-B6.pattern.turn",
     "units.vertical.links.upper.at.z",
     "units.vertical.links.lower.at.z",
     "units.vertical.links.pivot.at.y",
@@ -102,7 +102,7 @@ def with_pieces(stage: Mechanism, pieces: dict[str, int]) -> Mechanism:
             at = np.array(drive.at) + along * whole.length * ((number + 0.5) / count - 0.5)
             links[f"pzt{number + 1}"] = replace(drive, joins=(ends[number], ends[number + 1]), part=piece, at=tuple(at.tolist()))
         units[name] = Unit({**unit.bodies, **{cut: Body() for cut in ends[1:-1]}}, links)
-    return replace(stage, parts=parts, units=units, changes={}, requirements={})
+    return replace(stage, parts=parts, units=units, overrides={}, requirements={})
 
 
 def seconds(actions: dict[str, tuple[int, Callable[[], object]]]) -> dict[str, float]:

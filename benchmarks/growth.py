@@ -50,7 +50,7 @@ STEPS = {
     "hinges": ("describe", "solve"),
     "workers": ("study", "sweep"),
 }
-NUMBERS = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "place.B1-B3.pattern.radius")
+NUMBERS = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "placements.B1-B3.pattern.radius")
 PORTION, RATE, SWEPT = 100_000, 10_000.0, 200_000
 
 
@@ -190,7 +190,7 @@ def workers(count: int) -> Iterator[None]:
     from flexstage.studies.sweeps.execution.run import Run, sweep
     from flexstage.studies.sweeps.file import loads_study
 
-    variables = "".join(f'v{place} = {{ of = "{name}", from = "-5 %", to = "+5 %" }}\n' for place, name in enumerate(NUMBERS))
+    variables = "".join(f'v{place} = {{ address = "{name}", from = "-5 %", to = "+5 %" }}\n' for place, name in enumerate(NUMBERS))
     responses = "".join(f'f{number} = "frequency.platform.{number}"\n' for number in range(1, 7))
     study = loads_study(
         f'format = "flexstage study 1"\nname = "growth"\ncase = "double-triangle"\n'

@@ -51,12 +51,12 @@ PROBE = b"blat"
 """What Python writes to a file, and removes, to see whether the folder for temporary files can be written to."""
 STUDY = """format = "flexstage study 1"
 case = "parallelogram"
-variables.t = { of = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
+variables.t = { address = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
 responses.f = "frequency.platform.1"
 responses.m = "mass"
 sweep = { sampling = "sobol", designs = 512 }
-tolerance = { copies = 64, require = false }
-scatter.wire = { of = "leaf.thickness", normal = "4 um" }
+tolerance = { copies = 64, requirements = false }
+scatter.wire = { address = "leaf.thickness", normal = "4 um" }
 optimise = { maximise = "f", starts = 1 }
 """
 
@@ -133,7 +133,7 @@ def rods() -> Mechanism:
         bodies={"platform": Body(mass=0.1, centre=(0.0, 0.0, 0.0), inertia=Inertia(1e-5, 1e-5, 1e-5))},
         links=links | {"B": Link(("ground", "platform"), "stack", (-30 * mm, 0.0, 0.0), X)},
         units={},
-        place={},
+        placements={},
         requirements={},
         tags={},
     )

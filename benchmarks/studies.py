@@ -47,14 +47,14 @@ name = "six frequencies"
 case = "double-triangle"
 sweep = {{ sampling = "latin hypercube", designs = {designs}, seed = 1 }}
 [variables]
-neck = {{ of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }}
-plate = {{ of = "bodies.platform.solids.plate.size.z", from = "-10 %", to = "+10 %" }}
-notch = {{ of = "parts.lever_notch.thickness", from = "0.8 mm", to = "1.2 mm" }}
-foot = {{ of = "parts.foot_notch.thickness", from = "-10 %", to = "+10 %" }}
-pole = {{ of = "parts.pole_neck.thickness", from = "-10 %", to = "+10 %" }}
-young = {{ of = "materials.steel.young", from = "-5 %", to = "+5 %" }}
-density = {{ of = "materials.steel.density", from = "-2 %", to = "+2 %" }}
-radius = {{ of = ["place.B1-B3.pattern.radius", "place.B4-B6.pattern.radius"], from = "-5 %", to = "+5 %" }}
+neck = {{ address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }}
+plate = {{ address = "bodies.platform.solids.plate.size.z", from = "-10 %", to = "+10 %" }}
+notch = {{ address = "parts.lever_notch.thickness", from = "0.8 mm", to = "1.2 mm" }}
+foot = {{ address = "parts.foot_notch.thickness", from = "-10 %", to = "+10 %" }}
+pole = {{ address = "parts.pole_neck.thickness", from = "-10 %", to = "+10 %" }}
+young = {{ address = "materials.steel.young", from = "-5 %", to = "+5 %" }}
+density = {{ address = "materials.steel.density", from = "-2 %", to = "+2 %" }}
+radius = {{ address = ["placements.B1-B3.pattern.radius", "placements.B4-B6.pattern.radius"], from = "-5 %", to = "+5 %" }}
 [responses]
 f1 = "frequency.platform.1"
 f2 = "frequency.platform.2"

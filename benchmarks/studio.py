@@ -126,7 +126,7 @@ async def measure(studio: psutil.Process, url: str, stage: Path, links: int) -> 
     await page.ask(say.Derive)
     print(f"what numbers buy, of the next design: {1e3 * (spent(studio) - between):.0f} ms")
     if links:
-        text = stage.read_text(encoding="utf-8").replace("[place.B1-B3]", f"[place.B1-B{links // 3}]").replace("B4-B6", "C4-C6")
+        text = stage.read_text(encoding="utf-8").replace("[placements.B1-B3]", f"[placements.B1-B{links // 3}]").replace("B4-B6", "C4-C6")
         begun = time.monotonic()
         await page.ask(say.Edit, text=text, revision=page.told[say.State].revision)
         while say.Cautions not in page.told or page.told[say.Cautions].revision < page.told[say.State].revision:

@@ -69,7 +69,7 @@ def _words(name: str, found: Shipped) -> str:
 def _numbers(name: str) -> Iterator[tuple[str, str]]:
     """Its key numbers: what `analyse` prints of them."""
     stage = case(name)
-    kinematics, modes = fs.ideal(stage), fs.modes(elastic_model(stage, Model.LUMPED, loaded=True), limit=stage.mode_limit)
+    kinematics, modes = fs.ideal(stage), fs.modes(elastic_model(stage, Model.LUMPED, loaded=True), limit=stage.max_mode_frequency)
     yield "moves ideally", ", ".join(kinematics.coordinates) or "in no way"
     yield "platform's modes", ", ".join(f"{each:.4g}" for each in modes.platform_frequencies) + " Hz"
     for verdict in judge(stage):

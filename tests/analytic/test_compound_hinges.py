@@ -179,7 +179,9 @@ def three_legs(part):
     leg = Unit({}, {"pivot": Link((GROUND, PLATFORM), "hinge", (0.0, 0.0, 0.0), X, Y)})
     body = Body(solids={"plate": Block("steel", (0.2, 0.2, 0.02), (0.0, 0.0, 0.05))})
     place = {"B1-B3": Placement("leg", Polar(0.08, 0.0, Facing.TANGENT))}
-    return Mechanism("legs", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, place=place, gravity=(0.0, 0.0, 0.0))
+    return Mechanism(
+        "legs", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, placements=place, gravity=(0.0, 0.0, 0.0)
+    )
 
 
 @pytest.mark.parametrize("part", ALL, ids=lambda part: part.kind)
@@ -191,7 +193,7 @@ def test_mirrored_copies_are_mirror_images(part):
         statics(
             lumped(
                 Mechanism(
-                    "leg", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, place={"B": Placement("leg", pose)}
+                    "leg", {"steel": STEEL}, {"hinge": part}, {PLATFORM: body}, units={"leg": leg}, placements={"B": Placement("leg", pose)}
                 )
             )
         ).stiffness.values
@@ -202,8 +204,8 @@ def test_mirrored_copies_are_mirror_images(part):
     np.testing.assert_allclose(there / root / root[:, None], image / root / root[:, None], atol=1e-8)
 
 
-def test_names_addresses_and_departures():
-    """A compound's numbers are those of its part; a departure of one copy reaches its members alone."""
+def test_names_addresses_and_overrides():
+    """A compound's numbers are those of its part; an override of one copy reaches its members alone."""
     whole = three_legs(CROSS)
     names = [f"B{copy}/pivot.{side}" for copy, side in itertools.product((1, 2, 3), ("left", "right"))]
     assert list(expand(whole).links) == names

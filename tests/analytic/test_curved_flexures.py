@@ -73,7 +73,7 @@ def test_tip_flexibilities_of_a_circular_beam() -> None:
 
 def test_a_leaf_that_is_warm_on_one_side() -> None:
     """As a beam it is a blank of curvature -alpha dT / t; both ends clamped it pushes with E I alpha dT / t and stays straight."""
-    warm, held = replace(THIN, warmth=3e-2), {f"platform.{name}": 0.0 for name in ("x", "y", "z", "rx", "ry", "rz")}
+    warm, held = replace(THIN, face_temperature_difference=3e-2), {f"platform.{name}": 0.0 for name in ("x", "y", "z", "rx", "ry", "rz")}
     curvature = -1e-3 * 3e-2 / 3e-5
     free = fs.equilibrium(cantilever(warm, WARM))
     np.testing.assert_allclose(free.twist(), fs.equilibrium(cantilever(replace(THIN, curvature=curvature))).twist(), atol=1e-12)
@@ -83,7 +83,7 @@ def test_a_leaf_that_is_warm_on_one_side() -> None:
 
 def test_a_wide_leaf_that_is_warm_on_one_side_curves_both_ways() -> None:
     """A plate free of its clamps has k = a2 = -alpha dT / t where Gaussian curvature costs little; a clamp keeps it from curving across."""
-    small = replace(WIDE, width=0.1, warmth=5e-5)
+    small = replace(WIDE, width=0.1, face_temperature_difference=5e-5)
     curvature = -1e-3 * 5e-5 / 5e-3
     state = fs.equilibrium(cantilever(small, WARM))
     turned = float(state.rotation()[2])
@@ -93,10 +93,14 @@ def test_a_wide_leaf_that_is_warm_on_one_side_curves_both_ways() -> None:
     assert 1.001 < moment < 1.0 / (1.0 - 0.3)
 
 
-@pytest.mark.parametrize("leaf", [replace(THIN, curvature=1.2), replace(WIDE, warmth=0.5), replace(WIDE, curvature=-0.8)])
+@pytest.mark.parametrize(
+    "leaf", [replace(THIN, curvature=1.2), replace(WIDE, face_temperature_difference=0.5), replace(WIDE, curvature=-0.8)]
+)
 def test_the_order_of_ends_does_not_matter(leaf: fs.Leaf) -> None:
     """Drawn from the other end its y axis is reversed, and with it the sign of its curvature."""
-    turned = replace(leaf, **{name: -value for name in ("curvature", "warmth") if (value := getattr(leaf, name)) is not None})
+    turned = replace(
+        leaf, **{name: -value for name in ("curvature", "face_temperature_difference") if (value := getattr(leaf, name)) is not None}
+    )
     drawn = stage(
         leaf, {"platform": body(1.0, 0.0, 0.0)}, {"leaf": Link(("ground", "platform"), "leaf", (0.5, 0, 0), (1.0, 0, 0), bends=Z)}, WARM
     )
@@ -112,4 +116,4 @@ def test_the_order_of_ends_does_not_matter(leaf: fs.Leaf) -> None:
 
 def test_warmth_needs_an_expansion() -> None:
     with pytest.raises(DesignError, match="expansion"):
-        cantilever(replace(WIDE, warmth=1.0))
+        cantilever(replace(WIDE, face_temperature_difference=1.0))

@@ -254,7 +254,7 @@ def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
         controller=ControllerSetup(integral=600.0),
         amplifier=AmplifierSetup(slew=1800.0),
         damping=DampingSetup(ratio=0.4),
-        trajectory=StepMotion(by=Motion(x=size)),
+        trajectory=StepMotion(amplitude=Motion(x=size)),
     )
     given = resolve(case("parallelogram"), asked)
     control = make_controller(given, given.plant.coordinates.strokes)
@@ -278,7 +278,7 @@ def test_positive_feedback_keeps_within_the_amplifiers_limits(kind):
         rate=40e3,
         controller=ControllerSetup(kind=KINDS.parse(kind, "kind")),
         amplifier=LIMITED[kind],
-        trajectory=StepMotion(by=Motion(x=5e-6)),
+        trajectory=StepMotion(amplitude=Motion(x=5e-6)),
     )
     given = resolve(case("parallelogram"), asked)
     control = make_controller(given, given.plant.coordinates.strokes)

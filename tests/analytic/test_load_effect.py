@@ -73,7 +73,7 @@ def test_calibrated_leaves_are_softened_as_drawn_ones():
     leaf = stage.parts["leaf"]
     assert isinstance(leaf, fs.Leaf)
     matrix = np.linalg.inv(stiffness(leaf, stage.materials["steel"]))
-    given = fs.Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), leaf.intended, stands_for="drawn")
+    given = fs.Given(tuple(map(tuple, (0.5 * (matrix + matrix.T)).tolist())), leaf.intended, replaces="drawn")
     found = load_effect(replace(stage, parts={**stage.parts, "leaf": given, "drawn": leaf}))
     assert found is not None
     assert found.change == pytest.approx(-1.2 * weight / 0.06 / column(1e-9), rel=5e-3)
@@ -257,7 +257,7 @@ def test_what_bends_flexures_is_felt_like_a_load():
     for warmth in (20.0, 60.0):
         leaf = stage.parts["leaf"]
         assert isinstance(leaf, fs.Leaf)
-        bent = {**stage.parts, "leaf": replace(leaf, warmth=warmth)}
+        bent = {**stage.parts, "leaf": replace(leaf, face_temperature_difference=warmth)}
         found = load_effect(replace(stage, parts=bent, materials={"steel": steel}))
         assert found is not None
         assert "not straight when free" in found.text

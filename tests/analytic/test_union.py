@@ -102,7 +102,7 @@ def test_unions_weigh_as_their_parts_do(overlapping: tuple[Solid, ...], apart: t
 
 HOLED = replace(FRAME, hole=None)
 CORNER = Extrusion("steel", ((0.0, 0.0), (0.03, 0.0), (0.03, 0.01), (0.01, 0.01), (0.01, 0.04), (0.0, 0.04)), 0.02, (0.0, 0.0, 0.01))
-SOLID_TUBE, REAMER = replace(TUBE, bore=None), Cylinder("steel", 0.01, 0.05, removes=True)
+SOLID_TUBE, REAMER = replace(TUBE, bore=None), Cylinder("steel", 0.01, 0.05, subtract=True)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ SOLID_TUBE, REAMER = replace(TUBE, bore=None), Cylinder("steel", 0.01, 0.05, rem
         ((CORNER,), L_PARTS),
         ((replace(CORNER, outline=CORNER.outline[::-1]),), L_PARTS),
         ((CORNER, L_SHAPE[0]), L_PARTS),
-        ((HOLED, block((-0.015, -0.015, -1.0), (0.015, 0.015, 1.0), removes=True)), (FRAME,)),
+        ((HOLED, block((-0.015, -0.015, -1.0), (0.015, 0.015, 1.0), subtract=True)), (FRAME,)),
         ((SOLID_TUBE, REAMER), (TUBE,)),
         ((SOLID_TUBE, REAMER, replace(REAMER, length=0.04), replace(REAMER, diameter=0.004)), (TUBE,)),
         ((TUBE, replace(REAMER, diameter=0.008)), (TUBE,)),
@@ -136,7 +136,7 @@ def test_a_ball_and_its_seat_have_their_closed_forms() -> None:
     for plate in (PLATE, Extrusion("steel", ((-0.02, -0.02), (0.02, -0.02), (0.02, 0.02), (-0.02, 0.02)), 0.01, (0.0, 0.0, 0.005))):
         bare, at = weighed(plate), (0.003, -0.002, 0.01 + radius - depth)
         on = weighed(plate, Sphere("steel", 2.0 * radius, at))
-        seat = weighed(plate, Sphere("steel", 2.0 * radius, at, removes=True))
+        seat = weighed(plate, Sphere("steel", 2.0 * radius, at, subtract=True))
         assert np.isclose(on.mass - bare.mass, ball.mass - cap, rtol=1e-11)
         assert np.isclose(bare.mass - seat.mass, cap, rtol=1e-9)
         moment = bare.mass * bare.centre[2] - seat.mass * seat.centre[2]
@@ -147,7 +147,7 @@ def test_a_ball_and_its_seat_have_their_closed_forms() -> None:
 def test_derivatives_pass_through_polygons_holes_and_balls() -> None:
     def mass_at(x: Any) -> MassProperties:
         outline = ((-0.02, -0.02), (0.02 + x, -0.02), (0.02, 0.5 * x), (0.01, 0.02), (-0.02, 0.015))
-        hole = Cylinder("steel", 0.004 + 0.2 * x, 0.03, (0.005 + x, -0.005, 0.0), removes=True)
+        hole = Cylinder("steel", 0.004 + 0.2 * x, 0.03, (0.005 + x, -0.005, 0.0), subtract=True)
         return weighed(Extrusion("steel", outline, 0.008 + x), hole, Sphere("steel", 0.006, (-0.01, -0.01 + x, 0.005)))
 
     step, at = 1e-6, 0.003
@@ -205,11 +205,11 @@ def _drilled(seed: int) -> list[Solid]:
     """An extrusion, a block and a tube, upright, with holes through them: round, square, of any outline."""
     chance = np.random.default_rng([seed, 13])
     made, cuts = _upright(seed)[:2], _upright(seed + 100)
-    holes = [replace(cuts[0], hole=None, removes=True), replace(cuts[1], bore=None, diameter=0.006, removes=True)]  # type: ignore[call-arg]
+    holes = [replace(cuts[0], hole=None, subtract=True), replace(cuts[1], bore=None, diameter=0.006, subtract=True)]  # type: ignore[call-arg]
     outline = _star(chance)
     pocket = tuple((0.3 * x, 0.3 * y) for x, y in _star(chance))
     upright = {"along": (1.0, 0.5, 0.0), "up": (0.0, 0.0, 1.0)}
-    deep = Extrusion("steel", pocket, 0.02, (0.002, 0.001, 0.01), removes=True)
+    deep = Extrusion("steel", pocket, 0.02, (0.002, 0.001, 0.01), subtract=True)
     return [Extrusion("steel", outline, 0.012, (0.001, 0.0, 0.002), **upright), *made, *holes, deep]  # type: ignore[arg-type]
 
 
@@ -366,17 +366,17 @@ def test_a_stated_mass_counts_with_what_is_lent_to_its_body() -> None:
 def test_a_shifted_copy_neither_gains_nor_loses_mass() -> None:
     """Its lugs are flush with the platform: moved by 10 um they would sink in on one side and come off on the other."""
     stage = case("double-triangle")
-    masses = [expand(replace(stage, changes={"B2.shift.y": shift})).bodies["platform"].mass for shift in (-1e-5, 0.0, 1e-5)]
+    masses = [expand(replace(stage, overrides={"B2.shift.y": shift})).bodies["platform"].mass for shift in (-1e-5, 0.0, 1e-5)]
     assert all(mass is not None and masses[1] is not None and np.isclose(mass.mass, masses[1].mass, rtol=ROUND_OFF) for mass in masses)
 
 
 def test_a_mirrored_body_is_the_image_of_what_is_drawn() -> None:
     """Weighed by theory, drawn by CAD: both where the mirror shows them, the hole too."""
-    hole = Cylinder("steel", 0.004, 0.05, (0.005, 0.025, 0.0), removes=True)
+    hole = Cylinder("steel", 0.004, 0.05, (0.005, 0.025, 0.0), subtract=True)
     unit = Unit(bodies={"angle": Body(solids={"s": replace(CORNER, along=(1.0, 0.3, 0.0)), "hole": hole})}, links={})
     stage = replace(case("parallelogram"), materials={**case("parallelogram").materials, "steel": MATERIALS["steel"]}, gauges={})
     copies = {name: Placement("angle", Pose((0.02, 0.03, 0.04), mirror=mirror)) for name, mirror in (("A", None), ("M", Normal.X))}
-    shown = replace(stage, units={"angle": unit}, place=copies, links={}, requirements={})
+    shown = replace(stage, units={"angle": unit}, placements=copies, links={}, requirements={})
     bodies, pieces = expand(shown).bodies, stage_pieces(shown).bodies
     masses = [bodies[f"{name}/angle"].mass for name in "AM"]
     assert masses[0] is not None

@@ -137,14 +137,14 @@ def test_verdicts_are_of_the_stage_under_its_weight(flexstage: Command, tmp_path
 
 STUDY = """format = "flexstage study 1"
 design = "leaves.toml"
-variables.mass = { of = "bodies.platform.mass", from = "0.1 kg", to = "2.5 kg", levels = 2 }
+variables.mass = { address = "bodies.platform.mass", from = "0.1 kg", to = "2.5 kg", levels = 2 }
 responses = { f = "frequency.platform.1", m = "mass" }
 sweep.sampling = "grid"
 """
 TOLERANCE = """format = "flexstage study 1"
 design = "leaves.toml"
 responses.f = "frequency.platform.1"
-scatter.leaf = { of = "leaf.thickness", normal = "50 um" }
+scatter.leaf = { address = "leaf.thickness", normal = "50 um" }
 tolerance.copies = 8
 """
 REPORTED = {

@@ -54,9 +54,9 @@ responses.f = "frequency.1"
 sweep = { sampling = "latin hypercube", designs = 16, seed = 3 }
 optimise = { maximise = "f", starts = 1 }
 tolerance = { copies = 16 }
-scatter = { young = { of = "materials.young", normal = "1 %" } }
+scatter = { young = { address = "materials.young", normal = "1 %" } }
 [variables]
-young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+young = { address = "materials.aluminium.young", from = "-10 %", to = "10 %" }
 """
 
 

@@ -38,7 +38,7 @@ name = "made"
 design = "stage.toml"
 scatter.wire = { of = OF, uniform = "5 um" }
 responses.f1 = "frequency.platform.1"
-tolerance = { copies = 16, require = false }
+tolerance = { copies = 16, requirements = false }
 """
 BY_NAME, BY_VALUES = '"numbers.thin"', '["parts.leaf.thickness", "parts.neck.thickness"]'
 

@@ -14,7 +14,7 @@ format = "flexstage study 1"
 name = "thicker leaves"
 design = "guide.toml"
 [variables]
-leaf = { of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm", step = "50 um" }
+leaf = { address = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm", step = "50 um" }
 [responses]
 f1 = "frequency.platform.1"
 [optimise]
@@ -50,7 +50,7 @@ def test_the_file_written_keeps_what_was_told(study_file, tmp_path, flexstage):
 
 def test_a_case_is_written_as_a_new_file(study_file, tmp_path, flexstage):
     text = study_file.read_text().replace('design = "guide.toml"', 'case = "parallelogram"')
-    study_file.write_text(text.replace('of = "parts.leaf.thickness"', 'parameter = "leaf.thickness"'))
+    study_file.write_text(text.replace('address = "parts.leaf.thickness"', 'parameter = "leaf.thickness"'))
     assert flexstage("optimise", "study.toml", "-o", "better.toml").code == 0
     assert load(tmp_path / "better.toml").parts["leaf"].thickness == 0.0016
 

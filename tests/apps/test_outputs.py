@@ -108,7 +108,8 @@ LONG = 300 * "x"
 def test_names_that_no_disk_takes_are_refused(flexstage: Command, tmp_path: Path, words: str) -> None:
     (tmp_path / "study.toml").write_text(
         'format = "flexstage study 1"\ndesign = "stage.toml"\nresponses.m = "mass"\n'
-        'variables.t = { of = "neck.thickness", from = "1 mm", to = "2 mm" }\nscatter.t = { of = "neck.thickness", normal = "1 um" }\n'
+        'variables.t = { address = "neck.thickness", from = "1 mm", to = "2 mm" }\n'
+        'scatter.t = { address = "neck.thickness", normal = "1 um" }\n'
     )
     (tmp_path / "loop").symlink_to("loop")
     before = sorted(tmp_path.iterdir())
@@ -264,8 +265,8 @@ def test_stages_with_locked_or_free_motions_are_reported(flexstage: Command, tmp
     assert (tmp_path / "report.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
 
 
-WITHOUT = ["damping", "gauges", "require", "mode_limit", "opening", "place"]
-TOLD_APART = ["gauges", "place"]
+WITHOUT = ["damping", "gauges", "requirements", "max_mode_frequency", "opening", "placements"]
+TOLD_APART = ["gauges", "placements"]
 """What the models themselves do without in different ways; of the others the lumped model alone is tried in the quick tests."""
 
 
@@ -284,7 +285,7 @@ def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Co
     document.pop(key, None)
     design.write_text(tomlkit.dumps(document))
     ended = flexstage("analyse", "stage.toml", "--model", model, "--report", "report.html", "--mat", "out.mat", "--json", "out.json")
-    if (key, model) == ("place", "mapped"):
+    if (key, model) == ("placements", "mapped"):
         assert ended.code == 2  # without strokes there is no unit whose stiffness could be taken
         return
     assert ended.code == 0, ended.err
@@ -295,7 +296,7 @@ def test_stages_that_lack_something_are_analysed_as_far_as_they_go(flexstage: Co
     if key == "gauges":
         assert found["mapping"]["R_s"]["rows"] == []
         assert "gauges" in found["workspace"]["reasons"]["resolution"]
-    if key == "place":
+    if key == "placements":
         assert found["mapping"]["R_a"] is None
 
 

@@ -29,7 +29,7 @@ design = "s.toml"
 responses = { sag = "sag", f = "frequency.1" }
 sweep = { sampling = "grid" }
 [variables]
-thickness = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1 mm", levels = 5 }
+thickness = { address = "parts.leaf.thickness", from = "0.8 mm", to = "1 mm", levels = 5 }
 """
 
 
@@ -166,7 +166,7 @@ def test_its_shape_is_all_that_finite_elements_need(work, package):
     assert found["roots"] == {"first": False, "second": True}
     assert found["compliance"]["values"][5][5] == bending["fea"]
     given = tomllib.loads((work / "calibrated.toml").read_text())["parts"]
-    assert (given["leaf"]["stands_for"], given["leaf-drawn"]["kind"]) == ("leaf-drawn", "taper")
+    assert (given["leaf"]["replaces"], given["leaf-drawn"]["kind"]) == ("leaf-drawn", "taper")
 
 
 def test_without_a_shape_it_is_not_known_to_finite_elements(work, tmp_path):

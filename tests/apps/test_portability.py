@@ -58,7 +58,7 @@ sys.exit(f"imported: {missing}" if missing else 0)
 """
 STUDY = """format = "flexstage study 1"
 case = "parallelogram"
-variables.t = { of = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
+variables.t = { address = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
 responses.f = "frequency.platform.1"
 sweep = { sampling = "sobol", designs = 4 }
 """

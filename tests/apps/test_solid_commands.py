@@ -161,11 +161,11 @@ def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> N
 def test_a_stand_in_for_a_part_that_is_gone(command: Command, tmp_path: Path) -> None:
     stage = small()
     unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    leaf = fs.Given(unit, free=stage.parts["leaf"].intended, stands_for="gone")
+    leaf = fs.Given(unit, free=stage.parts["leaf"].intended, replaces="gone")
     fs.dump(replace(stage, parts={**stage.parts, "leaf": leaf}), tmp_path / "lost.toml")
     ended = command("solid", "lost.toml")
     assert ended.code == 2
-    assert 'parts.leaf.stands_for: there is no part "gone"' in ended.err
+    assert 'parts.leaf.replaces: there is no part "gone"' in ended.err
 
 
 @pytest.mark.parametrize("words", [("solid", "stage.toml"), ("verify", "stage.toml")])

@@ -29,7 +29,7 @@ EVERY = [
 """Every command writes where nothing is taken; the streams themselves are told apart by one."""
 STUDY = """format = "flexstage study 1"
 case = "parallelogram"
-variables.t = { of = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
+variables.t = { address = "parts.leaf.thickness", from = "0.7 mm", to = "1.3 mm" }
 responses.f = "frequency.platform.1"
 sweep = { sampling = "sobol", designs = 100000 }
 """

@@ -156,9 +156,9 @@ async def test_a_mistake_is_told_at_its_line_and_the_last_design_stays(page, stu
 
 
 ERRORS = {
-    "require.frequency.platfrm.1": ("[require]", '"frequency.platfrm.1" = "at least 3 Hz"'),
-    "require.mass": ("[require]", 'mass = "at most 3 Hz"'),
-    "require.stroke.x": ("[require]", '"stroke.x" = "at least 1 um at nowhere"'),
+    "requirements.frequency.platfrm.1": ("[requirements]", '"frequency.platfrm.1" = "at least 3 Hz"'),
+    "requirements.mass": ("[requirements]", 'mass = "at most 3 Hz"'),
+    "requirements.stroke.x": ("[requirements]", '"stroke.x" = "at least 1 um at nowhere"'),
     "paths.out.drive": ("[paths.out]", 'drive = "platform.q"\nto = ["0 mm", "1 mm"]\npoints = 3'),
     "tags": ("[tags]", '"parts.nothing" = "assumed"'),
     "links.extra": ("[links.extra]", 'joins = ["ground", "platform"]\npart = "nothing"\nat = ["0 mm", "0 mm", "0 mm"]'),
@@ -196,7 +196,7 @@ def test_an_error_in_any_table_is_shown_at_its_line(studio, where):
         assert (page.state.sound, page.state.problems, page.told[say.Verdicts].revision) == (True, (), page.state.revision)
 
     on_page(lambda page, _: typed(page))(studio)
-    if where != "require.mass":
+    if where != "requirements.mass":
         return
     path = studio[0].session.stored.path
     path.write_text(wrong, encoding="utf-8")
@@ -261,7 +261,7 @@ async def test_a_slider_is_answered_by_the_engine_and_the_newest_value_alone(pag
 
 
 def _limit():
-    return float(loads(TEXT).mode_limit or np.inf)
+    return float(loads(TEXT).max_mode_frequency or np.inf)
 
 
 @on_page
@@ -721,7 +721,7 @@ async def test_nonsense_of_a_page_is_answered(page, studio):
 
 STUDY = """format = "flexstage study 1"
 [variables]
-t = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
+t = { address = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
 [responses]
 f = "frequency.platform.1"
 [sweep]

@@ -28,7 +28,7 @@ case = "parallelogram"
 responses.f = "frequency.1"
 sweep = {{ sampling = "latin hypercube", designs = {DESIGNS}, seed = 3 }}
 [variables]
-young = {{ of = "materials.aluminium.young", from = "-10 %", to = "10 %" }}
+young = {{ address = "materials.aluminium.young", from = "-10 %", to = "10 %" }}
 """
 RUN = """
 import sys
@@ -136,7 +136,7 @@ SCATTERED = """
 format = "flexstage study 1"
 case = "parallelogram"
 responses."NAME" = "mass"
-scatter.wire = { of = "leaf.thickness", normal = "4 um" }
+scatter.wire = { address = "leaf.thickness", normal = "4 um" }
 """
 
 
@@ -157,7 +157,8 @@ def test_names_with_any_sign_are_kept(tmp_path):
     """A study whose names look like paths of files and of HDF5 is resumed, and its columns are found by them."""
     names = ["a/b", "a|b", "../c", ".", "x" * 300, "\u00e9\u4e2d"]
     varied = "\n".join(
-        f'"{name}" = {{ of = "materials.aluminium.{key}", from = "-10 %", to = "10 %" }}' for name, key in zip(names, KEYS, strict=True)
+        f'"{name}" = {{ address = "materials.aluminium.{key}", from = "-10 %", to = "10 %" }}'
+        for name, key in zip(names, KEYS, strict=True)
     )
     text = f'format = "flexstage study 1"\ncase = "parallelogram"\nresponses."f/|." = "mass"\nsweep.designs = 4\n[variables]\n{varied}'
     study = loads_study(text)

@@ -23,7 +23,7 @@ responses.m = "mass"
 responses.f = "frequency.platform.1"
 sweep = { sampling = "latin hypercube", designs = 700, seed = 3 }
 [variables]
-young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+young = { address = "materials.aluminium.young", from = "-10 %", to = "10 %" }
 """
 RUN = """
 import sys, resource

@@ -16,8 +16,8 @@ case = "parallelogram"
 responses.f = "frequency.1"
 tolerance = { copies = 40, seed = 2 }
 [scatter]
-wire = { of = "hinges.thickness", uniform = "5 um" }
-turn = { of = "units.rotation.z", normal = "300 urad" }
+wire = { address = "hinges.thickness", uniform = "5 um" }
+turn = { address = "units.rotation.z", normal = "300 urad" }
 """
 
 
@@ -57,7 +57,7 @@ def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
 
 
 def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexstage):
-    study_file.write_text(STUDY.replace("copies = 40", "copies = 8, require = false, crosstalk = false").replace("turn =", "#"))
+    study_file.write_text(STUDY.replace("copies = 40", "copies = 8, requirements = false, crosstalk = false").replace("turn =", "#"))
     done = flexstage("tolerance", "study.toml", "--json", "r.json")
     assert done.code == 0
     assert "There is no yield: neither" in " ".join(done.out.split())

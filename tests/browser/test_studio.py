@@ -205,12 +205,12 @@ def test_a_mistake_shows_at_its_line_and_the_last_sound_design_stays(page: Page)
 def test_a_file_with_an_error_in_its_requirements_opens_with_it_at_its_line(browser: Browser, serve: Serve) -> None:
     """No pane waits for results that never come, and no status is green; the mended text is computed."""
     text = fs.dumps(fs.case("parallelogram"))
-    url, _ = serve(text.replace("[require]", '[require]\n"frequency.platfrm.1" = "at least 3 Hz"'))
+    url, _ = serve(text.replace("[requirements]", '[requirements]\n"frequency.platfrm.1" = "at least 3 Hz"'))
     made = browser.new_page()
     made.goto(url)
     until(made, "document.querySelectorAll('#problems .error').length")
-    line = 1 + text.splitlines().index("[require]") + 1
-    assert f"line {line}: require.frequency.platfrm.1" in made.inner_text("#problems")
+    line = 1 + text.splitlines().index("[requirements]") + 1
+    assert f"line {line}: requirements.frequency.platfrm.1" in made.inner_text("#problems")
     assert made.locator("#head .good, #text .bar .good").count() == 0
     assert all("the design file has errors" in made.inner_text(each) for each in ("#verdicts", "#pane-figures"))
     made.evaluate("(text) => studio.ask({ kind: 'edit', text, revision: studio.state.value.revision })", text)
@@ -269,7 +269,7 @@ def test_without_webgl_figures_text_and_numbers_live(browser: Browser, served: S
 
 WIRES = """format = "flexstage 1"
 name = "a thousand wires"
-mode_limit = "1e5 Hz"
+max_mode_frequency = "1e5 Hz"
 
 [materials.steel]
 like = "SUS420"
@@ -289,7 +289,7 @@ at = ["0 mm", "0 mm", "45 mm"]
 [units.wire.links]
 wire = { joins = ["ground", "platform"], part = "wire", at = ["0 mm", "0 mm", "0 mm"], along = "x" }
 
-[place]
+[placements]
 W1-W334 = { unit = "wire", polar = { radius = "140 mm", first = "0 deg", facing = "axis", height = "20 mm" } }
 V1-V333 = { unit = "wire", polar = { radius = "120 mm", first = "0 deg", facing = "axis", height = "20 mm" } }
 X1-X333 = { unit = "wire", polar = { radius = "100 mm", first = "0 deg", facing = "axis", height = "20 mm" } }

@@ -214,7 +214,9 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     server.say(Engine("ready", "", None), figures)
     until(page, lambda: page.evaluate(chips) == [True, True])
     green = page.evaluate(colours)
-    server.say(state(2, TEXT + "\n[require]", problems=(Problem("require.mass", "found a frequency", "Write for example 2 kg.", 6, 1),)))
+    server.say(
+        state(2, TEXT + "\n[requirements]", problems=(Problem("requirements.mass", "found a frequency", "Write for example 2 kg.", 6, 1),))
+    )
     until(page, lambda: page.evaluate(chips) == [False, False])
     assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
     assert not set(green) & set(page.evaluate(colours))

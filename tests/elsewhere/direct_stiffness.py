@@ -131,7 +131,7 @@ def _drawn(mechanism):
     stage = Place(np.eye(3), np.zeros(3))
     bodies = {name: (body, stage) for name, body in mechanism.bodies.items()}
     links = {name: (link, _standing(link, stage), link.joins) for name, link in mechanism.links.items()}
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         unit = mechanism.units[placement.unit]
         for copy, place in _copies(key, placement.pattern):
             bodies |= {f"{copy}/{name}": (body, place) for name, body in unit.bodies.items()}

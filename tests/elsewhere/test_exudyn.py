@@ -35,7 +35,7 @@ def _loaded() -> fs.Mechanism:
 
 
 def _changed() -> fs.Mechanism:
-    return replace(double_triangle(), changes={"B2/front.thickness": 1.2e-3, "B5/pivot.at": (0.08, 0.003, -0.061)})
+    return replace(double_triangle(), overrides={"B2/front.thickness": 1.2e-3, "B5/pivot.at": (0.08, 0.003, -0.061)})
 
 
 def _jointed() -> fs.Mechanism:

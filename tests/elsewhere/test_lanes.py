@@ -24,7 +24,7 @@ from flexstage.models.batch.solution import Solution, Stage
 HERE = Path(__file__).parent
 BASE = Path(compiled.__file__).parents[2] / "base"
 KERNEL = Path(compiled.__file__).with_name("kernel.c")
-NAMES = ("parts.neck.thickness", "B2/front.thickness", "place.B1-B3.pattern.radius", "materials.steel.density")
+NAMES = ("parts.neck.thickness", "B2/front.thickness", "placements.B1-B3.pattern.radius", "materials.steel.density")
 FLAGS = ("-O3", "-ffp-contract=fast", "-fno-math-errno", "-Wall", "-Wextra", "-Werror", f"-I{BASE}")
 PACKED = {"avx512": r"vfn?m(?:add|sub)\d+pd .*%[xz]mm", "avx2": r"vfn?m(?:add|sub)\d+pd .*%[xy]mm", "sse2": r"\bmulpd"}
 ARM, EMULATOR, ROOT = "aarch64-linux-gnu-gcc", "qemu-aarch64", "/usr/aarch64-linux-gnu"

@@ -124,7 +124,7 @@ def _found_by_search(plant_of_samples, wish: Wish) -> Loop:
     return loop(plant_of_samples, tuned.controller.system(plant_of_samples.hardware.step))
 
 
-@pytest.mark.parametrize("wish", [Wish(), pytest.param(Wish(aim=Aim.REJECTION, gain=0.1), marks=pytest.mark.full)])
+@pytest.mark.parametrize("wish", [Wish(), pytest.param(Wish(objective=Aim.REJECTION, gain=0.1), marks=pytest.mark.full)])
 def test_margins_of_what_a_search_finds(wish):
     """Gain, phase, delay and peak of S from their own responses on a dense grid, within 1e-3; and their poles at the edge of gain."""
     import control

@@ -51,10 +51,10 @@ length = "10 mm"
 at = ["0 mm", "0 mm", "5 mm"]
 [units.post.links]
 blade = {{ joins = ["ground", "platform"], part = "blade", at = ["0 mm", "0 mm", "-15 mm"], along = "z", bends = "y" }}
-[place.P1-P3]
+[placements.P1-P3]
 unit = "post"
 polar = {{ radius = "50 mm", first = "0 deg", facing = "outward", height = "0 mm" }}
-[change]
+[overrides]
 "P1/blade.thickness" = "0.7 mm"
 "P2/blade.thickness" = "0.9 mm"
 "P3/blade.thickness" = "1.4 mm"
@@ -62,9 +62,9 @@ polar = {{ radius = "50 mm", first = "0 deg", facing = "outward", height = "0 mm
 
 BLADES = """
 [variables]
-a = { of = "P1/blade.thickness", from = "0.5 mm", to = "2 mm" }
-b = { of = "P2/blade.thickness", from = "0.5 mm", to = "2 mm" }
-c = { of = "P3/blade.thickness", from = "0.5 mm", to = "2 mm" }
+a = { address = "P1/blade.thickness", from = "0.5 mm", to = "2 mm" }
+b = { address = "P2/blade.thickness", from = "0.5 mm", to = "2 mm" }
+c = { address = "P3/blade.thickness", from = "0.5 mm", to = "2 mm" }
 [responses]
 f1 = "frequency.platform.1"
 """
@@ -74,8 +74,8 @@ def post_variables(step=""):
     """Thickness and width of the post; `step` is added to both."""
     return f"""
 [variables]
-t = {{ of = "parts.post.thickness", from = "1 mm", to = "8 mm"{step} }}
-w = {{ of = "parts.post.width", from = "1 mm", to = "8 mm", logarithmic = true{step} }}
+t = {{ address = "parts.post.thickness", from = "1 mm", to = "8 mm"{step} }}
+w = {{ address = "parts.post.width", from = "1 mm", to = "8 mm", logarithmic = true{step} }}
 [responses]
 f1 = "frequency.platform.1"
 k = "stiffness.z"

@@ -281,7 +281,7 @@ def platforms(draw, wires=None, struts=None):
         bodies={PLATFORM: draw(bodies(centre=_near))},
         links=links,
         units={name: unit for name, (unit, _) in kinds.items()},
-        place={f"P{number + 1}": Placement(kind, pose) for number, (kind, pose) in enumerate(zip(picked, poses[wires:], strict=True))},
+        placements={f"P{number + 1}": Placement(kind, pose) for number, (kind, pose) in enumerate(zip(picked, poses[wires:], strict=True))},
         sensors={"gauge": GAUGE},
         gauges=draw(probes([PLATFORM])),
         damping=ModalDamping(0.01),
@@ -325,7 +325,7 @@ def rosettes(draw):
         parts=parts,
         bodies={PLATFORM: Body(mass=draw(_number(0.1, 5.0)), centre=(0.0, 0.0, draw(_length(-20, 20))), inertia=inertia)},
         units={"unit": Unit({"foot": draw(bodies())}, links)},
-        place={f"U1-U{count}": Placement("unit", around)},
+        placements={f"U1-U{count}": Placement("unit", around)},
         damping=ModalDamping(0.01),
     )
 
@@ -356,7 +356,7 @@ def moved(mechanism, turn, shift):
             name: replace(link, at=point(link.at), along=direction(link.along), bends=direction(link.bends))
             for name, link in mechanism.links.items()
         },
-        place={name: replace(placement, pattern=pose(placement.pattern)) for name, placement in mechanism.place.items()},
+        placements={name: replace(placement, pattern=pose(placement.pattern)) for name, placement in mechanism.placements.items()},
         gauges={name: replace(probe, pattern=pose(probe.pattern)) for name, probe in mechanism.gauges.items()},
         gravity=direction(mechanism.gravity),
     )

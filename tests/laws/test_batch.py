@@ -39,7 +39,7 @@ from tests.laws.strategies import actuated_platforms, mechanisms, rosettes
 
 METHODS = tuple(Method)
 VARIED = ("thickness", "young", "density", "radius", "diameter", "stiffness", "mass")
-SHARED = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "place.B1-B3.pattern.radius")
+SHARED = ("parts.neck.thickness", "parts.foot_notch.thickness", "parts.pole_neck.profile.radius", "placements.B1-B3.pattern.radius")
 SINGLE = ("B2/front.thickness", "materials.steel.density", "units.vertical.links.upper.at.z", "parts.stack_vertical.mass")
 
 
@@ -81,7 +81,7 @@ def test_numbers_told_beside_derivatives_are_those_told_alone(mechanism: Mechani
 
 
 def test_numbers_told_beside_derivatives_are_those_of_designs_with_noughts() -> None:
-    names = ("parts.neck.thickness", "parts.stack_vertical.stiffness", "place.B4-B6.pattern.turn", "place.B1-B3.pattern.radius")
+    names = ("parts.neck.thickness", "parts.stack_vertical.stiffness", "placements.B4-B6.pattern.turn", "placements.B1-B3.pattern.radius")
     own = plan(double_triangle(), names).family
     check_numbers(own, np.where(np.eye(5, len(names), k=-1), 0.0, own.nominal))
 
@@ -323,7 +323,7 @@ def test_fitted_features_give_what_each_design_gives() -> None:
 
     No range lets outlines of a body run into one another: their union is no polynomial.
     """
-    names = SHARED[:3] + SINGLE + ("materials.steel.young", "bodies.platform.solids.plate.size.x", "place.B4-B6.pattern.turn")
+    names = SHARED[:3] + SINGLE + ("materials.steel.young", "bodies.platform.solids.plate.size.x", "placements.B4-B6.pattern.turn")
     plain = plan(double_triangle(), names)
     ends = [plain.family.nominal * factor for factor in (0.9, 1.1)]
     fitted = plan(double_triangle(), names, ranges=(np.minimum(*ends), np.maximum(*ends)))
@@ -511,7 +511,7 @@ def test_a_start_without_the_right_modes_is_found_out() -> None:
 
 def test_legs_that_are_symmetric_about_a_plane_are_solved_in_two_halves() -> None:
     """Legs with a pivot beside their plane are whole, as are designs without the plane."""
-    names = ("parts.neck.thickness", "place.B4-B6.pattern.turn", "units.vertical.links.pivot.at.y")
+    names = ("parts.neck.thickness", "placements.B4-B6.pattern.turn", "units.vertical.links.pivot.at.y")
     flat = plan(double_triangle(), names)
     tilted = plan(set_value(double_triangle(), names[2], 1e-3), names)
     platform = len(flat.scheme.graph.order) - 1
@@ -537,7 +537,7 @@ def test_derivatives_do_not_depend_on_how_bodies_are_seen(method: Method) -> Non
     stage = double_triangle()
     for name, step in steps.items():
         stage = set_value(stage, name, step)
-    names = (*steps, "place.B4-B6.pattern.turn", "materials.steel.density")
+    names = (*steps, "placements.B4-B6.pattern.turn", "materials.steel.density")
     turning = plan(stage, names)
     still = replace(turning, family=replace(turning.family, standpoint=replace(turning.family.standpoint, turning=False)))
     rows = [len(slopes_of(each.family, each.family.nominal[None]).values) for each in (turning, still)]
@@ -688,7 +688,7 @@ def test_what_stays_free_is_refused_by_name() -> None:
 
 
 def test_expansion_is_the_same_for_all() -> None:
-    """Departures of single copies make parts of their own: as many as the description has."""
+    """Overrides of single copies make parts of their own: as many as the description has."""
     names = ("parts.neck.thickness", "B2/front.thickness")
     assert plan(double_triangle(), names).family.topology.parts == 7
     assert len(expand(double_triangle()).links) == 27

@@ -89,7 +89,7 @@ def test_actuators_that_are_blocked_alike_are_told_once() -> None:
 
 def test_a_platform_without_actuators_that_cannot_move_is_told() -> None:
     mechanism = case("parallelogram")
-    bare = replace(mechanism, units={}, place={}, links={name: replace(link, free=()) for name, link in mechanism.links.items()})
+    bare = replace(mechanism, units={}, placements={}, links={name: replace(link, free=()) for name, link in mechanism.links.items()})
     assert any("all six freedoms" in caution.what for caution in cautions(replace(bare, requirements={})))
 
 

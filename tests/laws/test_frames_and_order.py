@@ -33,7 +33,9 @@ def turned(stage: Mechanism) -> Mechanism:
     """The stage mounted in a turned pose, the gravity that it is in turned with it."""
     pose = Pose((0.0, 0.0, 0.0), tuple(TURN[:, 0].tolist()), tuple(TURN[:, 2].tolist()))
     gravity = tuple((TURN @ np.array(stage.gravity)).tolist())
-    return mount(Mechanism("top", gravity=gravity, damping=stage.damping, mode_limit=stage.mode_limit), "s", stage, pose=pose)
+    return mount(
+        Mechanism("top", gravity=gravity, damping=stage.damping, max_mode_frequency=stage.max_mode_frequency), "s", stage, pose=pose
+    )
 
 
 def close(found: Array, expected: Array, tolerance: float = 1e-7) -> None:

@@ -36,7 +36,7 @@ def test_what_bears_the_load_of_a_straight_strut_is_the_strut(mechanism):
     if len(kinematics.actuators) > kinematics.mobility:
         return  # redundant strokes: statics does not share a load among them
     for name, drive in assembly.actuators.items():
-        if mechanism.place[name].unit == "direct":
+        if mechanism.placements[name].unit == "direct":
             assert np.isclose(1.0 / borne_compliance(assembly, kinematics, name), computed_stiffness(assembly, drive), rtol=1e-6)
 
 
@@ -74,7 +74,7 @@ def test_a_chain_beside_its_line_with_ideal_joints_is_its_elastic_links():
         bodies={PLATFORM: stage.bodies[PLATFORM]},
         links={"guide": stage.links["guide"]},
         units={"drive": Unit(bodies, own)},
-        place={"B": Placement("drive", Pose())},
+        placements={"B": Placement("drive", Pose())},
     )
     assert np.isclose(mapped(units).stiffness_matrix[0, 0], model.stiffness_matrix[0, 0], rtol=1e-12)
 

@@ -380,7 +380,7 @@ def test_a_batch_is_a_loop(mechanism, picked, steps):
 @given(actuated_platforms(), picks, st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=3))
 def test_an_ideal_batch_is_a_loop(mechanism, picked, steps):
     """Where a small change of one number may break a closed loop's fit, only the platform's own numbers and poses are varied."""
-    paths = [path for path in numbers(mechanism) if path[0] in {"place", "bodies"} or path[-2:-1] == ("at",)]
+    paths = [path for path in numbers(mechanism) if path[0] in {"placements", "bodies"} or path[-2:-1] == ("at",)]
     chosen = {paths[number % len(paths)] for number in picked}
     factors = {path: 1.0 + np.roll(steps, number) for number, path in enumerate(sorted(chosen))}
     batch = ideal(varied(mechanism, {path: at(mechanism, path) * factor for path, factor in factors.items()}))
@@ -416,7 +416,7 @@ def test_the_helpers_reach_every_kind_of_number():
         ("materials", "steel", "young"),
         ("bodies", "platform", "solids", "plate", "size", "2"),
         ("units", "vertical", "links", "pivot", "at", "0"),
-        ("place", "B1-B3", "pattern", "radius"),
+        ("placements", "B1-B3", "pattern", "radius"),
         ("gauges", "S1-S3", "pattern", "height"),
     ):
         assert path in paths

@@ -32,7 +32,7 @@ def test_a_copy_that_stands_elsewhere_is_the_copy_placed_there():
     stage = parallelogram()
     turned = exponential(np.array(ROTATION))
     placed = Placement("drive", Pose(at=SHIFT, along=tuple(turned[:, 0]), up=tuple(turned[:, 2])))
-    moved, there = misaligned(stage, "B"), replace(stage, place=Table({"B": placed}))
+    moved, there = misaligned(stage, "B"), replace(stage, placements=Table({"B": placed}))
     np.testing.assert_allclose(lumped(moved).stiffness_matrix, lumped(there).stiffness_matrix, rtol=1e-9, atol=1e-3)
     np.testing.assert_allclose(lumped(moved).inertia_matrix, lumped(there).inertia_matrix, rtol=1e-9, atol=1e-12)
     assert not np.allclose(lumped(moved).stiffness_matrix, lumped(stage).stiffness_matrix, rtol=1e-6)

@@ -85,15 +85,15 @@ def test_loads_of_a_carried_stage_turn_with_it():
     np.testing.assert_allclose(heavy, whole @ drawn @ whole.T, atol=1e-12 * np.max(np.abs(drawn)))
 
 
-def test_patterns_and_departures_of_a_carried_stage_go_with_it():
+def test_patterns_and_overrides_of_a_carried_stage_go_with_it():
     fine = replace(
-        double_triangle(), changes={"B2/front.thickness": 1.4e-3, "horizontal/back.at.y": 1e-4, "B3.shift.x": 1e-4, "S1.rotation.z": 0.01}
+        double_triangle(), overrides={"B2/front.thickness": 1.4e-3, "horizontal/back.at.y": 1e-4, "B3.shift.x": 1e-4, "S1.rotation.z": 0.01}
     )
     fine = replace(
         fine,
-        place={
-            **fine.place,
-            "M1-M2": replace(fine.place["B1-B3"], pattern=replace(fine.place["B1-B3"].pattern, mirror=Normal.Y, height=0.1)),
+        placements={
+            **fine.placements,
+            "M1-M2": replace(fine.placements["B1-B3"], pattern=replace(fine.placements["B1-B3"].pattern, mirror=Normal.Y, height=0.1)),
         },
     )
     turn, shift = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([0.1, 0.2, 0.3])
@@ -135,7 +135,7 @@ coarse = { file = "coarse.toml" }
 [parts.wire]
 kind = "joint"
 free = ["x"]  # any
-[change]
+[overrides]
 "fine/left.thickness" = "0.7 mm"
 """
 
@@ -173,7 +173,7 @@ def test_a_value_of_another_file_is_changed_there(tmp_path):
         ('"fine.toml"', '"fne.toml"', "line 5: stages.fine.file: fne.toml: there is no such file"),
         ('"fine.toml"', '"top.toml"', "line 5: stages.fine.file: it is this file itself"),
         ('"coarse/platform"', '"coarse/platfrm"', 'stages.fine.on: there is no body "coarse/platfrm". Near to it are coarse/platform'),
-        ("fine/left", "fine/lft", 'change."fine/lft.thickness"'),
+        ("fine/left", "fine/lft", 'overrides."fine/lft.thickness"'),
         ("pose = {", 'pose = { mirror = "x",', "stages.fine.pose.mirror: a whole stage is not mirrored"),
         ('on = "coarse/platform", ', "", "not one of the stages is on top of all others, but fine, coarse"),
     ],

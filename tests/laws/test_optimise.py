@@ -26,9 +26,9 @@ DEMANDS = ("stroke.z", "safety", "frequency.platform.1", "frequency.platform.6",
 MORE = ("corner", "buckling", "stiffness.rz", "force.z", "crosstalk", "drift.z", "resolution.x", "gauge.range", "load", "load.B1")
 MIXED = """
 [variables]
-foot = { of = "parts.foot_notch.thickness", from = "0.6 mm", to = "1.2 mm", logarithmic = true }
+foot = { address = "parts.foot_notch.thickness", from = "0.6 mm", to = "1.2 mm", logarithmic = true }
 arm = { parameter = "short_arm", from = "24 mm", to = "29 mm" }
-poles = { of = "place.B4-B6.pattern.radius", from = "-4 %", to = "6 %" }
+poles = { address = "placements.B4-B6.pattern.radius", from = "-4 %", to = "6 %" }
 [responses]
 f1 = "frequency.platform.1"
 [optimise]
@@ -56,7 +56,7 @@ def test_gradients_agree_with_differences():
 
 def test_differenced_measures_have_gradients_too():
     """A parallelogram shortens by s^2 / (2 L): the slope of its map's error over the leaves' length is known."""
-    text = 'variables.leaf = { of = "parts.leaf.length", from = "20 mm", to = "30 mm" }\nresponses.e = "map_error.y"'
+    text = 'variables.leaf = { address = "parts.leaf.length", from = "20 mm", to = "30 mm" }\nresponses.e = "map_error.y"'
     study, _ = case_of("parallelogram", text + '\n[optimise]\nminimise = "e"')
     point = Values(study, (study.responses["e"],))(np.array([[0.4]]))[0]
     np.testing.assert_allclose(point.gradient[0, 0], -point.values[0] * 10.0 / 24.0, rtol=1e-5)
@@ -158,8 +158,8 @@ def test_prices_are_what_moved_limits_bring():
     """Optimised anew with limits and ends of ranges moved by a little, the objective moves by the price."""
     text = """
 [variables]
-leaf = {{ of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }}
-length = {{ of = "parts.leaf.length", from = "{end} mm", to = "26 mm" }}
+leaf = {{ address = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }}
+length = {{ address = "parts.leaf.length", from = "{end} mm", to = "26 mm" }}
 [responses]
 f1 = "frequency.platform.1"
 [limits]
@@ -184,7 +184,7 @@ starts = 1
 def test_the_price_of_a_limit_above_is_what_more_of_it_buys():
     text = """
 [variables]
-leaf = {{ of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }}
+leaf = {{ address = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }}
 [responses]
 k = "stiffness.x"
 [limits]
@@ -273,7 +273,7 @@ def test_frequencies_may_be_bounded_above_and_mass_made_least(tmp_path):
 
 
 def test_the_same_seed_gives_the_same_optimum():
-    study, wanted = case_of("parallelogram", 'variables.leaf = { of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }\n'
+    study, wanted = case_of("parallelogram", 'variables.leaf = { address = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm" }\n'
                             'responses.f1 = "frequency.platform.1"\noptimise = { maximise = "f1", seed = 5 }')  # fmt: skip
     first, second = optimise(study, wanted), optimise(study, wanted)
     np.testing.assert_array_equal(first.point.shares, second.point.shares)
@@ -301,7 +301,7 @@ def test_an_interrupt_leaves_the_best_design_so_far(tmp_path):
 
 def test_variables_that_move_nothing_are_named(tmp_path):
     text = post_variables() + 'density = "mass"\n'
-    text = text.replace("[responses]", 'yield = { of = "materials.steel.yield_stress", from = "-10 %", to = "10 %" }\n[responses]')
+    text = text.replace("[responses]", 'yield = { address = "materials.steel.yield_stress", from = "-10 %", to = "10 %" }\n[responses]')
     study, wanted = study_of(tmp_path, POST, text + '[optimise]\nmaximise = "f1"\nstarts = 1')
     assert optimise(study, wanted).idle == ("yield",)
 

@@ -29,7 +29,7 @@ sweep = { sampling = "sobol", designs = 4, seed = 1 }
 [variables]
 arm = { parameter = "short_arm", from = "24 mm", to = "28 mm" }
 plate = { parameter = "plate.thickness", from = "-10 %", to = "10 %" }
-side = { of = "bodies.platform.solids.plate.size.x", from = "-1 %", to = "1 %" }
+side = { address = "bodies.platform.solids.plate.size.x", from = "-1 %", to = "1 %" }
 """
 
 NECK = 'a = { parameter = "neck.thickness", from = "1 mm", to = "2 mm" }\n'
@@ -99,11 +99,11 @@ def test_addresses_are_written_on_top_of_parameters():
     [
         ('arm = { parameter = "shrt_arm", from = "1 mm", to = "2 mm" }', "The nearest name is short_arm"),
         ('arm = { parameter = "bodies", from = "1 mm", to = "2 mm" }', "no number that can vary"),
-        ('arm = { parameter = "short_arm", of = "mass", from = "1 mm", to = "2 mm" }', "both an address and a parameter"),
+        ('arm = { parameter = "short_arm", address = "mass", from = "1 mm", to = "2 mm" }', "both an address and a parameter"),
         ('arm = { parameter = "plate", from = "1 mm", to = "2 mm" }', "plate.side, plate.thickness"),
         ('arm = { parameter = "short_arm", from = "1 kg", to = "2 kg" }', "a length is expected"),
         ('arm = { parameter = ["short_arm", "vertical_turn"], from = "1 mm", to = "2 mm" }', "different quantities"),
-        (NECK + 'b = { of = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "which variable b sets too"),
+        (NECK + 'b = { address = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "which variable b sets too"),
         (NECK + 'b = { parameter = "neck.thickness", from = "-1 %", to = "1 %" }', "already moved by a"),
     ],
 )

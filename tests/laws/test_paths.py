@@ -80,7 +80,7 @@ def test_a_sweep_asks_for_measures_along_a_path(tmp_path: Path):
     (tmp_path / "stage.toml").write_text(dumps(stage()))
     (tmp_path / "study.toml").write_text(
         'format = "flexstage study 1"\nname = "leaves"\ndesign = "stage.toml"\n[variables]\n'
-        't = { of = "parts.leaf.thickness", from = "0.4 mm", to = "0.5 mm", levels = 2 }\n'
+        't = { address = "parts.leaf.thickness", from = "0.4 mm", to = "0.5 mm", levels = 2 }\n'
         '[responses]\npush = "out.force at 10 mm"\nslow = "frequency.1 over out"\n[sweep]\nsampling = "grid"\n'
     )
     found = sweep(load_study(tmp_path / "study.toml"), tmp_path / "out.h5")
@@ -157,7 +157,7 @@ def test_the_best_design_is_looked_for_by_what_it_does_at_its_stroke(at_its_stro
         BEAMS
         + """
 [variables]
-thin = { of = "parts.leaf.thickness", from = "0.3 mm", to = "0.8 mm" }
+thin = { address = "parts.leaf.thickness", from = "0.3 mm", to = "0.8 mm" }
 [limits]
 "out.stiffness" = "at least 3 N/mm"
 [optimise]
@@ -181,10 +181,10 @@ def test_what_scatters_is_told_at_the_stroke(at_its_stroke: Path):
         BEAMS
         + """
 [scatter]
-cut = { of = "parts.leaf.thickness", normal = "2 um" }
+cut = { address = "parts.leaf.thickness", normal = "2 um" }
 [tolerance]
 copies = 4
-require = false
+requirements = false
 crosstalk = false
 """
     )

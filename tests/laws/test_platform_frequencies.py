@@ -241,7 +241,7 @@ def test_optimisation_takes_the_same_modes(stage: Mechanism) -> None:
 def test_no_verdict_depends_on_the_limit_of_listed_modes(name: str) -> None:
     stage = CASES[name].build()
     asked = {f"frequency.platform.{number}": "at least 1 Hz" for number in range(1, 7)} | {"frequency.3": "at least 1 Hz"}
-    values = [judge(replace(stage, mode_limit=limit, requirements=asked)) for limit in (None, 10.0, 300.0)]
+    values = [judge(replace(stage, max_mode_frequency=limit, requirements=asked)) for limit in (None, 10.0, 300.0)]
     first, *others = [[str(each.value) for each in verdicts] for verdicts in values]
     assert others == [first, first]
 

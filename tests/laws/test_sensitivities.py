@@ -52,9 +52,9 @@ ADDRESSES = [
     "units.vertical.links.pivot.at.z",
     "units.vertical.links.front.at.x",
     "units.vertical.bodies.lever.solids.left.at.y",
-    "place.B4-B6.pattern.radius",
-    "place.B4-B6.pattern.turn",
-    "place.B1-B3.pattern.turn",
+    "placements.B4-B6.pattern.radius",
+    "placements.B4-B6.pattern.turn",
+    "placements.B1-B3.pattern.turn",
     "B5/pivot.at.z",
 ]
 
@@ -121,7 +121,12 @@ def test_every_number_of_the_stage_has_a_finite_sensitivity() -> None:
 
 @pytest.mark.parametrize(
     ("address", "message"),
-    [("parts.neck", "not a single number"), ("vertical/front.at", "not a single number"), ("neck.thicknes", "nearest"), ("mode_limit", "")],
+    [
+        ("parts.neck", "not a single number"),
+        ("vertical/front.at", "not a single number"),
+        ("neck.thicknes", "nearest"),
+        ("max_mode_frequency", ""),
+    ],
 )
 def test_only_single_numbers_have_sensitivities(address: str, message: str) -> None:
     stage = double_triangle(SM_REF_B)
@@ -140,8 +145,8 @@ def test_numbers_that_are_not_stated_have_no_sensitivity() -> None:
 def test_without_enough_actuators_the_frequencies_are_still_given() -> None:
     """Two of three posts of the tip-tilt mount: frequencies as before, against finite differences; no gains, and the reason."""
     stage = tip_tilt()
-    place = {("P1-P2" if name == "P1-P3" else name): placement for name, placement in stage.place.items()}
-    stage = replace(stage, place=place, requirements={})
+    place = {("P1-P2" if name == "P1-P3" else name): placement for name, placement in stage.placements.items()}
+    stage = replace(stage, placements=place, requirements={})
     address = "parts.leaf.thickness"
     found = fs.sensitivities(stage, (address,), modes=MODES)
     value = get(stage, address)

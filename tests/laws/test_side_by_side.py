@@ -59,7 +59,7 @@ def test_noise_that_nothing_makes_is_won_by_none():
 
 def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    gains = 'integral = "300 1/s"\nloops = [{ of = ["x"], proportional = 0.1 }]\n'
+    gains = 'integral = "300 1/s"\nloops = [{ axes = ["x"], proportional = 0.1 }]\n'
     (tmp_path / "own.toml").write_text(f'format = "flexstage loop 1"\n[controller]\n{gains}')
     assert run(["new", "guide.toml", "--case", "parallelogram"]) == 0
     assert run(["loop", "guide.toml", "--setup", "own.toml", "--compare", "--hardware", "r.c"]) == 2

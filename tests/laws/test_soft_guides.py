@@ -177,7 +177,7 @@ def test_a_stage_on_a_soft_guide_is_tuned_as_on_none():
 @cache
 def _rejects_to(kind: ControllerKind, aim: Aim | None, stiffness: float) -> float:
     """Where |S| first passes 1 [Hz], by the response of the plant times that of the law; not by the search's own numbers."""
-    goal = None if aim is None else GoalSetup(aim=aim)
+    goal = None if aim is None else GoalSetup(objective=aim)
     found = _of_stage(stiffness, kind=kind, goal=goal)
     single, frequencies = found.loops["x"], np.geomspace(1e-3, 4e3, 4000)
     step = 1e-4
@@ -223,7 +223,7 @@ def test_a_search_that_finds_nothing_better_returns_what_it_began_from(monkeypat
         "flexstage.control.tuning.find.advance",
         lambda seen, within, controller: known(seen, within, replace(controller, laws=(worse,))),
     )
-    found = find(one, loops, Asked(Kind.PID, Wish(aim=Aim.REJECTION), {}))
+    found = find(one, loops, Asked(Kind.PID, Wish(objective=Aim.REJECTION), {}))
     assert found.controller.laws == plain.controller.laws
     assert "no better one was found" in found.reason
 
@@ -293,9 +293,9 @@ def test_weights_by_search_serve_the_aim_no_worse_than_those_they_begin_from(aim
     one, _ = guided(100.0)
     loops, noise = platform_loops(one.coordinates), Disturbances(1e-9, {"S": NOISE})
     plain = tune(one, loops, Task(Kind.LQG, Goal(), expected=noise))
-    found = find(one, loops, Asked(Kind.LQG, Wish(aim=aim), {}, expected=noise))
+    found = find(one, loops, Asked(Kind.LQG, Wish(objective=aim), {}, expected=noise))
     seen = view(one, loops, 0.02, tuple(dict.fromkeys(each.offset for each in variants(Wish()))))
-    tried = bench(seen, field(seen, Wish(aim=aim), {}, fast=plain.bandwidth))
-    merits = [merit(Wish(aim=aim), outcome(tried, each.controller.system(seen.step))) for each in (plain, found)]
+    tried = bench(seen, field(seen, Wish(objective=aim), {}, fast=plain.bandwidth))
+    merits = [merit(Wish(objective=aim), outcome(tried, each.controller.system(seen.step))) for each in (plain, found)]
     assert merits[1] >= merits[0]
     assert found.judgement.peak <= 2.0

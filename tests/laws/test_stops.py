@@ -42,7 +42,7 @@ def pushed():
     """The leaves of the parallelogram, pushed by a bare force."""
     links = {**ONE.links, "motor": Link((GROUND, PLATFORM), "push", (-40 * mm, 0.0, 0.0), X)}
     parts = {**ONE.parts, "push": ForceActuator(maximum=20.0)}
-    return replace(ONE, parts=parts, links=links, units={}, place={}, gauges={}, requirements={"stroke.x": "at least 10 um"})
+    return replace(ONE, parts=parts, links=links, units={}, placements={}, gauges={}, requirements={"stroke.x": "at least 10 um"})
 
 
 @pytest.mark.parametrize("back", [None, 7 * um])
@@ -172,5 +172,5 @@ def test_faulty_stops_are_told():
     assert 'stops.end.base: there is no body "grund"' in told(end=Stop(PLATFORM, FACE, GAP, base="grund"))
     assert 'stops.end.base: it is "platform", as the body is' in told(end=Stop(PLATFORM, FACE, GAP, base=PLATFORM))
     assert "stops.end.gap" in told(end=Stop(PLATFORM, FACE, 0.0))
-    assert "stops.end.gap_back" in told(end=Stop(PLATFORM, FACE, GAP, -1.0 * um))
+    assert "stops.end.gap_negative" in told(end=Stop(PLATFORM, FACE, GAP, -1.0 * um))
     assert "stops.E2-E1" in told(**{"E2-E1": Stop(PLATFORM, FACE, GAP)})

@@ -68,7 +68,7 @@ def grouped(mechanism, turn, shift):
         mechanism,
         bodies={PLATFORM: mechanism.bodies[PLATFORM]},
         units={"group": Unit(drawn.bodies, drawn.links)},
-        place={"G": Placement("group", Pose(tuple(shift.tolist()), tuple(turn[:, 0].tolist()), tuple(turn[:, 2].tolist())))},
+        placements={"G": Placement("group", Pose(tuple(shift.tolist()), tuple(turn[:, 0].tolist()), tuple(turn[:, 2].tolist())))},
         links={
             name: replace(link, joins=tuple(far(body) for body in link.joins)) for name, link in mechanism.links.items() if name not in own
         },
@@ -99,7 +99,7 @@ def wholly_grouped(mechanism, turn, shift, mirror=None):
         mechanism,
         bodies={PLATFORM: mechanism.bodies[PLATFORM]},
         units={"group": Unit(drawn.bodies, drawn.links)},
-        place={"G": Placement("group", pose)},
+        placements={"G": Placement("group", pose)},
         links={},
         gauges={
             name: replace(probe, body=far(probe.body), base=far(probe.base), pattern=replace(probe.pattern, mirror=mirror))
@@ -156,7 +156,7 @@ def test_a_guide_drawn_on_both_sides_is_one_side_and_its_image():
         parts={"leaf": leaf, "skewed": skewed, "image": skewed.mirrored},
         bodies={PLATFORM: Body(solids={"plate": Block("metal", size=(0.08, 0.01, 0.03))})},
         units={"side": Unit({"foot": foot, "lug": lug}, links)},
-        place={"L": Placement("side", Pose()), "R": Placement("side", Pose(mirror=Normal.X))},
+        placements={"L": Placement("side", Pose()), "R": Placement("side", Pose(mirror=Normal.X))},
     )
     other = Unit(
         {
@@ -168,7 +168,9 @@ def test_a_guide_drawn_on_both_sides_is_one_side_and_its_image():
             "lower": replace(links["lower"], part="image", at=(-0.025, 0.03, 0.0), along=(-0.2, -1.0, 0.3), bends=(-1.0, 0.2, 0.0)),
         },
     )
-    by_hand = replace(stage, units={"side": stage.units["side"], "other": other}, place={**stage.place, "R": Placement("other", Pose())})
+    by_hand = replace(
+        stage, units={"side": stage.units["side"], "other": other}, placements={**stage.placements, "R": Placement("other", Pose())}
+    )
     assert not check(stage)
     names = [PLATFORM, "L/foot", "R/foot"]
     assert same(comparable(lumped(stage), names), comparable(lumped(by_hand), names), 1e-12)
@@ -184,7 +186,7 @@ def test_a_step_file_in_a_mirrored_copy_is_the_reflected_solid():
         parts={"wire": Rod("metal", 0.03, 0.001)},
         bodies={PLATFORM: Body(mass=1.0, point=True)},
         units={"arm": unit},
-        place={"A": Placement("arm", Pose(mirror=Normal.Z))},
+        placements={"A": Placement("arm", Pose(mirror=Normal.Z))},
     )
     assert not any("mirror" in str(finding) for finding in check(stage))
     body = expand(stage).bodies["A/lug"]
@@ -223,7 +225,7 @@ def test_a_compound_is_mirrored_member_by_member():
         bodies={PLATFORM: Body(mass=1.0, point=True)},
         links={"wire": Link((GROUND, PLATFORM), "wire", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
         units={"side": unit},
-        place={"A": Placement("side", Pose()), "B": Placement("side", Pose(mirror=Normal.Y))},
+        placements={"A": Placement("side", Pose()), "B": Placement("side", Pose(mirror=Normal.Y))},
     )
     model = lumped(stage)
     one, other = (comparable(model, [name]) for name in ("A/arm", "B/arm"))
@@ -250,8 +252,8 @@ def likened():
         parts={"leaf": leaf, "short": replace(leaf, length=0.02)},
         bodies={PLATFORM: Body(mass=1.0, inertia=Inertia(1e-3, 1e-3, 1e-3))},
         units={"outer": outer, "inner": inner},
-        place={"A": Placement("inner", Pose((0.05, 0.0, 0.0))), "B": Placement("outer", Pose((-0.05, 0.0, 0.0)))},
-        changes={
+        placements={"A": Placement("inner", Pose((0.05, 0.0, 0.0))), "B": Placement("outer", Pose((-0.05, 0.0, 0.0)))},
+        overrides={
             "inner/upper.thickness": 0.0006,
             "outer/upper.at.z": 0.002,
             "outer/weld.thickness": 0.0004,
@@ -267,8 +269,8 @@ def test_a_unit_like_another_is_the_unit_drawn_out():
     links = {**inner.links, **outer.links}
     links["upper"] = replace(links["upper"], at=(0.0, 0.05, 0.002))
     whole = Unit({**inner.bodies, **outer.bodies}, links)
-    changes = {key: value for key, value in stage.changes.items() if key != "outer/upper.at.z"} | {"outer/upper.thickness": 0.0006}
-    by_hand = replace(stage, units={"outer": whole, "inner": inner}, changes=changes)
+    changes = {key: value for key, value in stage.overrides.items() if key != "outer/upper.at.z"} | {"outer/upper.thickness": 0.0006}
+    by_hand = replace(stage, units={"outer": whole, "inner": inner}, overrides=changes)
     names = [PLATFORM, "A/foot", "A/shoe", "B/foot", "B/shoe"]
     assert same(comparable(lumped(stage), names), comparable(lumped(by_hand), names), 1e-13)
 
@@ -299,7 +301,7 @@ def test_a_unit_like_another_follows_it_and_files_keep_the_relation():
 )
 def test_units_like_nothing_or_themselves_are_refused(like, said):
     stage = likened()
-    bad = replace(stage, units={**stage.units, "outer": replace(stage.units["outer"], like=like)}, changes={})
+    bad = replace(stage, units={**stage.units, "outer": replace(stage.units["outer"], like=like)}, overrides={})
     assert any(said in str(finding) for finding in check(bad))
     circle = replace(stage, units={**stage.units, "inner": replace(stage.units["inner"], like="outer")})
     assert sum("like one another in a circle" in str(finding) for finding in check(circle)) == 2
@@ -360,8 +362,10 @@ def test_ends_are_addressed_as_files_call_them():
     text = patch(dumps(stage), {"links.strut.from.y": "2 mm"})
     assert 'from = ["0 mm", "2 mm", "0 mm"]' in text
     assert get(loads(text, checked=False), "links.strut.from.y") == 0.002
-    likewise = replace(likened(), changes={})
-    placed = replace(likewise, place={**likewise.place, "B": Placement("outer", Pose(start=(-0.05, 0.0, 0.0), end=(-0.01, 0.0, 0.0)))})
+    likewise = replace(likened(), overrides={})
+    placed = replace(
+        likewise, placements={**likewise.placements, "B": Placement("outer", Pose(start=(-0.05, 0.0, 0.0), end=(-0.01, 0.0, 0.0)))}
+    )
     assert loads(dumps(placed)) == placed
     assert not check(placed)
     assert lumped(placed).stiffness_matrix.tolist() == lumped(likewise).stiffness_matrix.tolist()

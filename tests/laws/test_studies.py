@@ -31,8 +31,8 @@ responses.f = "frequency.1"
 responses.k = "stiffness.x"
 sweep = { sampling = "sobol", designs = 12, seed = 4 }
 [variables]
-young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
-leaf = { of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
+young = { address = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+leaf = { address = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm" }
 """
 
 
@@ -83,8 +83,8 @@ push = { joins = ["ground", "platform"], part = "stack", at = ["-60 mm", "0 mm",
 """
 
 
-HEAVIER = 'variables.mass = { of = "bodies.platform.mass", from = "1 kg", to = "14 kg", levels = 6 }'
-FALLING = 'variables.gravity = { of = "gravity.z", from = "-9 m/s^2", to = "3 m/s^2", levels = 3 }'
+HEAVIER = 'variables.mass = { address = "bodies.platform.mass", from = "1 kg", to = "14 kg", levels = 6 }'
+FALLING = 'variables.gravity = { address = "gravity.z", from = "-9 m/s^2", to = "3 m/s^2", levels = 3 }'
 
 
 def upright(tmp_path: Path, responses: str, variable: str = HEAVIER) -> Study:
@@ -108,7 +108,7 @@ def test_designs_that_differ_in_their_load_alone_are_those_one_by_one(tmp_path: 
 @pytest.mark.parametrize("address", ["materials.steel.yield_stress", "parts.stack.stroke"])
 def test_designs_that_differ_in_their_limits_alone_are_those_one_by_one(address: str):
     """Stiffness and loads are those of one design then."""
-    varied = f'variables.limit = {{ of = "{address}", from = "-40 %", to = "10 %", levels = 3 }}'
+    varied = f'variables.limit = {{ address = "{address}", from = "-40 %", to = "10 %", levels = 3 }}'
     asked = 'responses = { b = "buckling", s = "safety", x = "stroke.x" }\nsweep = { sampling = "grid" }'
     study = loads_study(f'format = "flexstage study 1"\ncase = "parallelogram"\n{varied}\n{asked}\n')
     found = piece(study, 0, 3)
@@ -119,7 +119,7 @@ def test_designs_that_differ_in_their_limits_alone_are_those_one_by_one(address:
 
 def test_without_strokes_there_is_no_error_of_their_map() -> None:
     stage = case("tilt-stage")
-    assert "no actuator imposes a stroke" in str(measure_all(stage, (measure(stage, "map_error.x", "require"),))[0])
+    assert "no actuator imposes a stroke" in str(measure_all(stage, (measure(stage, "map_error.x", "requirements"),))[0])
 
 
 @pytest.mark.parametrize("responses", ['responses.f = "frequency.platform.1"', 'responses.k = "stiffness.x"'], ids=["engine", "dense"])

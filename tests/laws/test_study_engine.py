@@ -26,10 +26,10 @@ MOVED = (
     ("parts.lever_notch.thickness", "parts.foot_notch.thickness"),
     ("bodies.platform.solids.plate.size.z",),
     ("materials.steel.density",),
-    ("place.B1-B3.pattern.radius", "place.B4-B6.pattern.radius"),
+    ("placements.B1-B3.pattern.radius", "placements.B4-B6.pattern.radius"),
     ("horizontal/front.thickness",),
     ("B2/front.width",),
-    ("place.B4-B6.pattern.turn",),
+    ("placements.B4-B6.pattern.turn",),
 )
 NONE = Engine(Table({}))
 """With it, everything is read by dense matrices."""
@@ -108,7 +108,7 @@ def test_designs_that_fail_keep_place_and_reason():
 
 def test_fewer_modes_than_six_are_numbered_as_one_design_numbers_them():
     """The limit lies below the platform's highest modes: the lower ones have numbers, the sixth is told missing."""
-    stage = replace(STAGE, mode_limit=150.0)
+    stage = replace(STAGE, max_mode_frequency=150.0)
     low, high = study(MOVED[:1], stage=stage, keys=("frequency.platform.1",)), study(MOVED[:1], stage=stage)
     found = piece(low, 0, 2)
     assert not found.failures

@@ -170,7 +170,7 @@ def test_in_a_mirror_everything_is_mirrored(folder, seed):
     assert part.mirrored.mirrored == part
     made = stage(part)
     unit = Unit({}, made.links)
-    placed = replace(made, links={}, units={"half": unit}, place={"far": Placement("half", Pose(mirror=Normal.Y))})
+    placed = replace(made, links={}, units={"half": unit}, placements={"far": Placement("half", Pose(mirror=Normal.Y))})
     close(static_gain(lumped(placed), TWIST, WRENCH).values, seen, 1e-8)
 
 

@@ -43,7 +43,7 @@ format = "flexstage study 1"
 design = "guide.toml"
 responses.k = "stiffness.x"
 tolerance = { crosstalk = false }
-scatter.w = { of = "leaf.thickness", normal = "1 um" }
+scatter.w = { address = "leaf.thickness", normal = "1 um" }
 """
 
 
@@ -70,7 +70,7 @@ def guide(tmp_path_factory):
 
 def test_stiffness_has_the_moments_of_a_cube(guide):
     """E[(1 + s)^3] = 1 + 3 v, Var = 9 v + 36 v^2 + 15 v^3 for normal s of variance v; shear of these leaves takes less than 1e-3."""
-    study = guide('scatter.wire = { of = "hinges.thickness", normal = "8 %" }', copies=512)
+    study = guide('scatter.wire = { address = "hinges.thickness", normal = "8 %" }', copies=512)
     found = piece(study, 0, 512).responses[:, 0] / slopes(study).values[0]
     v = 0.08**2
     assert found.mean() == pytest.approx(1.0 + 3.0 * v, rel=2e-3)
@@ -78,8 +78,8 @@ def test_stiffness_has_the_moments_of_a_cube(guide):
 
 
 def test_single_errors_average_out_and_common_ones_do_not(guide):
-    common = guide('scatter.wire = { of = "hinges.thickness", normal = "2 um" }')
-    each = guide('scatter.wire = { of = "hinges.thickness", normal = "2 um", each = true }')
+    common = guide('scatter.wire = { address = "hinges.thickness", normal = "2 um" }')
+    each = guide('scatter.wire = { address = "hinges.thickness", normal = "2 um", independent = true }')
     one, many = (slopes(study) for study in (common, each))
     sizes = [np.linalg.norm(found.gradient[0] * 2e-6) for found in (one, many)]
     assert len(each.variables) == LEAVES
@@ -89,7 +89,7 @@ def test_single_errors_average_out_and_common_ones_do_not(guide):
 
 
 def test_common_and_single_errors_of_one_number_add_up(guide):
-    both = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "links.l0.thickness", uniform = "5 um" }')
+    both = guide('[scatter]\na = { address = "leaf.thickness", normal = "2 um" }\nb = { address = "links.l0.thickness", uniform = "5 um" }')
     values = np.array([1e-6, 3e-6])
     changed = both.mechanism_for(values)
     assert get(changed, "links.l0.thickness") == pytest.approx(0.504e-3, rel=1e-12)
@@ -102,12 +102,12 @@ def test_first_order_holds_for_small_scatter():
 format = "flexstage study 1"
 case = "parallelogram"
 responses = { k = "stiffness.rz", f = "frequency.2", m = "mass", s = "safety" }
-tolerance = { copies = 256, require = false, crosstalk = false }
+tolerance = { copies = 256, requirements = false, crosstalk = false }
 [scatter]
-wire = { of = "hinges.thickness", normal = "0.2 um" }
-hinge = { of = "hinges.thickness", uniform = "0.2 um", each = true }
-place = { of = "units.shift", normal = "2 um" }
-steel = { of = "materials", normal = "0.02 %" }
+wire = { address = "hinges.thickness", normal = "0.2 um" }
+hinge = { address = "hinges.thickness", uniform = "0.2 um", independent = true }
+placements = { address = "units.shift", normal = "2 um" }
+steel = { address = "materials", normal = "0.02 %" }
 """.replace('"materials"', '["materials.young", "materials.steel.young"]')
     )
     slope = slopes(study)
@@ -132,8 +132,8 @@ def test_the_yield_of_a_linear_response_is_that_of_its_distribution():
 format = "flexstage study 1"
 case = "parallelogram"
 limits.mass = "at most {} kg"
-scatter.density = {{ of = "materials.aluminium.density", normal = "2 %" }}
-tolerance = {{ copies = 2000, require = false, crosstalk = false }}
+scatter.density = {{ address = "materials.aluminium.density", normal = "2 %" }}
+tolerance = {{ copies = 2000, requirements = false, crosstalk = false }}
 """
     nominal = float(slopes(loads_tolerance(text.format(1.0))).values[0])
     study = loads_tolerance(text.format(nominal * 1.02))
@@ -159,7 +159,7 @@ def test_the_usual_crosstalk_of_normal_errors_is_that_of_nineteen_in_twenty_copi
 format = "flexstage study 1"
 case = "double-triangle"
 tolerance = {{ copies = {copies} }}
-scatter.hole = {{ of = "parts.neck.thickness", normal = "1 um" }}
+scatter.hole = {{ address = "parts.neck.thickness", normal = "1 um" }}
 """
     )
     own = [float(name.split(".")[1:2] == name.split(".")[2:3]) for name in study.columns]
@@ -181,7 +181,8 @@ scatter.hole = {{ of = "parts.neck.thickness", normal = "1 um" }}
 def test_contributions_are_shares_of_the_variance(guide):
     """k ~ E t^3: deviations of 6 % of E and 1 % of t have variances 36 : 9, by derivatives and by copies that scatter in one alone."""
     study = guide(
-        '[scatter]\nsteel = { of = "materials.steel.young", normal = "6 %" }\nwire = { of = "leaf.thickness", normal = "1 %" }', copies=512
+        '[scatter]\nsteel = { address = "materials.steel.young", normal = "6 %" }\nwire = { address = "leaf.thickness", normal = "1 %" }',
+        copies=512,
     )
     slope, results = slopes(study), told(study)
     found = summary(study, results, slope).spread
@@ -196,7 +197,7 @@ def test_contributions_are_shares_of_the_variance(guide):
 def test_the_reach_of_a_response_is_its_one_sided_quantile(guide, entry, reach, by_slope):
     """k ~ t^3 of nine copies in ten falls no further: from the sample where it is not linear in t, else by the deviations' distribution."""
     limit = 'limits."stiffness.x" = "at least 1 N/mm"\n'
-    study = guide(f'{limit}scatter.wire = {{ of = "leaf.thickness", {entry} }}', copies=1024, wishes=', yield = "90 %"')
+    study = guide(f'{limit}scatter.wire = {{ address = "leaf.thickness", {entry} }}', copies=1024, wishes=', yield = "90 %"')
     slope, results = slopes(study), told(study)
     found = allowance(study, results, slope, summary(study, results, slope))
     assert found.by_slope.tolist() == [by_slope]
@@ -206,7 +207,8 @@ def test_the_reach_of_a_response_is_its_one_sided_quantile(guide, entry, reach, 
 def test_what_is_allowed_keeps_what_is_wanted(guide):
     study = guide(
         'limits."stiffness.x" = "at least 4.5 N/mm"\n[scatter]\n'
-        'wire = { of = "leaf.thickness", normal = "4 um" }\nhinge = { of = "leaf.thickness", normal = "8 um", each = true }',
+        'wire = { address = "leaf.thickness", normal = "4 um" }\n'
+        'hinge = { address = "leaf.thickness", normal = "8 um", independent = true }',
         copies=600,
         sampling="monte carlo",
         wishes=', yield = "90 %"',
@@ -227,7 +229,9 @@ def test_what_is_allowed_keeps_what_is_wanted(guide):
 
 def test_copies_do_not_depend_on_how_they_are_cut(guide):
     for sampling in ("monte carlo", "latin hypercube", "sobol"):
-        study = guide('[scatter]\na = { of = "leaf.thickness", normal = "2 um" }\nb = { of = "leaf.width", uniform = "1 %" }', 64, sampling)
+        study = guide(
+            '[scatter]\na = { address = "leaf.thickness", normal = "2 um" }\nb = { address = "leaf.width", uniform = "1 %" }', 64, sampling
+        )
         whole = study.sample(0, study.plan.designs)
         edges = [0, 5, 64, 70, 97, study.plan.designs]
         np.testing.assert_array_equal(np.concatenate([study.sample(*pair) for pair in pairwise(edges)]), whole)
@@ -241,8 +245,8 @@ def test_copies_of_a_symmetric_stage_scatter_alike_and_competing_ones_have_no_de
 format = "flexstage study 1"
 case = "double-triangle"
 responses = { a = "loss.B4", b = "loss.B5", c = "loss.B6", worst = "loss", f = "frequency.platform.1" }
-tolerance = { copies = 16, require = false, crosstalk = false }
-scatter.pivot = { of = "vertical/pivot.thickness", normal = "5 um", each = true }
+tolerance = { copies = 16, requirements = false, crosstalk = false }
+scatter.pivot = { address = "vertical/pivot.thickness", normal = "5 um", independent = true }
 """)
     found = slopes(study)
     sizes = np.linalg.norm(found.gradient, axis=1)
@@ -322,7 +326,7 @@ def test_the_ends_of_an_interval_leave_a_fortieth_on_either_side(kept, copies):
 
 def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
     study = guide(
-        'limits."stiffness.x" = "at least 1 N/mm"\nscatter.wire = { of = "leaf.thickness", normal = "5 %" }',
+        'limits."stiffness.x" = "at least 1 N/mm"\nscatter.wire = { address = "leaf.thickness", normal = "5 %" }',
         copies=32,
         sampling="monte carlo",
     )
@@ -338,21 +342,21 @@ def test_copies_that_fail_are_kept_and_count_against_the_yield(guide):
 
 
 BAD = {
-    'w = { of = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
-    'w = { of = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
-    'w = { of = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
-    'w = { of = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
-    'w = { of = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard deviations)",
-    'w = { of = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
-    'v = { of = "leaf.thickness", uniform = "60 %" }\nw = { of = "hinges.thickness", uniform = "60 %" }': "deviations reach 0.6 mm: it",
-    'w = { of = "leaf.thickness" }': "it is not said how far it deviates",
-    'w = { of = "leaf.thickness", normal = "1 um", uniform = "1 um" }': "it is both normal and uniform",
-    'w = { of = "leaf.thickness", normal = "1 mrad" }': "mrad",
-    'w = { of = "materials.steel.young", normal = "1 %", each = true }': "materials.steel.young is one number, and has no copies",
-    'w = { of = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
-    'w = { of = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
-    'w = { of = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
-    'w = { of = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
+    'w = { address = "hinge.thickness", normal = "1 um" }': 'there is no "hinge". The nearest name is hinges.',
+    'w = { address = "leaf.thicknes", normal = "1 um" }': "The nearest name is thickness",
+    'w = { address = "leaf.thickness", normal = "-1 um" }': "Give a deviation above 0",
+    'w = { address = "leaf.thickness", normal = "0 um" }': "Give a deviation above 0",
+    'w = { address = "leaf.thickness", normal = "0.2 mm" }': "parts.leaf.thickness is 0.5 mm, and deviations reach 1 mm (5 standard",
+    'w = { address = "leaf.thickness", uniform = "120 %" }': "it would be -0.1 mm, and is to be greater than 0",
+    'v = { address = "leaf.thickness", uniform = "60 %" }\nw = { address = "hinges.thickness", uniform = "60 %" }': "reach 0.6 mm: it",
+    'w = { address = "leaf.thickness" }': "it is not said how far it deviates",
+    'w = { address = "leaf.thickness", normal = "1 um", uniform = "1 um" }': "it is both normal and uniform",
+    'w = { address = "leaf.thickness", normal = "1 mrad" }': "mrad",
+    'w = { address = "materials.steel.young", normal = "1 %", independent = true }': "is one number, and has no copies",
+    'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "they are of different quantities",
+    'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "this key is not known here",
+    'w = { address = "stacks.stroke", normal = "1 %" }': "the design has none of this kind",
+    'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
 }
 
 
@@ -366,7 +370,7 @@ def test_entries_that_cannot_be(guide, line):
 def test_sections_that_cannot_be(guide):
     for text, said in {
         "": "nothing scatters",
-        'scatter.w = { of = "leaf.thickness", normal = "1 um" }\nlimits."stifness.x" = "at least 1 N/m"': "stiffness.x",
+        'scatter.w = { address = "leaf.thickness", normal = "1 um" }\nlimits."stifness.x" = "at least 1 N/m"': "stiffness.x",
     }.items():
         with pytest.raises(DesignError) as caught:
             guide(text)
@@ -379,7 +383,7 @@ def test_sections_that_cannot_be(guide):
 @pytest.mark.parametrize(("copies", "allowed"), [(64, 4.0 / np.sqrt(128.0)), (4096, 0.1)])
 def test_first_order_is_trusted_to_a_tenth_or_four_standard_errors(guide, copies, allowed):
     """A sample that deviates by just less than is allowed from what derivatives say keeps their trust, by just more loses it."""
-    study = guide('scatter.w = { of = "leaf.thickness", normal = "1 um" }\n', copies=copies)
+    study = guide('scatter.w = { address = "leaf.thickness", normal = "1 um" }\n', copies=copies)
     slope = slopes(study)
     linear = float(abs(slope.gradient[0, 0]) * study.deviations[0].deviation)
     shape = np.linspace(-1.0, 1.0, copies)[:, None]

@@ -62,7 +62,7 @@ def floating() -> Mechanism:
         bodies={"platform": Body(solids={"plate": plate}, points={"corner": (30 * mm, 25 * mm, 6 * mm)}), "frame": frame},
         links={MOUNT: Link(("ground", "frame"), "rod", (0.0, 5 * mm, -40 * mm), Z)},
         units={"lift": _unit()},
-        place={"B1-B3": Placement("lift", Polar(15 * mm, 20 * deg, Facing.TANGENT, 0.0))},
+        placements={"B1-B3": Placement("lift", Polar(15 * mm, 20 * deg, Facing.TANGENT, 0.0))},
         payloads={"mirror": Payload("platform", 0.05, (5 * mm, 0.0, 10 * mm), Inertia(1e-6, 2e-6, 3e-6))},
         sensors={"probe": GAUGE},
         gauges={"S": Probe("probe", "platform", Pose((10 * mm, 0.0, 0.0), along=Z, up=X), Positive.OPENS, base="frame")},

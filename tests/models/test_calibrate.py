@@ -52,7 +52,7 @@ def test_a_hinge_has_the_roots_that_its_link_has() -> None:
 
 
 def test_a_copy_that_departs_is_a_hinge_of_its_own() -> None:
-    stage = replace(double_triangle(), changes={"B2/front.thickness": 1.55e-3})
+    stage = replace(double_triangle(), overrides={"B2/front.thickness": 1.55e-3})
     assert "B2/front" in distinct_hinges(stage)
 
 
@@ -86,7 +86,7 @@ def test_calibrated_hinges_grow_and_lose_energy_as_the_drawn_ones(stage: fs.Mech
     np.testing.assert_allclose(moved[1], moved[0], atol=1e-4 * np.abs(moved[0]).max())  # six digits of the file, over lever arms
     assert not [each for each in defaults(after) if "loss factor" in each.what]
     bare = replace(
-        after, parts={name: replace(part, stands_for="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
+        after, parts={name: replace(part, replaces="") if isinstance(part, fs.Given) else part for name, part in after.parts.items()}
     )
     assert len([each for each in defaults(bare) if "loss factor" in each.what]) == len(calibrated_parts(bare))
 
@@ -188,7 +188,7 @@ def test_refusals() -> None:
         fs.solid.calibrate(once, softened(1.0))
     with pytest.raises(DesignError, match="leaf: its 6x6 by FEA is known to 30 % only"):
         fs.solid.calibrate(text, softened(1.0, error=0.3))
-    departing = replace(parallelogram(), changes={"B/front.thickness": 2.1e-3})
+    departing = replace(parallelogram(), overrides={"B/front.thickness": 2.1e-3})
     with pytest.raises(DesignError, match="B/front: departs from its part neck"):
         fs.solid.calibrate(fs.dumps(departing), softened(1.0))
 

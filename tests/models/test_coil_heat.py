@@ -11,7 +11,7 @@ from flexstage.mechanism.assembly.expand import expand
 
 def test_heat_is_that_of_the_simulated_current():
     stage = case("voice-coil-stage")
-    path = SineMotion(frequency=20.0, periods=2.0, by=Motion(x=50e-6))
+    path = SineMotion(frequency=20.0, periods=2.0, amplitude=Motion(x=50e-6))
     (run,) = loop_study(stage, LoopSetup(trajectory=path, controller=ControllerSetup(bandwidth=40.0))).runs
     assembly = expand(stage)
     for number, name in enumerate(assembly.thrusts):

@@ -115,7 +115,7 @@ def test_a_loop_designed_on_a_record_with_delay_is_the_one_of_the_truth() -> Non
 
 def test_the_inverse_of_what_a_test_found_is_that_of_the_truth() -> None:
     """A sine of 60 Hz below a bandwidth of 100 Hz: what is left of its error is the gauge's own lag, which is told with the motion."""
-    path, quiet = SineMotion(frequency=60.0, by=Motion(x=3e-6), periods=2), GaugeSetup(noise=0.0, resolution=0.0)
+    path, quiet = SineMotion(frequency=60.0, amplitude=Motion(x=3e-6), periods=2), GaugeSetup(noise=0.0, resolution=0.0)
     asked = LoopSetup(trajectory=path, gauges=quiet, controller=ControllerSetup(bandwidth=100.0), follow=FollowSetup(Following.INVERSE))
     given = on_test(resolve(parallelogram(), asked), recorded().found)
     control = make_controller(given, given.plant.coordinates.strokes)

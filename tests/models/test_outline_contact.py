@@ -81,7 +81,7 @@ def drilled_stage(seed: int) -> Mechanism:
     chance = np.random.default_rng([seed, 41])
     along = _direction(chance)
     angle = ((-0.015, -0.015), (0.02, -0.015), (0.02, -0.002), (0.0, 0.0), (0.0, 0.02), (-0.015, 0.02))
-    hole = Cylinder("steel", 0.009, 0.02, (-0.007, -0.007, 0.0), removes=True)
+    hole = Cylinder("steel", 0.009, 0.02, (-0.007, -0.007, 0.0), subtract=True)
     x, y, z = (float(value) for value in chance.uniform(-0.02, 0.02, size=3))
     u, v, w = (float(value) for value in chance.uniform(-0.003, 0.003, size=3))
     bodies = {
@@ -138,7 +138,7 @@ def test_random_clashes_are_those_of_cad() -> None:
 
 def test_a_pin_that_clears_its_hole_clashes_with_nothing() -> None:
     plate, pin = Block("steel", (0.06, 0.06, 0.01)), Cylinder("steel", 0.004, 0.04, (0.01, 0.0, 0.0))
-    hole = Cylinder("steel", 0.006, 0.02, (0.01, 0.0, 0.0), removes=True)
+    hole = Cylinder("steel", 0.006, 0.02, (0.01, 0.0, 0.0), subtract=True)
     for holes, clears in (({}, False), ({"hole": hole}, True), ({"hole": replace(hole, length=0.004)}, False)):
         drawn = replace(random_stage(0), links={}, bodies={"platform": Body(solids={"s": plate, **holes}), "a": Body(solids={"s": pin})})
         assert told(drawn) == (set() if clears else {frozenset(("platform.s", "a.s"))})

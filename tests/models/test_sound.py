@@ -57,10 +57,12 @@ def test_gaps_are_named_before_anything_is_meshed(reads: Reads, monkeypatch: pyt
 
 def test_a_unit_alone_is_the_same_whatever_the_others_are() -> None:
     stage = case("double-triangle")
-    changed = replace(stage, changes={"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm, "B1/front.thickness": 1.6 * mm})
+    changed = replace(
+        stage, overrides={"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm, "B1/front.thickness": 1.6 * mm}
+    )
     assert isolate(changed, "B2") == isolate(stage, "B2")
-    assert isolate(changed, "B1").changes == {"B1/front.thickness": 1.6 * mm}
-    assert isolate(changed, "B5").changes == {"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm}
+    assert isolate(changed, "B1").overrides == {"B1/front.thickness": 1.6 * mm}
+    assert isolate(changed, "B5").overrides == {"vertical/back.thickness": 0.9 * mm, "B5/pivot.thickness": 0.9 * mm}
 
 
 def test_a_sound_stage_is_checked_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

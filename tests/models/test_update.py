@@ -189,9 +189,9 @@ def test_slopes_are_those_of_differences_also_through_a_split_pair() -> None:
 def test_crossing_modes_stay_with_their_rows() -> None:
     """Yaw, above z, is brought below it by a smaller radius of the units that hold it."""
     rows = (ModeRow("z", (2,), (0,), 1.0, 0.0), ModeRow("yaw", (3,), (1,), 1.0, 0.0))
-    here, radius = start_design(STAGE, rows), get(STAGE, "place.B1-B3.pattern.radius")
+    here, radius = start_design(STAGE, rows), get(STAGE, "placements.B1-B3.pattern.radius")
     for share in np.linspace(0.98, 0.82, 9):
-        here = follow_modes(here, set_value(STAGE, "place.B1-B3.pattern.radius", share * radius))
+        here = follow_modes(here, set_value(STAGE, "placements.B1-B3.pattern.radius", share * radius))
     assert here.modes == ((3,), (2,))
     assert here.frequencies[1] < here.frequencies[0]
 
@@ -211,7 +211,7 @@ def test_the_new_file_keeps_comments_and_says_where_values_are_from() -> None:
     assert tag_of(stage, "vertical/front.thickness").startswith("derived update test 7.uff, ")
     assert tag_of(stage, "parts.neck.width") == tag_of(STAGE, "parts.neck.width")
     back = set_value(stage, NECK, get(STAGE, NECK))
-    back = replace(back, changes={}, tags=STAGE.tags)
+    back = replace(back, overrides={}, tags=STAGE.tags)
     assert back == STAGE
 
 

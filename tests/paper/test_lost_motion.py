@@ -131,7 +131,7 @@ def test_energy_is_half_the_force_of_each_stroke_times_the_stroke():
 
 def test_shares_of_redundant_strokes_add_up_to_their_loss():
     """Four strokes for three motions, one of a softer stack: with what they lose against one another the budget is whole."""
-    stage = replace(fs.case("tip-tilt-four"), changes={"P1/pzt.stiffness": 12.5e6})
+    stage = replace(fs.case("tip-tilt-four"), overrides={"P1/pzt.stiffness": 12.5e6})
     found = fs.lost_motion(fs.ideal(stage), fs.lumped(stage))
     assert np.max(np.abs(found.budget["internal stress"].values)) > 0.2
     np.testing.assert_allclose(sum(each.values for each in found.budget.values()), found.loss.values, atol=1e-12)

@@ -54,7 +54,7 @@ mass = "1 kg"
 [units.leg.links]
 front = { joins = ["ground", "platform"], part = "wire", at = ["1 mm", "0 mm", "0 mm"], along = "z" }  # upright
 
-[place]
+[placements]
 L1-L3 = { unit = "leg", polar = { radius = "50 mm", first = "0 deg", facing = "tangent" } }
 """
 """A small stage as a person writes it; it passes the checks."""
@@ -117,10 +117,10 @@ def mechanisms(draw: st.DrawFn) -> Mechanism:
     stage = draw(values(RecordNode(Mechanism)))
     gauges = {name: gauge for name, gauge in stage.gauges.items() if gauge != GaugeSum({})}  # a sum of nothing says nothing in a file
     stage = dataclasses.replace(
-        stage, gauges=gauges, changes={}, tags={}, place={}, packages=()
+        stage, gauges=gauges, overrides={}, tags={}, placements={}, packages=()
     )  # a package that is named has to be installed
     if stage.parts:
-        stage = _with_departures(draw, stage)
+        stage = _with_overrides(draw, stage)
     numbers = addresses(stage)
     for address in draw(st.lists(st.sampled_from(numbers), max_size=3, unique=True)) if numbers else []:
         stage = _with_formula(draw, stage, address)
@@ -139,21 +139,21 @@ def _with_formula(draw: st.DrawFn, stage: Mechanism, address: str) -> Mechanism:
         return stage
 
 
-def _with_departures(draw: st.DrawFn, stage: Mechanism) -> Mechanism:
+def _with_overrides(draw: st.DrawFn, stage: Mechanism) -> Mechanism:
     part = draw(st.sampled_from(sorted(stage.parts)))
     link = draw(values(RecordNode(Link)))
     link = dataclasses.replace(link, part=part, at=link.at or (0.0, 0.0, 0.0))
-    stage = dataclasses.replace(stage, units={"zz": Unit({}, {"link": link})}, place=draw(_placements()))
-    drawn = draw(st.lists(st.sampled_from(_departures(stage)), max_size=3, unique=True))
+    stage = dataclasses.replace(stage, units={"zz": Unit({}, {"link": link})}, placements=draw(_placements()))
+    drawn = draw(st.lists(st.sampled_from(_overrides(stage)), max_size=3, unique=True))
     wanted = [key for key in drawn if not any(key.startswith(f"{other}.") for other in drawn)]  # `at` beside `at.x` is refused
-    return dataclasses.replace(stage, changes=Table({key: draw(values(locate(stage, key).node)) for key in wanted}))
+    return dataclasses.replace(stage, overrides=Table({key: draw(values(locate(stage, key).node)) for key in wanted}))
 
 
 def _placements() -> st.SearchStrategy[Any]:
     return values(RecordNode(Placement)).map(lambda placement: {"Z1-Z2": dataclasses.replace(placement, unit="zz")})
 
 
-def _departures(stage: Mechanism) -> list[str]:
+def _overrides(stage: Mechanism) -> list[str]:
     """Addresses of numbers that may depart: those of the link's part, and its place, in all copies or in the second."""
     link = stage.units["zz"].links["link"]
     inside = f"parts.{link.part}."

@@ -72,14 +72,14 @@ limits = { mass = "at most 14 kg", "stroke.x" = "at least 1 um at corner" }
 """
 SWEEP = """sweep = { sampling = "latin hypercube", designs = 700, seed = 3 }
 [variables]
-young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %" }
-leaf = { of = ["parts.leaf.length", "parts.leaf.width"], from = "40 mm", to = "0.06 m", levels = 3 }
+young = { address = "materials.aluminium.young", from = "-10 %", to = "10 %" }
+leaf = { address = ["parts.leaf.length", "parts.leaf.width"], from = "40 mm", to = "0.06 m", levels = 3 }
 """
 OPTIMISE = SWEEP.partition("\n")[2] + '[optimise]\nmaximise = "f"\nstarts = 2\nseed = 1\n'
-TOLERANCE = """tolerance = { copies = 64, require = false, crosstalk = false, yield = "90 %" }
+TOLERANCE = """tolerance = { copies = 64, requirements = false, crosstalk = false, yield = "90 %" }
 [scatter]
-wire = { of = "parts.leaf.thickness", normal = "5 um" }
-wear = { of = "links.left.thickness", uniform = "5 um" }
+wire = { address = "parts.leaf.thickness", normal = "5 um" }
+wear = { address = "links.left.thickness", uniform = "5 um" }
 """
 _ALL = frozenset(Allow)
 SETUP = """format = "flexstage loop 1"

@@ -13,14 +13,14 @@ STRANGE = (
     '"1 mm"', '"-1 mm"', '"0 mm"', '"1e308 m"', '"1e-320 m"', '"1e400 m"', '"1 deg"', '"1 %"', '"1 K"', '"20 degC"', '"1 N m/rad"',
     '"1 m^9"', '"1 (("', '"1 1"', '"ground"', '"platform"', '"x"', '"-z"', '"tags"', '"like"', '"PSt 1000/10/150 VS18"', '"neck"',
     '"piezo"', '"restricted"', '"\\u0000"', '"\\U0010FFFF"', "2026-11-20", "12:00:00", '["1 mm"]', '["1 mm", "1 mm", "1 mm"]',
-    "[0, 0, 0]", "[1, 2, 3]", "[nan, 0, 0]", '{ x = "1 mm" }', '{ kind = "given" }', '{ like = "C36" }', "{ polar = {} }",
+    "[0, 0, 0]", "[1, 2, 3]", "[nan, 0, 0]", '{ x = "1 mm" }', '{ kind = "compliance_matrix" }', '{ like = "C36" }', "{ polar = {} }",
     "{ tags = 1 }", '["ground", "ground"]', "'''\n'''", "# comment", "\\", '"',
 )  # fmt: skip
 """Values that stand where others are expected."""
 
 KEYS = (
-    "tags", "like", "kind", "shape", "at", "x", "free", "part", "polar", "pose", "change", "require", "format", "name", "B1-B3", "B3-B1",
-    "B1-B999999999", '"B2/front.thickness"', '"horizontal/front.at.x"', '"parts.neck"', '"/"', '""', "a.b.c", "материал", "ground",
+    "tags", "like", "kind", "shape", "at", "x", "free", "part", "polar", "pose", "overrides", "requirements", "format", "name", "B1-B3",
+    "B3-B1", "B1-B999999999", '"B2/front.thickness"', '"horizontal/front.at.x"', '"parts.neck"', '"/"', '""', "a.b.c", "материал", "ground",
     "platform", "bends", "along", "1",
 )  # fmt: skip
 SIGNS = "\"'[]{}=.,#\\\n\t -+_/^%()0123456789eEmNxyzµ°²\x00\x7f\u2028\ud800é\U0010ffff"

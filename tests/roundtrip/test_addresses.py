@@ -1,4 +1,4 @@
-"""One scheme of addresses: what is set is got, departures apply to the right copies, mistakes are told with their candidates."""
+"""One scheme of addresses: what is set is got, overrides apply to the right copies, mistakes are told with their candidates."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def stage() -> Mechanism:
         bodies={"platform": Body(solids={"plate": Block("steel", (0.3, 0.2, 0.02))})},
         links={"strut": Link(("ground", "platform"), "wire", (0.0, 0.0, -0.02), Z)},
         units={"leg": unit},
-        place={"L1-L3": Placement("leg", Polar(radius=0.08, first=0.0, facing=Facing.TANGENT))},
+        placements={"L1-L3": Placement("leg", Polar(radius=0.08, first=0.0, facing=Facing.TANGENT))},
         sensors={"gap": Gauge(range=1e-4)},
         gauges={"S1": Probe("gap", "platform", Pose(), Positive.OPENS)},
         tags={"parts.neck.thickness": "stated paper 2.2", "units.leg.links.front.at": "derived fit"},
@@ -70,8 +70,8 @@ def stage() -> Mechanism:
         ("strut.length", "links.strut.length"),
         ("links.strut.length", "links.strut.length"),
         ("strut.at.z", "links.strut.at.z"),
-        ("place.L1-L3.radius", "place.L1-L3.pattern.radius"),
-        ("place.L1-L3.polar.radius", "place.L1-L3.pattern.radius"),
+        ("placements.L1-L3.radius", "placements.L1-L3.pattern.radius"),
+        ("placements.L1-L3.polar.radius", "placements.L1-L3.pattern.radius"),
         ("platform.plate.size.y", "bodies.platform.solids.plate.size.y"),
         ("pivot.compliance.x.ry", "parts.pivot.compliance.x.ry"),
     ],
@@ -89,32 +89,32 @@ def test_every_number_has_an_address_that_sets_it() -> None:
         assert addresses(changed) == addresses(stage())
 
 
-def test_departures_of_all_copies_and_of_one() -> None:
+def test_overrides_of_all_copies_and_of_one() -> None:
     changed = assign(assign(stage(), "leg/front.thickness=1.4mm"), "L2/front.thickness = 1.45 mm")
-    assert dict(changed.changes) == {"leg/front.thickness": 1.4e-3, "L2/front.thickness": 1.45e-3}
+    assert dict(changed.overrides) == {"leg/front.thickness": 1.4e-3, "L2/front.thickness": 1.45e-3}
     links = expand(changed).links
     assert [links[f"{copy}/front"].part.thickness for copy in ("L1", "L2", "L3")] == [1.4e-3, 1.45e-3, 1.4e-3]
     assert [links[f"{copy}/back"].part.thickness for copy in ("L1", "L2", "L3")] == [1.5e-3] * 3
     assert get(changed, "parts.neck.thickness") == 1.5e-3
 
 
-def test_a_departure_of_all_copies_does_not_undo_that_of_one() -> None:
+def test_an_override_of_all_copies_does_not_undo_that_of_one() -> None:
     changed = assign(assign(stage(), "L2/front.thickness=1.45 mm"), "leg/front.thickness=1.4 mm")
     assert expand(changed).links["L2/front"].part.thickness == 1.45e-3
 
 
-def test_departures_within_a_vector_are_merged() -> None:
+def test_overrides_within_a_vector_are_merged() -> None:
     moved = set_value(stage(), "L2/front.at", (0.01, 0.02, 0.03))
     moved = assign(moved, "L2/front.at.y=5 mm")
-    assert dict(moved.changes) == {"L2/front.at": (0.01, 0.005, 0.03)}
-    assert dict(set_value(assign(stage(), "L2/front.at.y=5 mm"), "L2/front.at", (0.0, 0.0, 0.0)).changes) == {
+    assert dict(moved.overrides) == {"L2/front.at": (0.01, 0.005, 0.03)}
+    assert dict(set_value(assign(stage(), "L2/front.at.y=5 mm"), "L2/front.at", (0.0, 0.0, 0.0)).overrides) == {
         "L2/front.at": (0.0, 0.0, 0.0)
     }
 
 
-def test_a_departure_in_the_stages_own_link() -> None:
+def test_an_override_in_the_stages_own_link() -> None:
     changed = assign(stage(), "strut.length=40 mm")
-    assert dict(changed.changes) == {"links.strut.length": 0.04}
+    assert dict(changed.overrides) == {"links.strut.length": 0.04}
     assert expand(changed).links["strut"].part.length == 0.04
 
 
@@ -162,8 +162,8 @@ def test_tags_follow_the_value() -> None:
         ("parts.nek.thickness", ['"nek"', "neck"]),
         ("parts.neck.thicknes", ["thickness"]),
         ("leg/front.at.w", ["x, y, z"]),
-        ("leg/front.joins", ["no departures"]),
-        ("leg/front", ["no departures"]),
+        ("leg/front.joins", ["no overrides"]),
+        ("leg/front", ["no overrides"]),
         ("bodies.platform.inertia.xx", ["not given"]),
         ("tags.parts.neck.thickness", ["no values"]),
         ("", ["there is no"]),

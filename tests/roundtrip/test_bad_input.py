@@ -85,11 +85,11 @@ def polygon(*corners: str) -> str:
         ('"platform"]', '"plattform"]', ["units.leg.links.front.joins", '"plattform"', "platform"]),
         ('"ground", "platform"', '"platform", "platform"', ["joins", 'both ends join "platform"']),
         ('material = "steel"', 'material = "steal"', ["parts.wire.material", '"steal"', "steel"]),
-        ('unit = "leg"', 'unit = "legs"', ["place.L1-L3.unit", '"legs"', "leg"]),
-        ("L1-L3 =", "L3-L1 =", ["place.L3-L1", "3", "1", "rising"]),
-        ("L1-L3 =", "L1-L9000 =", ["place.L1-L9000", "9000 copies", "360"]),
-        ("L1-L3 =", "L1-L99999999999999999999 =", ["place.L1-L9999", "too many digits"]),
-        ("L1-L3 =", '"L 1" =', ["place", '"L 1"', "no legal name"]),
+        ('unit = "leg"', 'unit = "legs"', ["placements.L1-L3.unit", '"legs"', "leg"]),
+        ("L1-L3 =", "L3-L1 =", ["placements.L3-L1", "3", "1", "rising"]),
+        ("L1-L3 =", "L1-L9000 =", ["placements.L1-L9000", "9000 copies", "360"]),
+        ("L1-L3 =", "L1-L99999999999999999999 =", ["placements.L1-L9999", "too many digits"]),
+        ("L1-L3 =", '"L 1" =', ["placements", '"L 1"', "no legal name"]),
         ('name = "wire"', "", ["no name", 'name = "a name"']),
         ("[bodies.platform]", "[bodies.plate]", ["bodies", 'no body "platform"']),
         # units and numbers
@@ -109,8 +109,8 @@ def polygon(*corners: str) -> str:
         ('"30 mm"', '"1e-300 mm"', ["parts.wire.length", "1e-300 mm", "nothing that is made", "exponent"]),
         ('along = "z"', "along = [0, 0, 1e-200]", ["along", "of length 1e-200"]),
         ('along = "z"', "along = [0, 0, 1e200]", ["along", "of length 1e+200"]),
-        ('"0 deg"', '"0"', ["place.L1-L3.polar.first", "without a unit", "deg"]),
-        ('"0 deg"', '"0 mm"', ["place.L1-L3.polar.first", "a length", "an angle"]),
+        ('"0 deg"', '"0"', ["placements.L1-L3.polar.first", "without a unit", "deg"]),
+        ('"0 deg"', '"0 mm"', ["placements.L1-L3.polar.first", "a length", "an angle"]),
         ('facing = "tangent"', 'facing = "tangential"', ["polar.facing", '"tangential"', "tangent, outward"]),
         ('along = "z"', 'along = "up"', ["along", '"up"', "-z"]),
         ('along = "z"', "along = [0, 0, 0]", ["units.leg.links.front.along", "zero"]),
@@ -131,10 +131,10 @@ def polygon(*corners: str) -> str:
         ('name = "wire"', 'name = "wire', ["line 3, column", "not TOML"]),
         ('mass = "1 kg"', 'mass = "1 kg"\nmass = "2 kg"', ["line 20", "stands twice"]),
         ("[bodies.platform]", "[parts.wire]\n[bodies.platform]", ["line 18", "stands twice"]),
-        ("[place]", "x = " + "[" * 2000 + "]" * 2000 + "\n[place]", ["characters", "4000"]),
-        ("[place]", "x = " + "[" * 1500 + "]" * 1500 + "\n[place]", ["nests too deeply"]),
-        ("[place]", "x = " + "9" * 3990 + "\n[place]", ["links.x", "more than 64 bits"]),
-        ("[place]", "[links]\na.b.c.d = 1\n[place]", ["links.a", "not known"]),
+        ("[placements]", "x = " + "[" * 2000 + "]" * 2000 + "\n[placements]", ["characters", "4000"]),
+        ("[placements]", "x = " + "[" * 1500 + "]" * 1500 + "\n[placements]", ["nests too deeply"]),
+        ("[placements]", "x = " + "9" * 3990 + "\n[placements]", ["links.x", "more than 64 bits"]),
+        ("[placements]", "[links]\na.b.c.d = 1\n[placements]", ["links.a", "not known"]),
         # outlines
         ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "2 corners", "three"]),
         ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "meet"]),
@@ -155,22 +155,22 @@ def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, wor
         ('"L4/front.diameter" = "1 mm"', ['"L4"', "L1"]),
         ('"leg/front.diameter" = "1 kg"', ["a mass", "a length"]),
         ('"leg/front.diameter" = "-1 mm"', ["-1 mm", "greater than 0"]),
-        ('"leg/front.part" = "wire"', ["no departures"]),
-        ('"parts.wire.length" = "1 mm"', ["no departure of a link"]),
+        ('"leg/front.part" = "wire"', ["no overrides"]),
+        ('"parts.wire.length" = "1 mm"', ["no override of a link"]),
         ('"leg/front.at" = ["1 mm", "2 mm"]', ["2 values", "3 values"]),
         ('"leg/front.at" = ["1 mm", "2 mm", "3 mm"]\n"leg/front.at.x" = "1 mm"', ["departs in the same"]),
         ('tags = "stated"', ["no address"]),
     ],
 )
-def test_departures_are_checked_like_the_rest(text: str, words: list[str]) -> None:
-    lines = told(f"{TEXT}\n[change]\n{text}\n")
-    assert any(re.match(r"stage\.toml: line 2[6-9]: change", line) and all(word in line for word in words) for line in lines), lines
+def test_overrides_are_checked_like_the_rest(text: str, words: list[str]) -> None:
+    lines = told(f"{TEXT}\n[overrides]\n{text}\n")
+    assert any(re.match(r"stage\.toml: line 2[6-9]: overrides", line) and all(word in line for word in words) for line in lines), lines
 
 
 def test_everything_wrong_is_told_at_once() -> None:
     text = TEXT.replace('"30 mm"', "30").replace('"1 mm"\n', '"1 kg"\n').replace('"0 deg"', '"0"').replace("mass =", "mas =")
     where = [tuple(line.split(": ")[1:3]) for line in told(text)]
-    numbers = {"parts.wire.length": 14, "parts.wire.diameter": 15, "bodies.platform.mas": 19, "place.L1-L3.polar.first": 25}
+    numbers = {"parts.wire.length": 14, "parts.wire.diameter": 15, "bodies.platform.mas": 19, "placements.L1-L3.polar.first": 25}
     assert where == [(f"line {number}", address) for address, number in numbers.items()]
 
 
@@ -317,7 +317,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["payloads.chuck.inertia", "0, 0, 1"],
         ),
         (dataclasses.replace(STAGE, payloads={"chuck": Payload("platfrom", 1.0, O)}), ["payloads.chuck.body", '"platfrom"', "platform"]),
-        (dataclasses.replace(STAGE, place={}), ["platform", "no chain of links"]),
+        (dataclasses.replace(STAGE, placements={}), ["platform", "no chain of links"]),
         (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "loose": Body(mass=1.0)}), ["loose", "no chain of links"]),
         (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "ground": Body()}), ["bodies.ground", "implied"]),
         (
@@ -325,32 +325,32 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["pzt", "ground and tip", "no path between ground and platform"],
         ),
         (
-            dataclasses.replace(STAGE, place={**STAGE.place, "L2": Placement("leg", Pose())}),
-            ["place.L2", "L1-L3, L2 name it 2 times"],
+            dataclasses.replace(STAGE, placements={**STAGE.placements, "L2": Placement("leg", Pose())}),
+            ["placements.L2", "L1-L3, L2 name it 2 times"],
         ),
         (
-            dataclasses.replace(STAGE, place={"leg": Placement("leg", Pose())}),
-            ["place.leg", "a unit and a copy have this name"],
+            dataclasses.replace(STAGE, placements={"leg": Placement("leg", Pose())}),
+            ["placements.leg", "a unit and a copy have this name"],
         ),
         (
             dataclasses.replace(STAGE, links={"L2": Link(("ground", "platform"), "wire", O, X)}),
-            ["place.L2", "a link and a copy have this name"],
+            ["placements.L2", "a link and a copy have this name"],
         ),
         (
-            dataclasses.replace(STAGE, place={"L": Placement("leg", Pose(along=X, up=X))}),
-            ["place.L.pose.up", "0 deg to along"],
+            dataclasses.replace(STAGE, placements={"L": Placement("leg", Pose(along=X, up=X))}),
+            ["placements.L.pose.up", "0 deg to along"],
         ),
         (
             dataclasses.replace(STAGE, units={"leg": dataclasses.replace(UNIT, bodies={"platform": Body()})}),
             ["units.leg.bodies.platform", "the stage itself has a body"],
         ),
         (
-            dataclasses.replace(STAGE, place={"L" * 70: Placement("leg", Polar(0.1, 0.0, Facing.AXIS))}),
-            ["place.LLL", "70 characters"],
+            dataclasses.replace(STAGE, placements={"L" * 70: Placement("leg", Polar(0.1, 0.0, Facing.AXIS))}),
+            ["placements.LLL", "70 characters"],
         ),
-        (dataclasses.replace(STAGE, changes={"L2/front.diameter": -0.001}), ['change."L2/front.diameter"', "-1 mm"]),
-        (dataclasses.replace(STAGE, changes={"L2/front.diameter": "1 mm"}), ['change."L2/front.diameter"', "'1 mm'", "a length"]),
-        (dataclasses.replace(STAGE, changes={"L9/front.diameter": 0.001}), ['change."L9/front.diameter"', '"L9"']),
+        (dataclasses.replace(STAGE, overrides={"L2/front.diameter": -0.001}), ['overrides."L2/front.diameter"', "-1 mm"]),
+        (dataclasses.replace(STAGE, overrides={"L2/front.diameter": "1 mm"}), ['overrides."L2/front.diameter"', "'1 mm'", "a length"]),
+        (dataclasses.replace(STAGE, overrides={"L9/front.diameter": 0.001}), ['overrides."L9/front.diameter"', '"L9"']),
         (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "points nowhere"]),
         (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["stated by no source", "paper"]),
         (dataclasses.replace(STAGE, materials={"steel": dataclasses.replace(STEEL, poisson=0.5)}), ["poisson", "0.5", "less than 0.5"]),
@@ -375,7 +375,7 @@ def test_each_fault_of_a_description_is_told(mechanism: Mechanism, words: list[s
         body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 2.0))),
         body(Body()),
         part(Notch("steel", np.array([0.001, 0.002]), np.array([[0.01], [0.03]]), Circular(1.0))),
-        dataclasses.replace(STAGE, changes={"L2/front.diameter": np.array([0.001, 0.002])}),
+        dataclasses.replace(STAGE, overrides={"L2/front.diameter": np.array([0.001, 0.002])}),
     ],
 )
 def test_what_is_sound_is_let_through(mechanism: Mechanism) -> None:
@@ -384,7 +384,7 @@ def test_what_is_sound_is_let_through(mechanism: Mechanism) -> None:
 
 def test_a_departed_part_is_checked_too() -> None:
     notched = linked(Notch("steel", 0.001, 0.01, Circular(0.005)), bends=Z)
-    lines = [str(finding) for finding in check(dataclasses.replace(notched, changes={"links.l.thickness": 0.02}))]
+    lines = [str(finding) for finding in check(dataclasses.replace(notched, overrides={"links.l.thickness": 0.02}))]
     assert any("links.l.thickness" in line and "20 mm" in line for line in lines), lines
 
 

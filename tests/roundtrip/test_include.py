@@ -79,7 +79,7 @@ def test_values_of_included_entries_are_changed_in_the_design(folder: Path) -> N
     stage = load(path)
     assert (stage.parts["wire"].length, stage.parts["wire"].diameter) == (30 * 0.0012, 0.0011)
     assert (tag_of(stage, "wire.length"), tag_of(stage, "wire.diameter")) == ("assumed", "derived test")
-    assert not stage.changes
+    assert not stage.overrides
     assert load(dump(stage, folder / "elsewhere.toml")) == stage
 
 
@@ -96,7 +96,7 @@ def test_a_library_may_include_another(folder: Path) -> None:
         (STOCK, STAGE.replace("lib/", "lib2/"), ["include", "lib2/stock.toml", "no such file"]),
         (STOCK, STAGE.replace("lib/stock", "stage"), ["include", "stage.toml is this file itself"]),
         (STOCK, STAGE.replace('["lib/stock.toml"]', "3"), ["include", "a list of files"]),
-        (STOCK, STAGE + '[parts.wire]\nkind = "rod"\n', ["include", "parts.wire stands in lib/stock.toml and in this file", "[change]"]),
+        (STOCK, STAGE + '[parts.wire]\nkind = "rod"\n', ["include", "parts.wire stands in lib/stock.toml and in this file", "[overrides]"]),
         (STOCK.replace("flexstage 1", "flexstage study 1"), STAGE, ["lib/stock.toml: line 1: format", "flexstage study 1"]),
         (
             STOCK.replace('"our stock"', '"our stock"\ninclude = ["../stage.toml"]'),
@@ -107,8 +107,8 @@ def test_a_library_may_include_another(folder: Path) -> None:
         (STOCK.replace('"30*wire_size"', '"30 N"'), STAGE, ["lib/stock.toml: line 13: parts.wire.length", "a force"]),
         (STOCK.replace('"1 mm"', '"1 ell"'), STAGE, ["lib/stock.toml: line 5: numbers.wire_size", "ell"]),
         (STOCK.replace("name =", "name = ="), STAGE, ["lib/stock.toml", "line 2", "not TOML"]),
-        (STOCK, STAGE + '[change]\n"parts.wire.length" = "3 N"\n', ['change."parts.wire.length"', "a force"]),
-        (STOCK, STAGE + '[change]\n"parts.wire.lenght" = "3 mm"\n', ['change."parts.wire.lenght"', "length"]),
+        (STOCK, STAGE + '[overrides]\n"parts.wire.length" = "3 N"\n', ['overrides."parts.wire.length"', "a force"]),
+        (STOCK, STAGE + '[overrides]\n"parts.wire.lenght" = "3 mm"\n', ['overrides."parts.wire.lenght"', "length"]),
     ],
 )
 def test_mistakes_name_the_file(folder: Path, stock: str, stage: str, words: list[str]) -> None:

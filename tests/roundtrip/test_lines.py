@@ -27,7 +27,7 @@ def test_every_number_of_a_stage_has_a_line_that_names_it():
         ("horizontal/front", "front = {"),
         ("vertical/pivot.thickness", "[units.vertical.links.pivot]"),
         ("B4/pivot", "[units.vertical.links.pivot]"),
-        ('require."stroke.x"', '"stroke.x"'),
+        ('requirements."stroke.x"', '"stroke.x"'),
         ('tags."materials.steel.yield_stress"', "yield_stress"),
     ],
 )

@@ -88,7 +88,7 @@ format = "{FORMAT}"
 [controller]
 integral = "300 1/s"
 [[controller.loops]]
-of = ["x", "y"]
+axes = ["x", "y"]
 proportional = 4.85
 notches = [{{ frequency = "103.5 Hz", depth = 0.0409, damping = 2.37 }}]
 prefilter = {{ frequency = "93 Hz", lead = "208 Hz" }}
@@ -149,12 +149,12 @@ def test_numbers_out_of_bounds_are_found() -> None:
         ('[controller]\nderivative = "1 ms"', "kind pi has none"),
         ('[controller]\nkind = "lqg"\nproportional = 1', "kind lqg does not have it"),
         ('[controller]\nkind = "none"\nbandwidth = "20 Hz"', "no loop to be tuned"),
-        ('[controller]\nloops = [{ of = ["x"], integral = "3 1/s" }, { of = ["z", "x"], integral = "3 1/s" }]', "x stands 2 times"),
-        ('[controller]\nloops = [{ of = [], integral = "3 1/s" }]', "nothing says of which loops"),
-        ('[controller]\nloops = [{ of = ["x"] }]', "loops are stated without gains"),
-        ('[controller]\nsensitivity = 2\nloops = [{ of = ["x"], integral = "3 1/s" }]', "asks for tuning, and integral is given"),
-        ('[controller]\nloops = [{ of = ["x"], derivative = "3 ms" }]', "kind pi has none"),
-        ('[controller]\nkind = "pid"\nloops = [{ of = ["x"], derivative = "3 ms" }]', "the derivative has no filter"),
+        ('[controller]\nloops = [{ axes = ["x"], integral = "3 1/s" }, { axes = ["z", "x"], integral = "3 1/s" }]', "x stands 2 times"),
+        ('[controller]\nloops = [{ axes = [], integral = "3 1/s" }]', "nothing says of which loops"),
+        ('[controller]\nloops = [{ axes = ["x"] }]', "loops are stated without gains"),
+        ('[controller]\nsensitivity = 2\nloops = [{ axes = ["x"], integral = "3 1/s" }]', "asks for tuning, and integral is given"),
+        ('[controller]\nloops = [{ axes = ["x"], derivative = "3 ms" }]', "kind pi has none"),
+        ('[controller]\nkind = "pid"\nloops = [{ axes = ["x"], derivative = "3 ms" }]', "the derivative has no filter"),
         ('[controller]\nprefilter = { frequency = "90 Hz" }', "there are no gains that it belongs to"),
         ('compensate = ["hysteresis"]', "the stacks have none"),
         ('compensate = ["load", "load"]', "stands 2 times"),

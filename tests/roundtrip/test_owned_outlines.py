@@ -36,7 +36,7 @@ def lent(end: str = "lug", owner: str = "platform", **body: object) -> Mechanism
         parts={"wire": Rod("steel", 40 * mm, 1 * mm)},
         bodies={"platform": PLATE},
         units={"leg": Unit({"lug": lug}, {"strut": strut})},
-        place={"L1-L3": Placement("leg", RING)},
+        placements={"L1-L3": Placement("leg", RING)},
     )
 
 

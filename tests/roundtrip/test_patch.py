@@ -44,18 +44,18 @@ def test_what_the_catalogue_gave_is_overridden_in_its_table() -> None:
     assert (read.materials["steel"].young, tag_of(read, "steel.young")) == (210e9, "assumed")
 
 
-def test_departures_are_listed_under_change() -> None:
+def test_overrides_are_listed_under_change() -> None:
     once = patch(TEXT, {"L2/front.diameter": "1.1 mm"})
     assert once.startswith(TEXT.rstrip())
-    assert '[change]\n"L2/front.diameter" = "1.1 mm"' in once
+    assert '[overrides]\n"L2/front.diameter" = "1.1 mm"' in once
     twice = patch(once, {"L2/front.diameter": "1.2 mm", "leg/front.length": "31 mm"})
-    assert dict(loads(twice).changes) == {"L2/front.diameter": 1.2e-3, "leg/front.length": 0.031}
+    assert dict(loads(twice).overrides) == {"L2/front.diameter": 1.2e-3, "leg/front.length": 0.031}
 
 
 def test_absent_values_are_added() -> None:
-    changed = patch(TEXT, {"mode_limit": "2 kHz", "gravity.z": "0 m/s^2", "place.L1-L3.height": "5 mm"})
+    changed = patch(TEXT, {"max_mode_frequency": "2 kHz", "gravity.z": "0 m/s^2", "placements.L1-L3.height": "5 mm"})
     read = loads(changed)
-    assert (read.mode_limit, read.gravity[2], get(read, "L1-L3.height")) == (2000.0, 0.0, 0.005)
+    assert (read.max_mode_frequency, read.gravity[2], get(read, "L1-L3.height")) == (2000.0, 0.0, 0.005)
 
 
 @pytest.mark.parametrize("name", ["double-triangle", "bridge"])
@@ -173,7 +173,7 @@ def test_assignments_in_percent(assignment: str, address: str, value: float) -> 
 
 
 @pytest.mark.parametrize(
-    ("assignment", "words"), [("leg/front.at.y=+10%", "it is 0"), ("numbers.arm=3 N", "a force"), ("mode_limit=-5%", "state it")]
+    ("assignment", "words"), [("leg/front.at.y=+10%", "it is 0"), ("numbers.arm=3 N", "a force"), ("max_mode_frequency=-5%", "state it")]
 )
 def test_assignments_that_are_refused(assignment: str, words: str) -> None:
     with pytest.raises(DesignError, match=words):

@@ -1,4 +1,4 @@
-"""`[require]` lines: every key is read, judged and told apart; what is misspelt is mended by advice."""
+"""`[requirements]` lines: every key is read, judged and told apart; what is misspelt is mended by advice."""
 
 from __future__ import annotations
 
@@ -99,13 +99,13 @@ def test_what_cannot_be_read_is_told(stage, key, text, told):
     with pytest.raises(fs.DesignError) as error:
         requirements(replace(stage, requirements={key: text}))
     assert told in str(error.value)
-    assert f"require.{key}" in str(error.value)
+    assert f"requirements.{key}" in str(error.value)
 
 
 def test_all_findings_are_told_at_once(stage):
     with pytest.raises(fs.DesignError) as error:
         judge(replace(stage, requirements={"safty": "at least 2", "mass": "at most 5 m", "stroke.z": "at least 150 um"}))
-    assert [finding.where for finding in error.value.findings] == ["require.safty", "require.mass"]
+    assert [finding.where for finding in error.value.findings] == ["requirements.safty", "requirements.mass"]
 
 
 def test_values_are_those_of_the_analyses(stage):

@@ -27,7 +27,7 @@ def test_every_kind_of_value_takes_a_tag(name: str) -> None:
         assert "# Steel of the shop." in after
 
 
-def test_departures_are_tagged_by_address() -> None:
+def test_overrides_are_tagged_by_address() -> None:
     stage = set_value(case("double-triangle"), "B2/front.thickness", 1.5e-3)
     after = set_tags(dumps(stage), {"B2/front.thickness": TAG, "parts.neck.thickness": TAG})
     assert f'"B2/front.thickness" = "{TAG}"' in after.partition("[tags]")[2]

@@ -173,14 +173,14 @@ parameters = { spacing = "52 mm" }
 responses = { f = "frequency.platform.1", m = "mass" }
 limits = { mass = "at most 14 kg" }
 sweep = { sampling = "latin hypercube", designs = 8, seed = 3, pairs = false }
-optimise = { maximise = ["f"], minimise = "m", starts = 2, pareto_points = 5, require = false }
-tolerance = { copies = 64, sampling = "sobol", yield = "90 %", require = false, crosstalk = false, point = "platform" }
+optimise = { maximise = ["f"], minimise = "m", starts = 2, pareto_points = 5, requirements = false }
+tolerance = { copies = 64, sampling = "sobol", yield = "90 %", requirements = false, crosstalk = false, point = "platform" }
 [variables]
-young = { of = "materials.aluminium.young", from = "-10 %", to = "10 %", logarithmic = true }
-leaf = { of = ["parts.leaf.width"], from = "40 mm", to = "0.06 m", levels = 3, step = "1 mm" }
+young = { address = "materials.aluminium.young", from = "-10 %", to = "10 %", logarithmic = true }
+leaf = { address = ["parts.leaf.width"], from = "40 mm", to = "0.06 m", levels = 3, step = "1 mm" }
 [scatter]
-wire = { of = "parts.leaf.thickness", normal = "5 um", within = "9 um", each = false }
-wear = { of = "links.left.thickness", uniform = "5 um" }
+wire = { address = "parts.leaf.thickness", normal = "5 um", within = "9 um", independent = false }
+wear = { address = "links.left.thickness", uniform = "5 um" }
 """
 """Every key that a study's file may have."""
 

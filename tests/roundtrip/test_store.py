@@ -55,10 +55,11 @@ def test_shipped_cases_survive_their_files_and_pass_the_checks(name: str, tmp_pa
     assert list(expand(read).actuators) == list(expand(mechanism).actuators)
 
 
-def test_a_formula_under_change_is_the_departures_not_the_units() -> None:
-    """The unit's own place stays; what the formula is worked out of moves the departure."""
+def test_a_formula_under_change_is_the_overrides_not_the_units() -> None:
+    """The unit's own place stays; what the formula is worked out of moves the override."""
     text = dumps(CASES["double-triangle"].build())
-    text = text.replace("\n[materials", '\n[numbers]\narm = "10 mm"\n\n[materials', 1) + '\n[change]\n"horizontal/front.at.x" = "2 * arm"\n'
+    text = text.replace("\n[materials", '\n[numbers]\narm = "10 mm"\n\n[materials', 1)
+    text += '\n[overrides]\n"horizontal/front.at.x" = "2 * arm"\n'
     stage = loads(text)
     assert dict(stage.formulas) == {"horizontal/front.at.x": "2 * arm"}
     assert loads(dumps(stage)) == stage
@@ -68,8 +69,8 @@ def test_a_formula_under_change_is_the_departures_not_the_units() -> None:
 
 
 def test_changes_that_are_no_table_are_told() -> None:
-    with pytest.raises(DesignError, match="change: found 5 where a table is expected"):
-        loads(f"{START}change = 5\n")
+    with pytest.raises(DesignError, match="overrides: found 5 where a table is expected"):
+        loads(f"{START}overrides = 5\n")
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -126,7 +127,7 @@ def test_a_compliance_has_units_by_block_and_bare_zeros() -> None:
         rows[index][index] = f'"2.5 {unit}"'
     rows[1][5], rows[5][1] = '"1e-7 m/(N m)"', '"0.1 urad/N"'
     matrix = ",\n".join(f"[{', '.join(row)}]" for row in rows)
-    part = loads(START + f'[parts.p]\nkind = "given"\nfree = ["rz"]\ncompliance = [\n{matrix}\n]\n', checked=False).parts["p"]
+    part = loads(START + f'[parts.p]\nkind = "compliance_matrix"\nfree = ["rz"]\ncompliance = [\n{matrix}\n]\n', checked=False).parts["p"]
     assert part.compliance[0][0] == part.compliance[3][3] == 2.5e-6
     assert part.compliance[1][5] == part.compliance[5][1] == 1e-7
 
@@ -156,16 +157,16 @@ def test_every_entry_of_the_catalogue_can_be_read_and_is_tagged_throughout() -> 
 
 def test_tags_stand_in_any_table() -> None:
     text = START + (
-        'tags = { mode_limit = "stated paper 1" }\nmode_limit = "1 kHz"\n'
+        'tags = { max_mode_frequency = "stated paper 1" }\nmode_limit = "1 kHz"\n'
         '[sources]\npaper = "a paper"\n'
         '[parts.wire]\nkind = "rod"\nmaterial = "steel"\nlength = "3 mm"\ndiameter = "1 mm"\ntags = { length = "stated paper 2" }\n'
         '[units.leg.links.front]\njoins = ["ground", "platform"]\npart = "wire"\nat = ["0 m", "0 m", "0 m"]\nalong = "x"\n'
         'tags = { "at.x" = "derived paper" }\n'
-        '[place.L]\nunit = "leg"\n'
+        '[placements.L]\nunit = "leg"\n'
         'polar = { radius = "1 mm", first = "0 deg", facing = "axis", tags = { radius = "stated paper 3" } }\n'
     )
     read = loads(text, checked=False)
-    told = [tag_of(read, address) for address in ("mode_limit", "wire.length", "leg/front.at.x", "leg/front.at.y", "L.radius")]
+    told = [tag_of(read, address) for address in ("max_mode_frequency", "wire.length", "leg/front.at.x", "leg/front.at.y", "L.radius")]
     assert told == ["stated paper 1", "stated paper 2", "derived paper", "assumed", "stated paper 3"]
     assert loads(dumps(read), checked=False) == read
 
@@ -174,7 +175,7 @@ def test_changes_are_read_as_what_they_address() -> None:
     stage = CASES["double-triangle"].build()
     changed = assign(assign(stage, "B2/front.thickness=1.55 mm"), "horizontal/front.along=-x")
     text = dumps(changed)
-    assert tomllib.loads(text)["change"] == {"B2/front.thickness": "1.55 mm"}
+    assert tomllib.loads(text)["overrides"] == {"B2/front.thickness": "1.55 mm"}
     assert loads(text) == changed
 
 

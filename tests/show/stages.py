@@ -51,7 +51,7 @@ def hostile() -> Mechanism:
     }
     bodies = {f"<b>{name}" if name != "platform" else name: body for name, body in stage.bodies.items()}
     links = {f"<i>$_{{{name}}}": replace(link, joins=tuple(_renamed(join) for join in link.joins)) for name, link in stage.links.items()}
-    return replace(stage, bodies=bodies, links=links, changes={}, requirements={}, **renamed)
+    return replace(stage, bodies=bodies, links=links, overrides={}, requirements={}, **renamed)
 
 
 def _renamed(body: str) -> str:

@@ -19,8 +19,8 @@ limits.mass = "at most 0.2 kg"
 limits."stiffness.x" = "at least 20 N/um"
 sweep.sampling = "{sampling}"
 [variables]
-leaf = {{ of = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm", levels = 4 }}
-young = {{ of = "materials.aluminium.young", from = "-10 %", to = "+10 %", levels = 4 }}
+leaf = {{ address = "parts.leaf.thickness", from = "0.8 mm", to = "1.2 mm", levels = 4 }}
+young = {{ address = "materials.aluminium.young", from = "-10 %", to = "+10 %", levels = 4 }}
 """
 
 

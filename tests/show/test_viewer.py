@@ -240,7 +240,7 @@ def test_a_stage_that_warms_moves_as_its_drift_says() -> None:
 
 def test_what_is_not_drawn_as_it_is_is_said() -> None:
     guide = fs.case("parallelogram")
-    hole = fs.Block("aluminium", (5e-3, 5e-3, 1.0), removes=True)
+    hole = fs.Block("aluminium", (5e-3, 5e-3, 1.0), subtract=True)
     platform = guide.bodies["platform"]
     pierced = replace(guide, bodies={**guide.bodies, "platform": replace(platform, solids={**platform.solids, "hole": hole})})
     assert still_data(guide).notes == ()

@@ -249,6 +249,6 @@ class Bench:
         """The box of all required strokes."""
         if not self.command:
             raise refuse(
-                "require", "no stroke is required, so there is no corner to reach", 'Add for example "stroke.x" = "at least 50 um"'
+                "requirements", "no stroke is required, so there is no corner to reach", 'Add for example "stroke.x" = "at least 50 um"'
             )
         return self.command

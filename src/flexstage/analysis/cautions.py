@@ -146,7 +146,7 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         holder = mechanism.materials[material] if material else inner
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
-            told[where] = "State the drawn part that it stands_for" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+            told[where] = "State the drawn part that it replaces" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
             told[f"parts.{item.link.part}"] = "State it: loss_factor = 0.002"

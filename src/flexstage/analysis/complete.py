@@ -222,5 +222,5 @@ def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit
     1000.0
     """
-    limit = mechanism.mode_limit
+    limit = mechanism.max_mode_frequency
     return modes(model, limit=np.inf if limit is None else float(np.max(limit)))

@@ -178,7 +178,7 @@ def _stated(part: Elastic, material: Material | None) -> Array | None:
 
 def _unknown(part: Part) -> DesignError:
     what = "its law by beam theory is not known: nobody offers one for this kind"
-    advice = f'Install the package that does ({LAWS.group}), or state its 6x6 (kind = "given")'
+    advice = f'Install the package that does ({LAWS.group}), or state its 6x6 (kind = "compliance_matrix")'
     return refuse(f"a part of kind {inner(part).kind}", what, advice)
 
 

@@ -14,7 +14,7 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.held import Held
 from flexstage.parts.material import Material
 
-_CALIBRATE = 'State a measured or computed 6x6 (kind = "given"), or count on a larger error than the one stated'
+_CALIBRATE = 'State a measured or computed 6x6 (kind = "compliance_matrix"), or count on a larger error than the one stated'
 
 
 @dataclass(frozen=True, eq=False)

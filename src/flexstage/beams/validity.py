@@ -67,7 +67,7 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
     return Finding(
         where,
         f"it is so wide that it bends in plane strain: {off}",
-        'Expect that stiffness, or state a measured or computed 6x6 (kind = "given")',
+        'Expect that stiffness, or state a measured or computed 6x6 (kind = "compliance_matrix")',
     )
 
 

@@ -52,7 +52,7 @@ def bridge(parameters: Bridge | None = None) -> Mechanism:
 
     Mobility 1 (y), R_a = da/dy = -tan(alpha): both halves of the rhombus give cot(alpha) times half a stroke.
 
-    >>> sorted(bridge().place)
+    >>> sorted(bridge().placements)
     ['LL', 'LR', 'UL', 'UR']
     """
     p = Bridge() if parameters is None else parameters
@@ -65,12 +65,12 @@ def bridge(parameters: Bridge | None = None) -> Mechanism:
         bodies={"platform": Body(solids={"block": Block("aluminium", p.size, (0.0, top, 0.0))}), "left": _end(p, -1), "right": _end(p, 1)},
         links={"pzt": Link(("left", "right"), "stack", (0.0, 0.0, 0.0), X), **_guides(p, top)},
         units={name: _arm(p, *ends) for name, ends in arms.items()},
-        place={_copy(name): Placement(name, _arm_pose(p, *ends)) for name, ends in arms.items()},
+        placements={_copy(name): Placement(name, _arm_pose(p, *ends)) for name, ends in arms.items()},
         sensors={"probe": replace(GAUGE, range=500 * um, resolution=1 * nm, source="capacitive gauge of 500 um range, typical")},
         gauges={"S": Probe("probe", "platform", Pose((0.0, top + 0.5 * p.size[1], 0.0), along=Y), Positive.OPENS)},
         damping=ModalDamping(0.01),
         envelope=(90 * mm, 50 * mm, 10 * mm),
-        mode_limit=5 * kHz,
+        max_mode_frequency=5 * kHz,
         requirements={"stroke.y": "at least 160 um", "frequency.platform.1": "at least 150 Hz", "safety": "at least 2"},
         tags=stock_tags(("aluminium",), ("stack",), ("probe",)),
         sources=SOURCES,

@@ -212,7 +212,7 @@ So that a unit alone, as a solid, has the paper's K_a,h = 10.30 N/um and the 581
 def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
     """The double-triangular stage as a description.
 
-    >>> sorted(double_triangle().place)
+    >>> sorted(double_triangle().placements)
     ['B1-B3', 'B4-B6']
     """
     p = parameters
@@ -231,13 +231,13 @@ def double_triangle(parameters: DoubleTriangle = SM_REF_B) -> Mechanism:
         },
         bodies={"platform": Body(solids=_plate(p.plate))},
         units={"horizontal": _horizontal(p), "vertical": _vertical(p)},
-        place={"B1-B3": Placement("horizontal", tangent), "B4-B6": Placement("vertical", poles)},
+        placements={"B1-B3": Placement("horizontal", tangent), "B4-B6": Placement("vertical", poles)},
         sensors={"C36": Gauge(range=500 * um, resolution=0.01 * um, source="Lion Precision C36, Shin & Moon 2.1")},
         gauges=_gauges(p),
         damping=ModalDamping(0.01),
         envelope=(380 * mm, 380 * mm, 115 * mm),
         opening=Opening((110 * mm, 110 * mm)),
-        mode_limit=1 * kHz,
+        max_mode_frequency=1 * kHz,
         requirements=REQUIREMENTS,
         tags=_tags(p),
         sources=SOURCES,

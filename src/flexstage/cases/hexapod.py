@@ -52,7 +52,7 @@ def hexapod(parameters: Hexapod | None = None) -> Mechanism:
     Mobility 6; a strut's row of R_a is (n, r x n): its direction n and the moment arm of its head r, here from the platform's centre of
     mass.
 
-    >>> sorted(hexapod().place)
+    >>> sorted(hexapod().placements)
     ['A1-A3', 'B1-B3']
     """
     p = Hexapod() if parameters is None else parameters
@@ -64,13 +64,13 @@ def hexapod(parameters: Hexapod | None = None) -> Mechanism:
         parts={"neck": p.neck, "stack": p.stack},
         bodies={"platform": Body(solids={"disc": disc}, points={"sample": (0.0, 0.0, p.rise + p.thickness)})},
         units={"left": _strut(p, 1.0), "right": _strut(p, -1.0)},
-        place={"A1-A3": Placement("left", around), "B1-B3": Placement("right", around)},
+        placements={"A1-A3": Placement("left", around), "B1-B3": Placement("right", around)},
         sensors={"probe": GAUGE},
         gauges=_gauges(p),
         damping=ModalDamping(0.01),
         envelope=(200 * mm, 200 * mm, 70 * mm),
         opening=Opening((40 * mm, 40 * mm)),
-        mode_limit=5 * kHz,
+        max_mode_frequency=5 * kHz,
         requirements=REQUIREMENTS,
         tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),
         sources=SOURCES,

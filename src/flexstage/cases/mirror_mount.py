@@ -50,7 +50,7 @@ def mirror_mount(parameters: MirrorMount | None = None) -> Mechanism:
 
     Mobility 0, nothing held twice. Across the axis K = 3 (E t w / 3 l) sin^2(angle / 2) of thin blades, whose bending adds (t/l)^2.
 
-    >>> sorted(mirror_mount().place)
+    >>> sorted(mirror_mount().placements)
     ['B1-B3']
     """
     p = MirrorMount() if parameters is None else parameters
@@ -63,10 +63,10 @@ def mirror_mount(parameters: MirrorMount | None = None) -> Mechanism:
         parts={"blade": p.blade},
         bodies={PLATFORM: mirror},
         units={"bipod": Unit(bipod.bodies(), bipod.links())},
-        place={"B1-B3": Placement("bipod", Polar(p.radius, 90 * deg, Facing.OUTWARD))},
+        placements={"B1-B3": Placement("bipod", Polar(p.radius, 90 * deg, Facing.OUTWARD))},
         damping=ModalDamping(0.01),
         envelope=(1000 * mm, 1000 * mm, 300 * mm),
-        mode_limit=1 * kHz,
+        max_mode_frequency=1 * kHz,
         requirements={"frequency.platform.1": "at least 120 Hz"},
         tags={f"parts.blade.{key}": "stated kihm" for key in ("length", "thickness", "width")} | {"bodies.platform.mass": "stated kihm"},
         sources={**SOURCES, "kihm": "Kihm, Yang & Lee, Rev. Sci. Instrum. 85, 125101 (2014), Table I"},

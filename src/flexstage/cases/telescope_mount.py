@@ -62,7 +62,7 @@ def telescope_mount(parameters: TelescopeMount | None = None) -> Mechanism:
 
     Mobility 0, nothing held twice by the bipods. Blades are beams as in the project; the struts have modes of their own among the mount's.
 
-    >>> sorted(telescope_mount().place)
+    >>> sorted(telescope_mount().placements)
     ['B1-B3', 'S1-S3']
     """
     p = TelescopeMount() if parameters is None else parameters
@@ -76,13 +76,13 @@ def telescope_mount(parameters: TelescopeMount | None = None) -> Mechanism:
         },
         payloads={"primary": Payload(PLATFORM, p.primary, (0.0, 0.0, p.primary_height), point=True), "bars": _bars(p)},
         units={"bipod": _bipod(p), "strut": _strut(p)},
-        place={
+        placements={
             "B1-B3": Placement("bipod", Polar(p.radius, 180 * deg, Facing.OUTWARD)),
             "S1-S3": Placement("strut", Polar(0.0, 180 * deg, Facing.OUTWARD)),
         },
         damping=ModalDamping(0.01),
         envelope=(400 * mm, 400 * mm, 540 * mm),
-        mode_limit=1 * kHz,
+        max_mode_frequency=1 * kHz,
         requirements={"frequency.platform.1": "at least 150 Hz"},
         tags={f"parts.blade.{key}": "stated project" for key in ("length", "thickness", "width")},
         sources={"project": PROJECT},

@@ -64,7 +64,7 @@ def tilt_stage(parameters: TiltStage | None = None) -> Mechanism:
         gauges={"S": Probe("scale", PLATFORM, Pose((p.lever, side, 0.0), along=Y))},
         damping=ModalDamping(0.01),
         envelope=(120 * mm, 60 * mm, 60 * mm),
-        mode_limit=2 * kHz,
+        max_mode_frequency=2 * kHz,
         ground="aluminium",
         requirements=REQUIREMENTS,
         tags=stock_tags(("aluminium", "steel"), (), ()),

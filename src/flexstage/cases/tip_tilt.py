@@ -53,7 +53,7 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
     Mobility 3 (z, rx, ry); a post at position angle n has the row (1, rho sin n, -rho cos n) of R_a. The leaves hold the other three
     freedoms three times each: six redundant constraints.
 
-    >>> sorted(tip_tilt(TipTilt(posts=4)).place)
+    >>> sorted(tip_tilt(TipTilt(posts=4)).placements)
     ['L1-L3', 'P1-P4']
     """
     p = TipTilt() if parameters is None else parameters
@@ -65,7 +65,7 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
         parts={"neck": p.neck, "stack": p.stack, "leaf": p.leaf},
         bodies={"platform": _platform(p)},
         units={"post": strut.unit(), "leaf": _leaf(p)},
-        place={
+        placements={
             f"P1-P{p.posts}": Placement("post", Polar(p.post_radius, 90 * deg, Facing.OUTWARD)),
             "L1-L3": Placement("leaf", Polar(p.leaf_radius, 30 * deg, Facing.TANGENT)),
         },
@@ -75,7 +75,7 @@ def tip_tilt(parameters: TipTilt | None = None) -> Mechanism:
         },
         damping=ModalDamping(0.01),
         envelope=(100 * mm, 100 * mm, 80 * mm),
-        mode_limit=20 * kHz,
+        max_mode_frequency=20 * kHz,
         requirements={
             "stroke.z": "at least 18 um",
             "stroke.rx": "at least 0.9 mrad",

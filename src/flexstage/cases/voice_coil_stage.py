@@ -43,7 +43,7 @@ def voice_coil_stage(parameters: VoiceCoilStage | None = None) -> Mechanism:
 
     Mobility 1 (x); the force map is k_f along x, the stiffness 24 E I / L^3 as of two leaves, and each bar floats along x.
 
-    >>> sorted(voice_coil_stage().place)
+    >>> sorted(voice_coil_stage().placements)
     ['G1-G2']
     """
     p = VoiceCoilStage() if parameters is None else parameters
@@ -55,12 +55,12 @@ def voice_coil_stage(parameters: VoiceCoilStage | None = None) -> Mechanism:
         bodies={PLATFORM: Body(solids={"block": Block("aluminium", p.size)}, points={"sample": (0.0, 0.0, 0.5 * p.size[2])})},
         links={"motor": Link((GROUND, PLATFORM), "coil", (-end, 0.0, 0.0), X)},
         units={"guide": _guide(p)},
-        place={"G1-G2": Placement("guide", Polar(0.5 * p.size[1], 90 * deg, Facing.OUTWARD))},
+        placements={"G1-G2": Placement("guide", Polar(0.5 * p.size[1], 90 * deg, Facing.OUTWARD))},
         sensors={"scale": SCALE},
         gauges={"S": Probe("scale", PLATFORM, Pose((end, 0.0, 0.0), along=X))},
         damping=ModalDamping(0.01),
         envelope=(160 * mm, 180 * mm, 25 * mm),
-        mode_limit=2 * kHz,
+        max_mode_frequency=2 * kHz,
         ground="aluminium",
         requirements=REQUIREMENTS,
         tags=stock_tags(("aluminium", "steel"), (), ()),

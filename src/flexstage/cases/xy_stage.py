@@ -54,7 +54,7 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
 
     Mobility 2 (x, y), R_a = da/d(x, y) = the unit matrix; the platform's other four freedoms are held four times over.
 
-    >>> sorted(xy_stage().place)
+    >>> sorted(xy_stage().placements)
     ['A1-A2', 'P1-P2']
     """
     p = XYStage() if parameters is None else parameters
@@ -69,12 +69,12 @@ def xy_stage(parameters: XYStage | None = None) -> Mechanism:
         parts={"coupling": p.coupling, "guide": p.guide, "neck": p.neck, "stack": p.stack},
         bodies={"platform": _platform(p)},
         units={"pushed": _pushed_unit(p), "following": _following(p)},
-        place=placed,
+        placements=placed,
         sensors={"probe": GAUGE},
         gauges={"S1-S2": Probe("probe", "platform", Polar(0.5 * p.edge, 0.0, Facing.OUTWARD, step=90 * deg), Positive.OPENS)},
         damping=ModalDamping(0.01),
         envelope=(280 * mm, 280 * mm, 15 * mm),
-        mode_limit=5 * kHz,
+        max_mode_frequency=5 * kHz,
         ground="aluminium",
         requirements=_requirements(p),
         tags=stock_tags(("aluminium", "steel"), ("stack",), ("probe",)),

@@ -66,7 +66,7 @@ def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Pat
         if asked.follow is None:
             advice = f"Add --follow: {', '.join(each.value for each in Following)}"
             yield Finding(f"--export {target}", "nothing but the trajectory itself is commanded", advice)
-        elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.by)) != 1:
+        elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.amplitude)) != 1:
             yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them, as --command x=1um")
 
 

@@ -34,9 +34,9 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def follow_setup(given: forms.FollowSetup | None, by: Following) -> forms.FollowSetup:
+def follow_setup(given: forms.FollowSetup | None, method: Following) -> forms.FollowSetup:
     """The set-up's way to follow a path, by another law."""
-    return forms.FollowSetup(by) if given is None else replace(given, by=by)
+    return forms.FollowSetup(method) if given is None else replace(given, method=method)
 
 
 def hysteretic_stacks(said: str | None) -> forms.HystereticStacks | None:
@@ -99,7 +99,7 @@ def trajectory_setup(given: forms.TrajectorySetup, word: str | None, moves: Sequ
     if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
         name = found.TOLD_BY[1]
         raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, by=override(forms.Motion(), motions(moves)))
+    return replace(found, amplitude=override(forms.Motion(), motions(moves)))
 
 
 def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:

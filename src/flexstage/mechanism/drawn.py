@@ -20,9 +20,9 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     >>> with_drawn_parts(double_triangle()) == double_triangle()
     True
     """
-    stand_ins = {name: part.stands_for for name, part in mechanism.parts.items() if isinstance(part, Given) and part.stands_for}
+    stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, Given) and part.replaces}
     require(
-        Finding(f"parts.{name}.stands_for", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
+        Finding(f"parts.{name}.replaces", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
         for name, kept in stand_ins.items()
         if kept not in mechanism.parts
     )
@@ -41,7 +41,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
     True
     """
     inner = link.part.part if isinstance(link.part, Restricted) else link.part
-    kept = mechanism.parts.get(inner.stands_for) if isinstance(inner, Given) else None
+    kept = mechanism.parts.get(inner.replaces) if isinstance(inner, Given) else None
     if kept is None:
         return link
     material = material_of(kept)

@@ -103,7 +103,7 @@ class Unit(Description):
     Links may also join bodies of the stage (`ground`, `platform`, ...) and of other copies (`W/carriage`). `stiffness` states the unit's
     own stiffness in actuator coordinates for the mapped model (absent: computed where the unit is a direct or a lever unit).
 
-    `like` names another unit, whose bodies and links this one has too, but for those that it draws under the same names; departures of
+    `like` names another unit, whose bodies and links this one has too, but for those that it draws under the same names; overrides of
     that unit (`inner/front.thickness`) are its own, its own (`outer/front.at.x`) go before. A stated stiffness is not taken over.
     """
 
@@ -165,13 +165,13 @@ GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 class Stop(Description):
     """A gap at which a stroke ends: `body` may move by `gap` along x of the pattern's frame, at its origin, against `base`.
 
-    With `gap_back` it ends the way back too; without, nothing stops that. A key such as `E1-E3` names as many stops.
+    With `gap_negative` it ends the way back too; without, nothing stops that. A key such as `E1-E3` names as many stops.
     """
 
     body: str
     pattern: Pattern
     gap: Annotated[Number, LENGTH, POSITIVE]
-    gap_back: Annotated[Number, LENGTH, POSITIVE] | None = None
+    gap_negative: Annotated[Number, LENGTH, POSITIVE] | None = None
     base: str = GROUND
 
 
@@ -233,9 +233,9 @@ class Opening(Description):
 class Mechanism(InNotebook, Description):
     """A stage: one description for all models.
 
-    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`place`), with `gauges`. Body `ground` is
-    implied, body `platform` is the moving part. `changes` are departures of link parts from the shared part, by address
-    (`horizontal/front.thickness`, `B2/front.thickness`). `mode_limit` is the frequency below which modes are listed.
+    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with `gauges`. Body
+    `ground` is implied, body `platform` is the moving part. `overrides` are values of single links that differ from the shared part, by
+    address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency below which modes are listed.
     `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
     with (`none`: it does not grow). `temperatures` are changes since it was made, by body (`ground` too), and of `all` that has none of its
     own; a part has the mean of the bodies that it joins. `packages` are those that its kinds of parts, gauges and measures come from, each
@@ -250,7 +250,7 @@ class Mechanism(InNotebook, Description):
     bodies: Mapping[str, Body] = _empty()
     links: Mapping[str, Link] = _empty()
     units: Mapping[str, Unit] = _empty()
-    place: Mapping[str, Placement] = _empty()
+    placements: Mapping[str, Placement] = _empty()
     sensors: Mapping[str, Instrument] = _empty()
     gauges: Mapping[str, GaugePlace] = _empty()
     payloads: Mapping[str, Payload] = _empty()
@@ -261,9 +261,9 @@ class Mechanism(InNotebook, Description):
         tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None
     ) = None
     opening: Opening | None = None
-    mode_limit: Annotated[Number, FREQUENCY, POSITIVE] | None = None
+    max_mode_frequency: Annotated[Number, FREQUENCY, POSITIVE] | None = None
     ground: str | None = None
-    changes: Mapping[str, Any] = _empty()
+    overrides: Mapping[str, Any] = _empty()
     requirements: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)
     packages: tuple[str, ...] = field(default=(), metadata=DOCUMENT_ONLY)
     tags: Mapping[str, str] = field(default_factory=lambda: Table({}), metadata=DOCUMENT_ONLY)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Table, Vector
-from flexstage.mechanism.assembly.expand import apply_changes, copies
+from flexstage.mechanism.assembly.expand import apply_overrides, copies
 from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
 from flexstage.mechanism.assembly.pattern import Pose
 from flexstage.mechanism.mechanism import GROUND, PLATFORM, Link, Mechanism, Placement
@@ -50,8 +50,8 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
     drawn, there = result.units[unit], known[unit].links[link]
     own = f"{there.part} of {address}"
     part = original.parts[there.part]
-    if link not in drawn.links:  # from then on the unit draws it itself: departures of the other one no longer count
-        there, part = apply_changes(original, there, tuple(f"{each}/{link}" for each in link_lineage(original, unit, link)))
+    if link not in drawn.links:  # from then on the unit draws it itself: overrides of the other one no longer count
+        there, part = apply_overrides(original, there, tuple(f"{each}/{link}" for each in link_lineage(original, unit, link)))
     part = _restrict(part, elastic, free)
     links = {**drawn.links, link: replace(there, part=own)}
     return replace(result, parts={**result.parts, own: part}, units={**result.units, unit: replace(drawn, links=links)})
@@ -60,7 +60,7 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
 
-    The output's reference point is the joint with the platform. Departures of this copy are kept; other units, and outlines that belong to
+    The output's reference point is the joint with the platform. Overrides of this copy are kept; other units, and outlines that belong to
     other bodies of the stage (lugs of the platform), are left out.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -85,8 +85,8 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
         bodies={PLATFORM: Body(reference=joint.centre)},
         links=links,
         units={**used, units[copy]: replace(used[units[copy]], bodies=own)},
-        place={copy: Placement(units[copy], Pose())},
-        changes=Table({address: value for address, value in mechanism.changes.items() if address.partition("/")[0] not in others}),
+        placements={copy: Placement(units[copy], Pose())},
+        overrides=Table({address: value for address, value in mechanism.overrides.items() if address.partition("/")[0] not in others}),
         gauges={},
         stops={},
         payloads={},

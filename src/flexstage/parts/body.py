@@ -24,7 +24,7 @@ class Solid(Description):
 
     material: str
     at: Vector
-    removes: bool = False
+    subtract: bool = False
 
     @property
     def sides(self) -> Array:
@@ -67,7 +67,7 @@ class Block(Solid):
     """A rectangular block centred at `at`, its x edge along the direction `along`, its z edge along `up` (perpendicular to `along`).
 
     Without directions its edges lie along the axes of the frame it stands in. `hole` is a centred rectangular through hole of sides (x, y)
-    along the block's own z edge. Sizes in metres. `removes`: it is a hole, see `Body`.
+    along the block's own z edge. Sizes in metres. `subtract`: it is a hole, see `Body`.
     """
 
     material: str
@@ -76,7 +76,7 @@ class Block(Solid):
     hole: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]] | None = None
     along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
     up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
-    removes: bool = False
+    subtract: bool = False
 
     @property
     def sides(self) -> Array:
@@ -112,7 +112,7 @@ class Block(Solid):
 class Cylinder(Solid):
     """A round cylinder or tube centred at `at`, its axis along the direction `along`; `bore` is the diameter of a concentric hole.
 
-    `removes`: it is a hole, see `Body`.
+    `subtract`: it is a hole, see `Body`.
     """
 
     material: str
@@ -121,7 +121,7 @@ class Cylinder(Solid):
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     along: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
     bore: Annotated[Number, LENGTH, POSITIVE] | None = None
-    removes: bool = False
+    subtract: bool = False
 
     @property
     def sides(self) -> Array:
@@ -162,7 +162,7 @@ class Extrusion(Solid):
     """A polygon drawn out over a `height`: its corners `outline` (x, y) in a plane through `at`, half of the height on either side of it.
 
     x of the outline runs along the direction `along`, the height along `up` (perpendicular to `along`). The corners go round the polygon
-    either way, its sides do not cross. `removes`: it is a hole, see `Body`.
+    either way, its sides do not cross. `subtract`: it is a hole, see `Body`.
 
     >>> corner = Extrusion("steel", outline=((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)), height=1.0)
     >>> corner.sides.tolist(), corner.frame.position.tolist()
@@ -176,7 +176,7 @@ class Extrusion(Solid):
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
     along: Annotated[Vector, DIRECTION] = (1.0, 0.0, 0.0)
     up: Annotated[Vector, DIRECTION] = (0.0, 0.0, 1.0)
-    removes: bool = False
+    subtract: bool = False
 
     @property
     def _drawn(self) -> Array:
@@ -236,13 +236,13 @@ class Extrusion(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Sphere(Solid):
-    """A ball centred at `at`. `removes`: it is a hollow, see `Body`."""
+    """A ball centred at `at`. `subtract`: it is a hollow, see `Body`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "sphere")
     material: str
     diameter: Annotated[Number, LENGTH, POSITIVE]
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
-    removes: bool = False
+    subtract: bool = False
 
     @property
     def sides(self) -> Array:
@@ -401,13 +401,13 @@ class PlacedSolid:
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
     """Solids of one body by name: those that remove material as holes in the others.
 
-    >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, removes=True)
+    >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
     >>> [type(each.solid).__name__ for each in pierce(placed).values()]
     ['Pierced']
     """
-    holes = [item for item in solids.values() if item.solid.removes]
-    return {name: _pierced(item, holes) for name, item in solids.items() if not item.solid.removes}
+    holes = [item for item in solids.values() if item.solid.subtract]
+    return {name: _pierced(item, holes) for name, item in solids.items() if not item.solid.subtract}
 
 
 def _pierced(item: PlacedSolid, holes: list[PlacedSolid]) -> PlacedSolid:
@@ -500,7 +500,7 @@ SOLIDS: tuple[type[Solid], ...] = (Block, Cylinder, Extrusion, Sphere, Imported)
 class Body(Description):
     """A rigid body: `solids` (outlines with materials), or a stated `mass`, `centre` of mass and `inertia`; named `points`.
 
-    Solids that `removes` are holes: they take away what lies in them of the body's other solids of their material.
+    Solids that `subtract` are holes: they take away what lies in them of the body's other solids of their material.
     Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `point`: the stated mass is meant as
     a point, without inertia. `reference` is the point its twist is given at (absent: its centre of mass, or without mass the mean of its
     joints).

@@ -35,18 +35,18 @@ class Given(Elastic):
     """A part known by its 6x6 compliance about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
     Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
-    `stands_for` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
+    `replaces` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
     and drift and structural damping the material. `mass` is a point at the part's centre, half of it at each end, or, with `inertia` about
     its `centre` of mass (along the axes of the link's frame), a solid.
     """
 
-    kind: ClassVar[str] = "given"
+    kind: ClassVar[str] = "compliance_matrix"
     compliance: Annotated[tuple[tuple[Number, ...], ...], COMPLIANCE_MATRIX]
     free: tuple[Freedom, ...]
     mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
     origin: Origin = Origin.STATED
     source: str = field(default="", metadata=DOCUMENT_ONLY)
-    stands_for: str = ""
+    replaces: str = ""
     centre: Annotated[Vector, LENGTH] | None = None
     inertia: Inertia | None = None
 

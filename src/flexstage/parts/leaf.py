@@ -36,8 +36,9 @@ class Leaf(Shaped):
     ends are free to warp; a plate's are with `ends` free. `inner_modes` is how many of its own bending modes, and of its twist, the lumped
     model counts.
 
-    Where it is not straight when free: `curvature` is that of its blank about z (positive: towards y), `warmth` how much warmer its face at
-    +y is than that at -y. It is mounted straight, as drawn: large displacements count what that takes, other models take it as straight.
+    Where it is not straight when free: `curvature` is that of its blank about z (positive: towards y), `face_temperature_difference`
+    is that of its face at +y less that of its face at -y. It is mounted straight, as drawn: large displacements count what that takes,
+    other models take it as straight.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -50,22 +51,25 @@ class Leaf(Shaped):
     inner_modes: Annotated[int, INNER_MODES] = 0
     ends: LeafEnds = LeafEnds.CLAMPED
     curvature: Annotated[Number, CURVATURE] | None = None
-    warmth: Annotated[Number, TEMPERATURE] | None = None
+    face_temperature_difference: Annotated[Number, TEMPERATURE] | None = None
 
     @property
     def mirrored(self) -> Leaf:
         """The leaf with its blank bent, and warm, on the other side."""
-        return replace(self, curvature=reversed_or_none(self.curvature), warmth=reversed_or_none(self.warmth)) if self.is_bent else self
+        if not self.is_bent:
+            return self
+        warmer = reversed_or_none(self.face_temperature_difference)
+        return replace(self, curvature=reversed_or_none(self.curvature), face_temperature_difference=warmer)
 
     @property
     def is_bent(self) -> bool:
         """Whether it is not straight when it is free."""
-        return self.curvature is not None or self.warmth is not None
+        return self.curvature is not None or self.face_temperature_difference is not None
 
     @property
     def straight(self) -> Leaf:
         """The leaf as if it were straight when it is free."""
-        return replace(self, curvature=None, warmth=None)
+        return replace(self, curvature=None, face_temperature_difference=None)
 
     @property
     def warps(self) -> bool:

@@ -71,7 +71,7 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
     2.0
     """
-    own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids if not each.solid.removes]
+    own = [within(solid_properties(each.solid, each.density), each.frame) for each in solids if not each.solid.subtract]
     return combine([*own, *(of_moments(density, moments) for density, moments in common_moments(meant or solids))])
 
 

@@ -17,7 +17,7 @@ class Membrane(Elastic):
     """A flat ring of sheet, normal to x, clamped to a hub of `inner` diameter (second body) and in a rim of `outer` diameter (first body).
 
     Both are rigid, and both ends of the part lie in its centre. Intended freedoms: along x, and tilt about y and z. `mass` counts half at
-    the hub and half at the rim. It has no shape for finite elements: a spiral, or a membrane with holes, is a `given` 6x6 instead.
+    the hub and half at the rim. It has no shape for finite elements: a spiral, or a membrane with holes, is a `compliance_matrix` instead.
     """
 
     kind: ClassVar[str] = "membrane"

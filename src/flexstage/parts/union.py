@@ -176,7 +176,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """
     seen = [drawn for drawn in solids if not isinstance(drawn.solid, Imported)]
     yield from _common(seen)
-    for density, moments in _common([drawn for drawn in seen if drawn.solid.removes]):
+    for density, moments in _common([drawn for drawn in seen if drawn.solid.subtract]):
         yield density, Moments(-moments.volume, -moments.first, -moments.second)
 
 
@@ -486,13 +486,13 @@ def _removed(
     """What holes in one of two solids take away of the regions that `both` have in common."""
     materials = {drawn.solid.material for drawn in both}
     for number, drawn in enumerate(seen):
-        if drawn.solid.removes and drawn.solid.material in materials and number in cells:
+        if drawn.solid.subtract and drawn.solid.material in materials and number in cells:
             yield _product([(region.sign, region.cell) for region in found], cells[number], np.ones((), dtype=bool), scale)
 
 
 def _is_apart(first: Drawn, second: Drawn) -> bool:
     """Whether one is a hole, which takes away nothing of another material."""
-    return (first.solid.removes or second.solid.removes) and first.solid.material != second.solid.material
+    return (first.solid.subtract or second.solid.subtract) and first.solid.material != second.solid.material
 
 
 def _differ(first: Drawn, second: Drawn) -> bool:

@@ -52,7 +52,7 @@ def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
     >>> rings(Mechanism(""))
     ()
     """
-    placed = [(key, placement.pattern) for key, placement in mechanism.place.items()]
+    placed = [(key, placement.pattern) for key, placement in mechanism.placements.items()]
     placed += [(key, probe.pattern) for key, probe in posed(mechanism.gauges).items()]
     return tuple(
         _ring(copy_names(key), pattern) for key, pattern in placed if isinstance(pattern, Polar) and first_value(pattern.radius) > 0.0

@@ -32,7 +32,7 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 
 @dataclass(frozen=True)
 class VariedTable:
-    """What a study varies: `of`, an address or several that move together (absent: the name), or `parameter`, one of the case or several.
+    """What a study varies: `address`, one or several that move together (absent: the name), or `parameter`, one of the case or several.
 
     It moves between `from` and `to`, with units or in percent of what the design states. `logarithmic`: equal steps are equal ratios.
     `levels`: how many values a grid takes. `step`: only its multiples can be made.
@@ -40,7 +40,7 @@ class VariedTable:
 
     low: Amount = field(metadata={KEY: "from"})
     high: Amount = field(metadata={KEY: "to"})
-    of: Texts | None = None
+    address: Texts | None = None
     parameter: Texts | None = None
     logarithmic: bool = False
     levels: Annotated[int, _TWO] | None = None
@@ -64,7 +64,7 @@ class SweepTable:
 class OptimiseTable:
     """What is best: responses to `maximise` or `minimise`, two in all at most, of which a front is drawn of `pareto_points` designs.
 
-    The search begins from so many `starts`, drawn by `seed`. Without `require` the design's own requirements are no limits.
+    The search begins from so many `starts`, drawn by `seed`. Without `requirements` the design's own are no limits.
     """
 
     maximise: Texts | None = None
@@ -72,29 +72,29 @@ class OptimiseTable:
     starts: Annotated[int, _ONE] = 3
     seed: Annotated[int, _SEED] = 0
     pareto_points: Annotated[int, _THREE] = 9
-    require: bool = True
+    requirements: bool = True
 
 
 @dataclass(frozen=True)
 class ScatterTable:
-    """What deviates: `of`, an address, a kind or several (absent: the name), by a standard deviation `normal` or a half width `uniform`.
+    """What deviates: `address`, a kind or several of them (absent: the name), by a standard deviation `normal` or a half width `uniform`.
 
-    Both with their unit or in percent of what the design states. `within`: what of a normal one lies beyond is sorted out. `each`: every
-    copy for itself.
+    Both with their unit or in percent of what the design states. `within`: what of a normal one lies beyond is sorted out.
+    `independent`: every copy for itself.
     """
 
-    of: Texts | None = None
+    address: Texts | None = None
     normal: Amount | None = None
     uniform: Amount | None = None
     within: Amount | None = None
-    each: bool = False
+    independent: bool = False
 
 
 @dataclass(frozen=True)
 class ToleranceTable:
     """How many `copies` are drawn, by which `sampling` and `seed`, and the `yield` that each line of the specification shall have.
 
-    Without `require` the design's own requirements are no part of it. `crosstalk` of the platform at a `point` (absent: where the stage
+    Without `requirements` the design's own are no part of it. `crosstalk` of the platform at a `point` (absent: where the stage
     has any).
     """
 
@@ -102,7 +102,7 @@ class ToleranceTable:
     seed: Annotated[int, _SEED] = 0
     sampling: Annotated[Sampling, ChoiceNode(Sampling, COPIES_BY)] = COPIES_BY[0]
     wanted: Annotated[float, RATIO, _YIELD] = field(default=0.99, metadata={KEY: "yield"})
-    require: bool = True
+    requirements: bool = True
     crosstalk: bool | None = None
     point: str = PLATFORM
 

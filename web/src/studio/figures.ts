@@ -28,7 +28,7 @@ export class VerdictTable {
     const isAll = met === verdicts.length;
     const head = h("h2", {}, "Verdicts ", h("span", { className: isAll ? "pill good" : "pill poor" }, `${met} of ${verdicts.length} met`));
     const rows = verdicts.map((each) => this.row(each));
-    const none = h("p", { className: "quiet" }, "The file has no [require] table: nothing is judged.");
+    const none = h("p", { className: "quiet" }, "The file has no [requirements] table: nothing is judged.");
     fill(this.root, head, verdicts.length ? h("table", { className: "verdicts" }, h("tbody", {}, ...rows)) : none);
     this.age();
   }

@@ -19,7 +19,7 @@ function draft(studio: Studio, last: string): string {
   const amounts = state.value?.amounts ?? [];
   const ranked = slopes.value?.slopes.map((each) => each.address) ?? [];
   const free = (ranked.length ? ranked : amounts.map((each) => each.address)).filter((each) => amounts.some((one) => one.address === each && one.formula === null)).slice(0, 3);
-  const variables = free.map((each, at) => `v${at + 1} = { of = "${each}", from = "-10 %", to = "+10 %" }`);
+  const variables = free.map((each, at) => `v${at + 1} = { address = "${each}", from = "-10 %", to = "+10 %" }`);
   const wanted = slopes.value?.worst || verdicts.value?.verdicts[0]?.key || "frequency.platform.1";
   const file = state.value?.file.split(/[\\/]/).at(-1) ?? "stage.toml";
   return ['format = "flexstage study 1"', `design = "${file}"`, "", "[variables]", ...variables, "", "[responses]", `worst = "${wanted}"`, "", last, ""].join("\n");

@@ -16,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
-    """Judge every `[require]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
+    """Judge every `[requirements]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
 
     Stiffness, frequencies, lost motion, strokes that make up for it, and drift are those of the loaded stage where its dead load is felt
     (1 %).
@@ -36,7 +36,7 @@ def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ..
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
     """Values (...) in SI of measures by the lumped model, for one design or a batch; where a stage has none, the reason in words.
 
-    What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[require]` lines.
+    What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[requirements]` lines.
 
     >>> from flexstage.analysis.assessment.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -49,7 +49,7 @@ def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Ar
 
 
 def bench_of(mechanism: Mechanism) -> Bench:
-    """A bench for one design or a batch; the strokes that measures of all strokes at once take are those of the `[require]` lines.
+    """A bench for one design or a batch; the strokes that measures of all strokes at once take are those of the `[requirements]` lines.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> bench_of(double_triangle()).command["x"]

@@ -173,7 +173,7 @@ def platform_frequency(bench: Bench, asked: Measure) -> Array:
 def _nth(frequencies: Array, asked: Measure) -> Array:
     count = frequencies.shape[-1]
     if int(asked.name) > count:
-        raise refuse(f"require.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
+        raise refuse(f"requirements.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
     return frequencies[..., int(asked.name) - 1]
 
 
@@ -588,7 +588,7 @@ _PATH_MOTIONS = tuple(
 MEASURES: Register[MeasureKind] = Register(
     "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
 )
-"""Measures by the form of their keys, ours in the order they stand above: `[require]` lines and studies call them by it."""
+"""Measures by the form of their keys, ours in the order they stand above: `[requirements]` lines and studies call them by it."""
 
 
 def measure_kind(form: str) -> MeasureKind:

@@ -1,4 +1,4 @@
-"""The `[require]` lines of a design file about measures, and the verdict on a value."""
+"""The `[requirements]` lines of a design file about measures, and the verdict on a value."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
-    """Read all `[require]` lines of a description.
+    """Read all `[requirements]` lines of a description.
 
     A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown
     key (and the nearest ones), unreadable line, wrong unit and unknown point.
@@ -116,7 +116,7 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     findings: list[Finding] = []
     for key, text in mechanism.requirements.items():
         try:
-            found.append(_read(mechanism, f"require.{key}", key, text))
+            found.append(_read(mechanism, f"requirements.{key}", key, text))
         except DesignError as error:
             findings += error.findings
     if findings:
@@ -148,7 +148,7 @@ def _keys_of_form(form: str, names: Mapping[str, tuple[str, ...]]) -> Iterator[s
 
 
 def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requirement:
-    """Read one line: `key` is a measure, `text` its limit as in `[require]`. Raises `DesignError` at `where`.
+    """Read one line: `key` is a measure, `text` its limit as in `[requirements]`. Raises `DesignError` at `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> requirement(double_triangle(), "mass", "at most 12 kg", "limits.mass").limit
@@ -168,7 +168,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
-    """Read the name of a measure: a key as in `[require]`, for some `at` a named point. Raises `DesignError` at `where`.
+    """Read the name of a measure: a key as in `[requirements]`, for some `at` a named point. Raises `DesignError` at `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")

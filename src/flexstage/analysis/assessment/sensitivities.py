@@ -165,13 +165,13 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
             yield Finding(name, "the description does not state it", "State it, or choose another number")
 
 
-def departure(mechanism: Mechanism, name: str) -> int:
+def override_level(mechanism: Mechanism, name: str) -> int:
     """What an address departs from: 0 nothing, 1 a part as all copies of a unit have it, 2 that as a single copy has it.
 
     Above that named numbers, each after those it is worked out of: they write what formulas work out of them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> [departure(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
+    >>> [override_level(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
     [0, 1, 2]
     """
     if number := locate(mechanism, name).number:
@@ -182,13 +182,13 @@ def departure(mechanism: Mechanism, name: str) -> int:
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
     """Positions of parameters that can be stepped together.
 
-    A departure hides the number it departs from, and a named number is hidden by what is worked out of it: each level goes alone.
+    An override hides the number it departs from, and a named number is hidden by what is worked out of it: each level goes alone.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
     [[0, 2], [1]]
     """
-    level = [departure(mechanism, name) for name in names]
+    level = [override_level(mechanism, name) for name in names]
     for wanted in sorted(set(level)):
         members = [position for position, found in enumerate(level) if found == wanted]
         for start in range(0, len(members), _CHUNK):

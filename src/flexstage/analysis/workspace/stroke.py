@@ -128,7 +128,7 @@ def beside(points: Array, depth: int) -> Array:
 
 
 def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
-    """The piezo actuator of every input that has one, by input name, with departures applied: what has volts and a capacitance.
+    """The piezo actuator of every input that has one, by input name, with overrides applied: what has volts and a capacitance.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stacks(double_triangle())["B4"].length
@@ -138,7 +138,7 @@ def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
 
 
 def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
-    """The part of every stroke input, by input name, with departures applied.
+    """The part of every stroke input, by input name, with overrides applied.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(stroke_actuators(double_triangle()))

@@ -345,7 +345,7 @@ def _judgement(verdict: Verdict, old: Verdict, lines: Mapping[str, int]) -> Judg
         None if value is None else float(verdict.margin),
         bool(verdict.passed),
         verdict.reason,
-        line_of(f"require.{asked.text}", lines) or line_of(f"require.{asked.key}", lines),
+        line_of(f"requirements.{asked.text}", lines) or line_of(f"requirements.{asked.key}", lines),
     )
 
 

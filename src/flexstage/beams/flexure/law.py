@@ -122,13 +122,12 @@ def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *
 def _natural(part: Leaf, material: Material) -> tuple[float, float]:
     """Curvatures of a leaf's blank, and of what is warmer at +y and so bends both ways, times its length (docs/nonlinear.md, 30)."""
     blank = 0.0 if part.curvature is None else float(part.curvature)
-    if part.warmth is None:
+    if part.face_temperature_difference is None:
         return blank * float(part.length), 0.0
     if material.expansion is None:
-        raise refuse(
-            part.material, "its expansion is not stated, and a leaf of it is warmer on one side", "State expansion, or leave out warmth"
-        )
-    return blank * float(part.length), -float(material.expansion * part.warmth / part.thickness * part.length)
+        what = "its expansion is not stated, and a leaf of it is warmer on one side"
+        raise refuse(part.material, what, "State it, or leave out face_temperature_difference")
+    return blank * float(part.length), -float(material.expansion * part.face_temperature_difference / part.thickness * part.length)
 
 
 def natural_curvature(part: Leaf, material: Material) -> float:

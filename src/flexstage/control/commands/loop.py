@@ -220,7 +220,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             {
                 "kind": None if controller is None else values.attempt(lambda: forms.KINDS.parse(controller, "--controller")),
                 "coordinates": coordinates,
-                "goal": None if goal is None else override(given.controller.goal or forms.GoalSetup(), {"aim": goal}),
+                "goal": None if goal is None else override(given.controller.goal or forms.GoalSetup(), {"objective": goal}),
                 "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),
                 "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
             },

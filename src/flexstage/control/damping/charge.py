@@ -23,14 +23,15 @@ from flexstage.models.linear.model import Channel, LinearModel
 class ChargedStacks:
     """The `actuators` whose stacks are held at their charge, each `stiffer` by 1/(1 - k^2) (n,) above its corner.
 
-    `corners` (n,) [Hz] are those below which the drive is one of volts, `left` (n,) the shares of hysteresis and creep above them. The
+    `corners` (n,) [Hz] are those below which the drive is one of volts, `residual_hysteresis` (n,) the shares of
+    hysteresis and creep above them. The
     plant's modes are at `by_volts` (k,) [Hz] with volts held, and at `by_charge` (k,) [Hz] with charge.
     """
 
     actuators: tuple[str, ...]
     stiffer: Annotated[Array, Along("actuators"), Heading("stiffer", digits=5)]
     corners: Annotated[Array, FREQUENCY, Along("actuators"), Heading("corner", digits=4)]
-    left: Annotated[Array, SHARE, Along("actuators"), Heading("hysteresis left", digits=3)]
+    residual_hysteresis: Annotated[Array, SHARE, Along("actuators"), Heading("residual hysteresis", digits=3)]
     by_volts: Annotated[Array, FREQUENCY]
     by_charge: Annotated[Array, FREQUENCY]
     drives: Annotated[Mapping[str, ChargeDrive], INNER]
@@ -99,7 +100,7 @@ def describe_charge(given: Plant, model: LinearModel, charged: LinearModel, driv
         actuators=tuple(drives),
         stiffer=np.array([each.stiffening for each in every]),
         corners=np.array([each.corner for each in every]),
-        left=np.array([each.left for each in every]),
+        residual_hysteresis=np.array([each.residual_hysteresis for each in every]),
         by_volts=pairs.others[place],
         by_charge=pairs.frequencies[place],
         drives=drives,

@@ -48,7 +48,7 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
 
 def _relieve(name: str, drive: ChargeDrive) -> System:
     """From what a stack creeps by itself [m] to what it does so held at its charge [m]."""
-    rate, left = 2.0 * np.pi * drive.corner, drive.left
+    rate, left = 2.0 * np.pi * drive.corner, drive.residual_hysteresis
     one, entry, exit_ = np.eye(1), (Channel(f"own.{name}", "m"),), (Channel(f"left.{name}", "m"),)
     return System(-rate * one, one, (1.0 - left) * rate * one, left * one, entry, exit_)
 

@@ -25,12 +25,12 @@ from flexstage.parts.gauge import Instrument
 class ChargeHold(CheckedFields):
     """What an amplifier of charge does to a stack of that electromechanical `coupling` k: far above a corner it holds charge, not volts.
 
-    The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C). `left` is
-    the share of hysteresis and creep that the stroke keeps by charge.
+    The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C).
+    `residual_hysteresis` is the share of hysteresis and creep that the stroke keeps by charge.
     """
 
     coupling: float
-    left: float
+    residual_hysteresis: float
     corner: float | None = None
     leakage: float | None = None
 
@@ -69,11 +69,11 @@ class GaugeSettings(CheckedFields):
 
 @dataclass(frozen=True)
 class ChargeDrive:
-    """A stack of that `coupling` k held at its charge above a `corner` [Hz]; `left` is the share of hysteresis and creep that is left."""
+    """A stack of that `coupling` k held at its charge above a `corner` [Hz]; `residual_hysteresis` is the share that remains."""
 
     coupling: float
     corner: Annotated[float, FREQUENCY]
-    left: float
+    residual_hysteresis: float
 
     @property
     def stiffening(self) -> Annotated[float, VIEW]:
@@ -217,7 +217,7 @@ def _amplifier(setting: AmplifierSettings, piezo: ChargedActuator, low: float, h
 
 def _charge_drive(held: ChargeHold, capacitance: float) -> ChargeDrive:
     corner = held.corner if held.leakage is None else 0.5 / (np.pi * held.leakage * capacitance)
-    return ChargeDrive(held.coupling, float(corner or 0.0), held.left)
+    return ChargeDrive(held.coupling, float(corner or 0.0), held.residual_hysteresis)
 
 
 def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:

@@ -142,7 +142,8 @@ def charge_table(found: LoopStudy) -> Table | None:
     )
     notes = [
         f"Stacks are stiffer by 1/(1 - k^2) while their charge is held: {stacks}. Far below, and at rest, they are on volts.",
-        f"Modes that move by {percent(_MOVED)} and less are left out. Of hysteresis and creep {percent(float(np.max(held.left)))} is left.",
+        f"Modes that move by {percent(_MOVED)} and less are left out.",
+        f"Residual hysteresis and creep: {percent(float(np.max(held.residual_hysteresis)))}.",
     ]
     return make_table("Charge drive", [Column("mode on volts", "Hz"), Column("on charge", "Hz"), "higher by"], rows, notes=notes)
 

@@ -77,5 +77,5 @@ class Actuation:
             np.subtract(self._hysteresis(volts, stroke), self._rest, out=stroke)
         if self._relief is not None:
             own = stroke - given
-            stroke += (1.0 - self._relief.left) * (self._leaked - own)
+            stroke += (1.0 - self._relief.residual_hysteresis) * (self._leaked - own)
             self._leaked += self._relief.leak * (own - self._leaked)

@@ -38,12 +38,12 @@ class Amplifiers:
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """What holding charge leaves of a stack's own way, hysteresis less its mean slope (m,): the share `left`, and all that is slow.
+    """What holding charge leaves of a stack's own way, hysteresis less its mean slope (m,): a share, and all that is slow.
 
     `leak` (m,) is the share of what is missing that a sample adds, 1 - exp(-2 pi f T) of the drives' corners f.
     """
 
-    left: Array
+    residual_hysteresis: Array
     leak: Array
 
 
@@ -182,7 +182,7 @@ def _relief(powers: Sequence[Amplifier | None], step: float) -> Relief | None:
     drives = [None if each is None else each.charge for each in powers]
     if all(each is None for each in drives):
         return None
-    left = np.array([1.0 if each is None else each.left for each in drives])
+    left = np.array([1.0 if each is None else each.residual_hysteresis for each in drives])
     corners = np.array([0.0 if each is None else each.corner for each in drives])
     return Relief(left, -np.expm1(-2.0 * np.pi * corners * step))
 

@@ -131,16 +131,16 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
 
 
 def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
-    if found.by is Following.REPETITIVE and not isinstance(path, RasterMotion | SineMotion):
+    if found.method is Following.REPETITIVE and not isinstance(path, RasterMotion | SineMotion):
         what = f"a {path.TOLD_BY[1]} has no period that comes again"
-        yield Finding("follow.by", what, "Take a raster or a sine as trajectory, or follow by learning or the inverse")
-    shaped = found.by in (Following.ZV, Following.ZVD)
+        yield Finding("follow.method", what, "Take a raster or a sine as trajectory, or follow by learning or the inverse")
+    shaped = found.method in (Following.ZV, Following.ZVD)
     if shaped and found.frequency is None:
         yield Finding(
             "follow.frequency", "a shaper is for a mode, and its frequency is not given", 'Write for example frequency = "106 Hz"'
         )
     if not shaped and found.frequency is not None:
-        yield Finding("follow.frequency", f"{found.by.value} has no mode of its own", "Leave it out, or take zv or zvd")
+        yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
     if found.damping >= 1.0:
         yield Finding("follow.damping", f"found {found.damping:g}", "Give less than 1: what does not swing needs no shaper")
     if not 1 <= found.passes <= _MOST_PASSES:
@@ -173,12 +173,12 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
 
 def _loops(found: ControllerSetup) -> Iterator[Finding]:
     """Loops that are named twice, or not at all; numbers without gains, and prefilters of what takes none."""
-    names = [name for each in found.loops for name in each.of]
+    names = [name for each in found.loops for name in each.axes]
     for name in dict.fromkeys(names):
         if names.count(name) > 1:
             yield Finding("controller.loops", f"{name} stands {names.count(name)} times", "State the numbers of a loop once")
-    if not all(each.of for each in found.loops):
-        yield Finding("controller.loops", "nothing says of which loops the numbers are", 'Write for example of = ["x", "y"]')
+    if not all(each.axes for each in found.loops):
+        yield Finding("controller.loops", "nothing says of which loops the numbers are", 'Write for example axes = ["x", "y"]')
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
         yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:

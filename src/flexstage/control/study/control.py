@@ -145,7 +145,7 @@ def _tuned(law: ControllerKind | OfferedKind) -> Kind | Family:
 
 def _wish(asked: ControllerSetup, goal: GoalSetup) -> Wish:
     return Wish(
-        aim=goal.aim,
+        objective=goal.objective,
         sensitivity=asked.sensitivity or _SENSITIVITY,
         spread=goal.spread,
         gain=goal.gain,
@@ -177,7 +177,7 @@ def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> De
     """Laws, notches and prefilters as stated, loop by loop."""
     asked = given.setup.controller
     require(_loop_findings(asked, loops.names))
-    own = {name: each for each in asked.loops for name in each.of}
+    own = {name: each for each in asked.loops for name in each.axes}
     numbers = [own.get(name, LoopNumbers((name,))) for name in loops.names]
     notches = tuple(tuple(_notch(stated, given) for stated in (*asked.notches, *each.notches)) for each in numbers)
     prefilters = tuple(_prefilter(each.prefilter or asked.prefilter) for each in numbers)
@@ -192,7 +192,7 @@ def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> De
 
 def _loop_findings(asked: ControllerSetup, names: tuple[str, ...]) -> Iterator[Finding]:
     """Numbers of loops that the stage does not have, and loops without any."""
-    stated = [name for each in asked.loops for name in each.of]
+    stated = [name for each in asked.loops for name in each.axes]
     for name in dict.fromkeys(stated):
         if name not in names:
             what = f"the stage has no such loop: in {asked.coordinates.value} coordinates it has {', '.join(names)}"

@@ -79,7 +79,7 @@ def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Cours
 
 def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[Course]:
     if isinstance(commanded, StepMotion):
-        for name, size in (stated_motions(commanded.by) or _default_motions(coordinates.names)).items():
+        for name, size in (stated_motions(commanded.amplitude) or _default_motions(coordinates.names)).items():
             step = Step({name: size}, limits=_limits(commanded))
             yield Course(name, step, (name,), step.duration)
     elif isinstance(commanded, RasterMotion):
@@ -94,7 +94,7 @@ def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[C
         spiral = Spiral(commanded.radius, commanded.pitch, EvenSpeed(commanded.speed), ramp, coordinates=pair)
         yield Course("spiral", spiral, pair, spiral.duration, pair)
     elif isinstance(commanded, SineMotion):
-        sizes = stated_motions(commanded.by) or dict([next(iter(_default_motions(coordinates.names).items()))])
+        sizes = stated_motions(commanded.amplitude) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
         period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
         yield Course("sine", sine, tuple(sizes), end, period=period, repeats=(_FADED * period, end))
@@ -161,7 +161,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     >>> from flexstage.models.ideal import ideal
     >>> stage = parallelogram()
     >>> loop = coordinates(ideal(stage))
-    >>> far = courses(StepMotion(by=Motion(x=1e-3)), loop)[0]
+    >>> far = courses(StepMotion(amplitude=Motion(x=1e-3)), loop)[0]
     >>> found = course_findings(far, np.array([[1e-3]]), np.zeros(1), ideal(stage).mapping, stroke_limits(stage))
     >>> found[0].where, "leaves what the strokes reach" in found[0].what
     ('trajectory x', True)

@@ -52,19 +52,19 @@ def follow(asked: FollowSetup, closed: Loop, control: System, path: Array, cours
     around = round(rest / step)
     wanted = np.concatenate([np.zeros((around, path.shape[1])), path, np.tile(path[-1], (around, 1))])
     window = slice(around, around + len(path))
-    if asked.by is Following.REPETITIVE:
+    if asked.method is Following.REPETITIVE:
         repetition = _repetition(course, around, step)
         seen = repeat(runner.begin(len(wanted)), closed, control, wanted, repetition, gain=asked.gain, spread=asked.spread)
         return Followed(_against(runner.whole(seen.commanded, 0), wanted, window), seen.commanded, repeated=seen)
     learned = None
-    if asked.by is Following.LEARNING:
+    if asked.method is Following.LEARNING:
         lesson = Lesson(asked.passes, asked.gain, asked.spread, window)
         learned = learn(lambda commanded, number: runner.whole(commanded, number).pose, closed, control, wanted, lesson)
         commanded = learned.commanded
-    elif asked.by is Following.INVERSE:
+    elif asked.method is Following.INVERSE:
         commanded = inverse_path(closed, control, wanted, asked.spread)
     else:
-        shaper = (zv if asked.by is Following.ZV else zvd)(asked.frequency or 0.0, asked.damping)
+        shaper = (zv if asked.method is Following.ZV else zvd)(asked.frequency or 0.0, asked.damping)
         commanded = shaper.shape(wanted, step)
     return Followed(_against(runner.whole(commanded, asked.passes), wanted, window), commanded, learned)
 

@@ -131,12 +131,12 @@ class PrefilterAt(CheckedFields):
 
 @dataclass(frozen=True)
 class LoopNumbers(CheckedFields):
-    """The numbers of some of the loops, `of` which they are: x, rz ..., in other coordinates mode1 or the actuator's name.
+    """The numbers of some of the loops, `axes` names them: x, rz ..., in other coordinates mode1 or the actuator's name.
 
     What is absent is that of all loops; `notches` are besides theirs.
     """
 
-    of: tuple[str, ...]
+    axes: tuple[str, ...]
     proportional: Annotated[float, RATIO] | None = None
     integral: Annotated[float, RATE, NOT_NEGATIVE] | None = None
     derivative: Annotated[float, TIME, NOT_NEGATIVE] | None = None
@@ -147,14 +147,14 @@ class LoopNumbers(CheckedFields):
 
 @dataclass(frozen=True)
 class GoalSetup(CheckedFields):
-    """What a search for the controller is after: its `aim`, and what every loop shall keep.
+    """What a search for the controller is after: its `objective`, and what every loop shall keep.
 
     `rejection` is the least frequency up to which disturbances are made smaller, `settling` the longest time to 2 % of a step, `overshoot`
     the most of it, `delay_margin` the least; absent: as good as it gets. The peak of S holds with all modes up to `spread` and all gains up
     to `gain` off. With `prefilter` what is commanded is shaped too.
     """
 
-    aim: Aim = Aim.BALANCE
+    objective: Aim = Aim.BALANCE
     rejection: Annotated[float, FREQUENCY, POSITIVE] | None = None
     settling: Annotated[float, TIME, POSITIVE] | None = None
     overshoot: Annotated[float, RATIO, _OVER] = 0.2
@@ -226,12 +226,12 @@ class DampingSetup(CheckedFields):
 class FollowSetup(CheckedFields):
     """What the loop is asked to follow instead of the trajectory itself, which is known beforehand; the error is against the trajectory.
 
-    `by` the inverse of the model's loop, by learning (so many `passes` of a `gain`) or by repetitive control of that gain (of a path that
-    repeats: a raster, a sine), all in the band that holds with all modes up to `spread` off; or by a shaper for a mode at `frequency` of a
+    `method`: the inverse of the model's loop, learning (so many `passes` of a `gain`) or repetitive control of that gain (of a path that
+    repeats: a raster, a sine), all in the band that holds with all modes up to `spread` off; or a shaper for a mode at `frequency` of a
     `damping` ratio.
     """
 
-    by: Following
+    method: Following
     passes: int = 10
     gain: Annotated[float, RATIO, _DAMPED] = 0.6
     spread: Annotated[float, RATIO, _SPREAD] = 0.02
@@ -265,7 +265,7 @@ class StepMotion(CheckedFields):
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
 
-    by: Motion = field(default_factory=Motion)
+    amplitude: Motion = field(default_factory=Motion)
     speed: Annotated[float, SPEED, POSITIVE] | None = None
     acceleration: Annotated[float, ACCELERATION, POSITIVE] | None = None
     jerk: Annotated[float, JERK, POSITIVE] | None = None
@@ -313,7 +313,7 @@ class SineMotion(CheckedFields):
 
     frequency: Annotated[float, FREQUENCY, POSITIVE] = 5.0
     periods: Annotated[float, RATIO, POSITIVE] = 3.0
-    by: Motion = field(default_factory=Motion)
+    amplitude: Motion = field(default_factory=Motion)
 
 
 @dataclass(frozen=True)

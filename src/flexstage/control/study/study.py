@@ -295,9 +295,11 @@ def _cautions(given: ResolvedSetup) -> list[Finding]:
         if quiet:
             found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))
     if given.setup.hysteresis is not None and given.charge is not None:
-        left, corner = 100.0 * float(np.max(given.charge.left)), float(np.max(given.charge.corners))
+        left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
         what = f"of stacks held at their charge {left:.3g} % of it is simulated above {corner:.3g} Hz, all of it far below"
-        found.append(Finding("hysteresis", what, "A stack alone is shown on volts; state what a record on charge leaves as amplifier.left"))
+        found.append(
+            Finding("hysteresis", what, "A stack alone is shown on volts; state amplifier.residual_hysteresis from a record on charge")
+        )
     if given.setup.hysteresis is not None:
         what = "margins, noise and poles are those of stacks without it, and without creep"
         found.append(Finding("hysteresis", what, "See the simulations for what it does"))

@@ -368,4 +368,4 @@ def _said(seen: View, wish: Wish, far: Array, judged: Judgement, kind: Kind = Ki
         else f"the peak of S is {judged.peak:.3g}"
     )
     beyond = f", stable up to {100.0 * STABLE * wish.spread:g} %" if wish.spread else ""
-    return f"{kind.value} by search for {wish.aim.value}: disturbances are rejected up to {reached} Hz; {peak}{beyond}"
+    return f"{kind.value} by search for {wish.objective.value}: disturbances are rejected up to {reached} Hz; {peak}{beyond}"

@@ -316,11 +316,11 @@ def advance(seen: View, within: Field, known: Decentralised) -> Found:
     for block in _blocks(within):
         own = Found(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
         part = _part(within, block)
-        if within.wish.aim is Aim.BALANCE:
+        if within.wish.objective is Aim.BALANCE:
             part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
         starts = [own, *_calmed(part, [own], _BACK)]
-        if within.wish.aim is Aim.SETTLING:  # what rejects far too settles soon
-            balanced = replace(part, wish=replace(part.wish, aim=Aim.BALANCE))
+        if within.wish.objective is Aim.SETTLING:  # what rejects far too settles soon
+            balanced = replace(part, wish=replace(part.wish, objective=Aim.BALANCE))
             starts.insert(0, _climb(balanced, starts, _frequencies_of_aim(balanced, own)))
         found = _climb(part, starts, _frequencies_of_aim(part, starts[0]))
         for place, loop in enumerate(block):
@@ -431,9 +431,9 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
         return None
     far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
     calm = _calmed(within, far, 0.0)
-    if within.wish.aim is Aim.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
+    if within.wish.objective is Aim.BALANCE and _far(within, calm[0]) < _LAME * _far(within, far[0]):
         calm = _calmed(within, far, _BACK)
-    if within.wish.aim is Aim.BALANCE and _is_calm(within, calm[0]):
+    if within.wish.objective is Aim.BALANCE and _is_calm(within, calm[0]):
         within = replace(within, allowed=tuple(_NOISIER * each for each in _noises(within, calm[0])))
     return _climb(within, [*calm, *far], _wanted(within, calm[0], least))
 
@@ -453,7 +453,7 @@ def _rejections(within: Field, found: Found) -> list[float]:
 
 def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
     """By loop the frequency [Hz] by which the aim is reached already: of rejection, or of which it settles in six periods."""
-    far, aim = _rejections(within, found), within.wish.aim
+    far, aim = _rejections(within, found), within.wish.objective
     soon = [SETTLED / _settling(_beside(within, found, loop), point) for loop, point in enumerate(found.points)]
     return soon if aim is Aim.SETTLING else list(map(min, far, soon)) if aim is Aim.BALANCE else far
 
@@ -492,7 +492,7 @@ def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
             break
         wanted = [one / _RATIO for one in wanted]
         best = _first_kept(within, starts, wanted)
-    if best is None or within.wish.aim is Aim.NOISE:
+    if best is None or within.wish.objective is Aim.NOISE:
         return replace(best or starts[0], reached=(0.0,) * len(wanted))
     ratio, groups, reached = _RATIO, sorted(set(within.alike)), wanted
     while ratio > _FINEST:
@@ -773,8 +773,8 @@ def rejection(one: OneLoop, point: Array) -> float:
 
 def _bounds(wish: Wish, frequency: float) -> Bounds:
     """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
-    far = frequency if wish.aim in (Aim.BALANCE, Aim.REJECTION) else 0.0
-    soon = SETTLED / frequency if wish.aim in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
+    far = frequency if wish.objective in (Aim.BALANCE, Aim.REJECTION) else 0.0
+    soon = SETTLED / frequency if wish.objective in (Aim.BALANCE, Aim.SETTLING) and frequency else np.inf
     return Bounds(
         max(far, wish.rejection or 0.0), min(soon, wish.settling or np.inf), wish.overshoot - _LEFT, plants=2 if wish.spread else 1
     )

@@ -144,12 +144,12 @@ def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
 
 def _improvements(wish: Wish, found: Outcome, against: Outcome) -> Iterator[Array]:
     """Logarithms by loop, of what the aim is about."""
-    if wish.aim in (Aim.BALANCE, Aim.REJECTION):
+    if wish.objective in (Aim.BALANCE, Aim.REJECTION):
         yield np.log(found.rejection[0] / against.rejection[0])
-    if wish.aim in (Aim.BALANCE, Aim.NOISE):
-        more = _NOISIER if wish.aim is Aim.BALANCE else 1.0
+    if wish.objective in (Aim.BALANCE, Aim.NOISE):
+        more = _NOISIER if wish.objective is Aim.BALANCE else 1.0
         yield np.log(more * np.maximum(against.noise, 1e-300) / np.maximum(found.noise, 1e-300))
-    if wish.aim in (Aim.BALANCE, Aim.SETTLING):
+    if wish.objective in (Aim.BALANCE, Aim.SETTLING):
         yield np.log(np.maximum(against.settling, 1e-300) / np.maximum(found.settling, 1e-300))
 
 
@@ -165,7 +165,7 @@ def merit(wish: Wish, found: Outcome) -> float:
         Aim.SETTLING: 1.0 / settling,
         Aim.NOISE: 1.0 / np.maximum(found.noise, 1e-300),
     }
-    return float(np.mean(np.log(merits[wish.aim])))
+    return float(np.mean(np.log(merits[wish.objective])))
 
 
 def worth(tried: Bench, found: Outcome) -> float:

@@ -16,7 +16,7 @@ STABLE = 2.5
 
 @dataclass(frozen=True)
 class Wish:
-    """What a controller shall be best at, `aim`, and what it has to keep.
+    """What a controller shall be best at, `objective`, and what it has to keep.
 
     `sensitivity` is the highest peak of S, coupled, allowed wherever all modes lie within `spread` (relative), and whatever every gain is
     within `gain` (relative); modes may be off by 2.5 times the spread before the loop becomes unstable. `delay_margin` [s] is what every
@@ -24,7 +24,7 @@ class Wish:
     gets. `prefilter`: whether references are shaped besides.
     """
 
-    aim: Aim = Aim.BALANCE
+    objective: Aim = Aim.BALANCE
     sensitivity: float = 2.0
     spread: float = 0.02
     gain: float = 0.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from flexstage.analysis.assessment.sensitivities import departure, not_numbers
+from flexstage.analysis.assessment.sensitivities import not_numbers, override_level
 from flexstage.base.arguments import CheckedFields
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Array, Table
@@ -38,7 +38,7 @@ DEFAULT = Known()
 class Free:
     """Free numbers by full address: units, values (P,) before, and prior standard deviations (P,) of their logarithms.
 
-    `mechanism` is the description with the departures made that these addresses mean.
+    `mechanism` is the description with the overrides made that these addresses mean.
     """
 
     mechanism: Mechanism
@@ -68,7 +68,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Known = DEFAULT) -> 
     require(
         Finding(f"prior of {name}", "it is not among the free numbers", suggest_nearest(name, full)) for name in own if name not in full
     )
-    ordered = sorted(full, key=lambda name: departure(mechanism, name))
+    ordered = sorted(full, key=lambda name: override_level(mechanism, name))
     started = mechanism
     for name in ordered:
         started = set_value(started, name, get(mechanism, name))

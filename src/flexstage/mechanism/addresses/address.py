@@ -3,11 +3,11 @@
     parts.neck.thickness                     a shared part
     bodies.platform.mass                     the tree of the description, name by name
     units.horizontal.links.front.at.x        a link's placement in all copies of its unit; `horizontal/front.at.x` for short
-    horizontal/front.thickness               the part of one link of a unit, in all copies: a departure, kept in `changes`
-    B2/front.thickness                       in one copy: a departure that goes before that of all copies
-    links.strut.thickness                    the part of a link of the stage itself: a departure too
+    horizontal/front.thickness               the part of one link of a unit, in all copies: an override, kept in `overrides`
+    B2/front.thickness                       in one copy: an override that goes before that of all copies
+    links.strut.thickness                    the part of a link of the stage itself: an override too
     numbers.arm                              a named number: what formulas work out of it changes with it
-    B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: a departure, nought if not made
+    B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: an override, nought if not made
 
 Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
 `parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
@@ -29,7 +29,7 @@ from flexstage.base.units.expression import parse_expression
 from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.addresses.locate import Place, canonical, link_path, locate
 from flexstage.mechanism.addresses.path import member, replace_member, with_mirror
-from flexstage.mechanism.assembly.expand import apply_changes
+from flexstage.mechanism.assembly.expand import apply_overrides
 from flexstage.mechanism.assembly.misalignment import misalignment_of
 from flexstage.mechanism.grammar.formulas import NUMBERS, amount_of, dependents, formula_value, is_formula, scope_of, shown_unit
 from flexstage.mechanism.grammar.grammar import node_of
@@ -42,7 +42,7 @@ _MOST_NAMES = 8
 
 
 def get(mechanism: Mechanism, address: str) -> Any:
-    """Return the value at an address, departures applied.
+    """Return the value at an address, overrides applied.
 
     >>> from flexstage.parts.rod import Rod
     >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
@@ -51,7 +51,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
     place = locate(mechanism, address)
     value: Any = mechanism
     if place.misaligned:
-        value = misalignment_of(mechanism.changes, place.owners[0])
+        value = misalignment_of(mechanism.overrides, place.owners[0])
     elif place.owners:
         link, part = _link_and_part(mechanism, place)
         value = link if place.in_link else part
@@ -63,7 +63,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
 
-    A departure is written to `changes`. An entry of a 6x6 is written with its mirror image. What formulas work out of a named
+    An override is written to `overrides`. An entry of a 6x6 is written with its mirror image. What formulas work out of a named
     number is worked out anew; of a value that has a formula the formula is dropped.
 
     >>> from flexstage.parts.rod import Rod
@@ -174,7 +174,7 @@ def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
 
 
 def addresses(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the address of every number of a description: shared parts, bodies, placements, and the departures that are made.
+    """Return the address of every number of a description: shared parts, bodies, placements, and the overrides that are made.
 
     Directions and absent values are left out.
 
@@ -183,7 +183,7 @@ def addresses(mechanism: Mechanism) -> tuple[str, ...]:
     ('parts.wire.length', 'parts.wire.diameter')
     """
     found = [address for address, _, _ in node_of(Mechanism).numbers(mechanism)]
-    for key, value in mechanism.changes.items():
+    for key, value in mechanism.overrides.items():
         place = locate(mechanism, key)
         found += [address for address, _, _ in place.node.numbers(value, place.address)]
     return tuple(dict.fromkeys(found))
@@ -229,9 +229,9 @@ def provenance(mechanism: Mechanism) -> Mapping[str, str]:
 def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
     link = _link_of(mechanism, place.owners)
     try:
-        return apply_changes(mechanism, link, place.owners)
+        return apply_overrides(mechanism, link, place.owners)
     except KeyError as error:
-        raise refuse(f"change of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
+        raise refuse(f"override of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
 
 
 def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
@@ -244,22 +244,22 @@ def _link_of(mechanism: Mechanism, owners: tuple[str, ...]) -> Link:
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
     if not place.owners:
         return replace_member(mechanism, place.path, value)
-    changes = dict(mechanism.changes)
-    for key, path in _departures(mechanism, place.owners[-1]):
+    overrides = dict(mechanism.overrides)
+    for key, path in _overrides(mechanism, place.owners[-1]):
         depth = len(path)
         if place.path[:depth] == path:
-            changes[key] = replace_member(changes[key], place.path[depth:], value)
-            return replace(mechanism, changes=Table(changes))
+            overrides[key] = replace_member(overrides[key], place.path[depth:], value)
+            return replace(mechanism, overrides=Table(overrides))
         if path[: len(place.path)] == place.path:
-            del changes[key]
-    return replace(mechanism, changes=Table(changes | {place.address: value}))
+            del overrides[key]
+    return replace(mechanism, overrides=Table(overrides | {place.address: value}))
 
 
-def _departures(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The departures made of that owner: key and full path."""
-    for key in mechanism.changes:
+def _overrides(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The overrides made of that owner: key and full path."""
+    for key in mechanism.overrides:
         if not f"links.{key}".startswith((f"{owner}.", f"links.{owner}.")):
-            continue  # found without looking for the place: a batch of copies has a hundred departures
+            continue  # found without looking for the place: a batch of copies has a hundred overrides
         place = locate(mechanism, key)
         if place.owners[-1:] == (owner,):
             yield key, place.path
@@ -270,9 +270,9 @@ def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:
 
 
 def _origin(mechanism: Mechanism, place: Place) -> str:
-    """The address that a value comes from: the departure that is made, or the shared part or drawn link."""
+    """The address that a value comes from: the override that is made, or the shared part or drawn link."""
     for owner in reversed(place.owners):
-        for _, path in _departures(mechanism, owner):
+        for _, path in _overrides(mechanism, owner):
             if path == place.path[: len(path)] or path[: len(place.path)] == place.path:
                 return replace(place, owners=(owner,)).address
     if not place.owners or place.misaligned:

@@ -16,7 +16,7 @@ from flexstage.mechanism.grammar.node import Node
 from flexstage.mechanism.mechanism import Link, Mechanism, NamedNumber, posed
 from flexstage.spatial.frame import COMPONENTS
 
-_DOCUMENT = ("tags", "sources", "requirements", "changes", "formulas", "paths")
+_DOCUMENT = ("tags", "sources", "requirements", "overrides", "formulas", "paths")
 _TOPOLOGY = ("joins", "part")
 
 
@@ -24,7 +24,7 @@ _TOPOLOGY = ("joins", "part")
 class Place:
     """Where an address points.
 
-    `path` is the full path from the description, and `owners` is empty; or a departure is meant: `owners` are those whose changes count,
+    `path` is the full path from the description, and `owners` is empty; or an override is meant: `owners` are those whose overrides count,
     the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part; or
     `owners` is a copy or a gauge, and `path` starts at its misalignment (`shift.x`).
     """
@@ -94,11 +94,11 @@ def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
     >>> unit_of_copy(Mechanism(""))
     {}
     """
-    return {copy: placement.unit for key, placement in mechanism.place.items() for copy in copy_names(key)}
+    return {copy: placement.unit for key, placement in mechanism.placements.items() for copy in copy_names(key)}
 
 
 def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:
-    """The path of the link that an owner of departures is: one of a unit (`unit/link`), or of the stage.
+    """The path of the link that an owner of overrides is: one of a unit (`unit/link`), or of the stage.
 
     >>> link_path(Mechanism(""), "strut")
     ('links', 'strut')
@@ -128,12 +128,12 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
 
 
 def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:
-    """A place in the link at path `tree`: one of its own fields, or a departure of its part."""
+    """A place in the link at path `tree`: one of its own fields, or an override of its part."""
     link = _at(mechanism, tree)
     if not steps or steps[0] in _TOPOLOGY:
-        raise refuse(address, "what a link joins and its part are no departures", "Address a value of the link or of its part")
+        raise refuse(address, "what a link joins and its part are no overrides", "Address a value of the link or of its part")
     if has_member(link, steps[0]):
-        departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.changes)
+        departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.overrides)
         start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
         return _descend(link, address, start, steps)
     if link.part not in mechanism.parts:
@@ -160,7 +160,7 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
 
 
 def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
-    """Whose changes count for a link drawn at that path (those of a link of the stage may be written short)."""
+    """whose overrides count for a link drawn at that path (those of a link of the stage may be written short)."""
     return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
 
 

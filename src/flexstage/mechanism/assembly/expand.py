@@ -80,7 +80,7 @@ class PlacedBody:
 
 @dataclass(frozen=True, eq=False)
 class PlacedLink:
-    """A link of the expanded stage: bodies joined by name, the part with its departures applied, the link frame in the stage's frame.
+    """A link of the expanded stage: bodies joined by name, the part with its overrides applied, the link frame in the stage's frame.
 
     `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`). A link that stands for a member
     of a compound (`B1/pivot.left`) is `of` the one that the description has (`B1/pivot`).
@@ -224,7 +224,7 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 
 
 def expand(mechanism: Mechanism) -> Assembly:
-    """Expand a description: units copied by pattern, departures applied, frames in the stage's frame.
+    """Expand a description: units copied by pattern, overrides applied, frames in the stage's frame.
 
     The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
 
@@ -326,7 +326,7 @@ def _unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
         for where, body in bodies
         for name, solid in body.solids.items()
     ]
-    named += [(f"place.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.place.items()]
+    named += [(f"placements.{name}.unit", "unit", item.unit, mechanism.units) for name, item in mechanism.placements.items()]
     named += [
         (f"gauges.{name}.gauge", "sensor", probe.gauge, mechanism.sensors)
         for name, probe in mechanism.gauges.items()
@@ -372,11 +372,11 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
     >>> [name for name, _, _ in copies(double_triangle())]
     ['B1', 'B2', 'B3', 'B4', 'B5', 'B6']
     """
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         names = copy_names(key)
         frames = copy_frames(placement.pattern, len(names))
         for name, frame in zip(names, frames, strict=True):
-            yield name, placement.unit, misalign(frame, mechanism.changes, name)
+            yield name, placement.unit, misalign(frame, mechanism.overrides, name)
 
 
 def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
@@ -387,7 +387,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
     ['platform', 'B1/base', 'B1/tip']
     """
     drawn = {name: unit.bodies for name, unit in drawn_units(mechanism).items()}
-    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.place.items() for copy in copy_names(key)]
+    placed = [(copy, drawn.get(placement.unit, {})) for key, placement in mechanism.placements.items() for copy in copy_names(key)]
     return dict(mechanism.bodies) | {f"{copy}/{name}": body for copy, bodies in placed for name, body in bodies.items()}
 
 
@@ -443,7 +443,7 @@ def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
 
 @dataclass(frozen=True, eq=False)
 class _DrawnLink:
-    """A link with its frame in the frame it is drawn in; `owners` are the addresses whose departures count, its own the last."""
+    """A link with its frame in the frame it is drawn in; `owners` are the addresses whose overrides count, its own the last."""
 
     owners: tuple[str, ...]
     link: Link
@@ -459,7 +459,7 @@ def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnB
         unit: {name: _OwnMass(body, mechanism.materials, f"{unit}/{name}") for name, body in bodies.items()}
         for unit, bodies in units.items()
     }
-    meant = {copy: frame for copy, _, frame in copies(replace(mechanism, changes=Table({})))} if mechanism.changes else {}
+    meant = {copy: frame for copy, _, frame in copies(replace(mechanism, overrides=Table({})))} if mechanism.overrides else {}
     for copy, unit, frame in placed:
         for name, body in units[unit].items():
             yield _DrawnBody(f"{copy}/{name}", body, masses[unit][name], frame, meant.get(copy, frame))
@@ -568,7 +568,7 @@ def _link_frame(link: Link) -> Frame:
 
 
 def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: str, ends: Sequence[str]) -> PlacedLink | PlacedSuperelement:
-    link, part = apply_changes(mechanism, drawn.link, (*drawn.owners, name))
+    link, part = apply_overrides(mechanism, drawn.link, (*drawn.owners, name))
     frame = (drawn.frame if link is drawn.link else _link_frame(link)).within(outer)
     if ports_of(part):
         whole = cast("Superelement", inner(part))
@@ -603,19 +603,19 @@ def _image(link: PlacedLink) -> PlacedLink:
     return replace(link, part=part, frame=link.frame.right_handed)
 
 
-def apply_changes(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
-    """A link and its part with the mechanism's `changes` for the owners' addresses applied, in the owners' order.
+def apply_overrides(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
+    """A link and its part with the mechanism's `overrides` for the owners' addresses applied, in the owners' order.
 
     >>> from dataclasses import replace
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> stage = replace(double_triangle(), changes={"horizontal/front.thickness": 1.4e-3})
+    >>> stage = replace(double_triangle(), overrides={"horizontal/front.thickness": 1.4e-3})
     >>> link = stage.units["horizontal"].links["front"]
-    >>> apply_changes(stage, link, ("horizontal/front", "B1/front"))[1].thickness
+    >>> apply_overrides(stage, link, ("horizontal/front", "B1/front"))[1].thickness
     0.0014
     """
     part = mechanism.parts[link.part]
     for owner in dict.fromkeys(owners):
-        for address, value in mechanism.changes.items():
+        for address, value in mechanism.overrides.items():
             if not address.startswith(f"{owner}."):
                 continue
             path = tuple(address[len(owner) + 1 :].split("."))
@@ -667,7 +667,7 @@ def _single_gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink], key: s
     if isinstance(place, Probe):
         gauge = mechanism.sensors[place.gauge]
         for name, frame in zip(names, copy_frames(place.pattern, len(names)), strict=True):
-            yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.changes, name).right_handed),))
+            yield PlacedGauge(name, gauge, (sight(place, gauge, misalign(frame, mechanism.overrides, name).right_handed),))
     elif isinstance(place, LinkProbe):
         gauge = mechanism.sensors[place.gauge]
         for name, link in zip(names, (links[each] for each in link_names(place.link)), strict=True):

@@ -1,4 +1,4 @@
-"""Units that are like another: what they take from it, and whose departures count for it."""
+"""Units that are like another: what they take from it, and whose overrides count for it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
 
 
 def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
-    """The units whose departures count for a unit's link, from the one that draws it on.
+    """The units whose overrides count for a unit's link, from the one that draws it on.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> link_lineage(double_triangle(), "horizontal", "front")

@@ -31,14 +31,14 @@ class Misalignment(Description):
 MISALIGNED = tuple(field.name for field in fields(Misalignment))
 
 
-def misalignment_of(changes: Mapping[str, Any], copy: str) -> Misalignment:
-    """What departures say of a copy's or a gauge's place.
+def misalignment_of(overrides: Mapping[str, Any], copy: str) -> Misalignment:
+    """What overrides say of a copy's or a gauge's place.
 
     >>> misalignment_of({"B2.shift.x": 1e-5}, "B2").shift
     (1e-05, 0.0, 0.0)
     """
     result = Misalignment()
-    for address, value in changes.items():
+    for address, value in overrides.items():
         name, _, rest = address.partition(".")
         path = tuple(rest.split("."))
         if name == copy and path[0] in MISALIGNED:
@@ -46,14 +46,14 @@ def misalignment_of(changes: Mapping[str, Any], copy: str) -> Misalignment:
     return result
 
 
-def misalign(frame: Frame, changes: Mapping[str, Any], copy: str) -> Frame:
-    """The frame of a copy as departures leave it: shifted along its own axes, turned about its own origin.
+def misalign(frame: Frame, overrides: Mapping[str, Any], copy: str) -> Frame:
+    """The frame of a copy as overrides leave it: shifted along its own axes, turned about its own origin.
 
     >>> at = Frame(np.eye(3), np.zeros(3))
     >>> misalign(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()
     [0.0, 1.0, 0.0]
     """
-    if not any(address.partition(".")[0] == copy for address in changes):
+    if not any(address.partition(".")[0] == copy for address in overrides):
         return frame
-    found = misalignment_of(changes, copy)
+    found = misalignment_of(overrides, copy)
     return Frame(np.asarray(frame.rotation) @ exponential(stack(found.rotation)), frame.point(stack(found.shift)), frame.mirrored)

@@ -39,7 +39,7 @@ from flexstage.spatial.frame import Frame, identity, reflection
 
 STAGES = "stages"
 """The table of a design file that says what stages stand on this one."""
-_SECTIONS = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces", "stops")
+_SECTIONS = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,14 +58,14 @@ def mount(
     """Return the stage with another one `carried` on its body `on`: what was that one's ground is this body.
 
     Bodies, links, units, copies, parts, gauges and loads of the carried stage are called `name/...`, their numbers are as they are there;
-    its departures and tags come along, its temperatures too, and, on the ground, what that grows with. Its gravity, damping, requirements,
+    its overrides and tags come along, its temperatures too, and, on the ground, what that grows with. Its gravity, damping, requirements,
     envelope, formulas and what else is said of a stage as a whole do not. `platform`: that of the carried stage is the platform of both
     (absent: where the stage itself has no body of this name). Raises `DesignError` where names clash, the body is not there, the pose is
     mirrored, or both stages state another growth or temperature of one ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> both = mount(parallelogram(), "fine", parallelogram(), on="platform")
-    >>> list(both.bodies), list(both.place)
+    >>> list(both.bodies), list(both.placements)
     (['platform', 'fine/platform'], ['B', 'fine/B'])
     """
     pose = pose or Pose()
@@ -79,7 +79,7 @@ def mount(
         "bodies": {rename.body(key): _moved_body(rename.solids(body), frame) for key, body in carried.bodies.items()},
         "links": {f"{name}/{key}": _moved_link(rename.link(link), frame) for key, link in carried.links.items()},
         "units": {f"{name}/{key}": rename.unit(unit) for key, unit in carried.units.items()},
-        "place": dict(_copies(carried, name, frame)),
+        "placements": dict(_copies(carried, name, frame)),
         "sensors": _under(name, carried.sensors),
         "gauges": dict(_gauges(carried, rename, frame)),
         "stops": dict(_stops(carried, rename, frame)),
@@ -97,17 +97,17 @@ def mount(
     }
     own["temperatures"] = {**own["temperatures"], **stage.temperatures}
     merged = {section: Table({**getattr(stage, section), **entries}) for section, entries in own.items()}
-    changes = {_departure(name, key): value for key, value in carried.changes.items()}
+    overrides = {_override(name, key): value for key, value in carried.overrides.items()}
     tags, sources = _provenance(stage, rename, carried)
     packages = tuple(dict.fromkeys((*stage.packages, *carried.packages)))
     ground = stage.ground or (_ground(name, carried) if _is_on_ground(stage, on) else None)
-    changes = Table({**changes, **stage.changes})
-    return replace(stage, **merged, ground=ground, changes=changes, tags=tags, sources=sources, packages=packages)
+    overrides = Table({**overrides, **stage.overrides})
+    return replace(stage, **merged, ground=ground, overrides=overrides, tags=tags, sources=sources, packages=packages)
 
 
 def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, pose: Pose) -> Iterator[Finding]:
     where = f"stages.{name}"
-    placed = (*stage.place, *stage.gauges, *stage.stops)
+    placed = (*stage.placements, *stage.gauges, *stage.stops)
     taken = {copy for key in placed for copy in copy_names(key)} | {
         *stage.bodies,
         *stage.units,
@@ -184,7 +184,7 @@ class _Names:
         """A part, of the material under its new name."""
         if isinstance(part, Restricted):
             return replace(part, part=self.part(part.part))
-        named = {key: f"{self.name}/{value}" for key in ("material", "stands_for") if (value := getattr(part, key, None))}
+        named = {key: f"{self.name}/{value}" for key in ("material", "replaces") if (value := getattr(part, key, None))}
         return replace(cast("Any", part), **named) if named else part
 
     def solids(self, body: Body) -> Body:
@@ -242,7 +242,7 @@ def _pairs(joins: Any) -> Iterator[tuple[Any, str]]:
 
 def _copies(carried: Mechanism, name: str, outer: Frame) -> Iterator[tuple[str, Placement]]:
     """Copies one by one, each in its pose in the carrying stage."""
-    for key, item in carried.place.items():
+    for key, item in carried.placements.items():
         copies = copy_names(key)
         for copy, frame in zip(copies, copy_frames(item.pattern, len(copies)), strict=True):
             yield f"{name}/{copy}", Placement(f"{name}/{item.unit}", _pose(frame.within(outer)))
@@ -303,7 +303,7 @@ def _moved_link(link: Link, frame: Frame) -> Link:
     return replace(link, **points, **directions)
 
 
-def _departure(name: str, key: str) -> str:
+def _override(name: str, key: str) -> str:
     return f"links.{name}/{key.removeprefix('links.')}" if key.startswith("links.") else f"{name}/{key}"
 
 

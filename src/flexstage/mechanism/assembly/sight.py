@@ -65,7 +65,7 @@ class PlacedStop:
 def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
     """A stop at a frame: it sees the body's motion along x against the base's, as a gauge of a gap does."""
     seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
-    return PlacedStop(seen, np.asarray(-np.inf if stop.gap_back is None else -stop.gap_back), np.asarray(stop.gap))
+    return PlacedStop(seen, np.asarray(-np.inf if stop.gap_negative is None else -stop.gap_negative), np.asarray(stop.gap))
 
 
 def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:

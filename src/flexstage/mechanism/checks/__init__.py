@@ -18,7 +18,7 @@ from flexstage.mechanism.checks.graph import graph_findings
 from flexstage.mechanism.checks.kind import kind_findings, package_findings
 from flexstage.mechanism.checks.name import copy_findings, name_findings
 from flexstage.mechanism.checks.orientation import orientation_findings
-from flexstage.mechanism.checks.provenance import change_findings, tag_findings
+from flexstage.mechanism.checks.provenance import override_findings, tag_findings
 from flexstage.mechanism.checks.value import value_findings
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -41,12 +41,12 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     if findings := tuple(package_findings(mechanism.packages)):
         return findings
     names = (*name_findings(mechanism), *compound_findings(mechanism))
-    changes = tuple(change_findings(mechanism))
-    sound = mechanism if not changes else replace(mechanism, changes=Table({}))
+    overrides = tuple(override_findings(mechanism))
+    sound = mechanism if not overrides else replace(mechanism, overrides=Table({}))
     values = (*formula_findings(mechanism), *value_findings(sound))
-    findings = (*names, *changes, *tag_findings(mechanism), *values)
+    findings = (*names, *overrides, *tag_findings(mechanism), *values)
     if not values:
-        geometry = tuple(geometry_findings(sound, departures=not findings))
+        geometry = tuple(geometry_findings(sound, overrides=not findings))
         findings += geometry or tuple(orientation_findings(sound))
     findings = findings if names else (*findings, *graph_findings(mechanism))
     return findings or tuple(matrix_findings(mechanism))

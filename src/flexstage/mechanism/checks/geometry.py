@@ -15,7 +15,7 @@ from flexstage.base.number import Array, Number, first_design, stack
 from flexstage.base.units.quantity import LENGTH, Quantity
 from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.locate import link_path, locate
-from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_changes, placed_bodies
+from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_overrides, placed_bodies
 from flexstage.mechanism.assembly.likeness import drawn_units
 from flexstage.mechanism.checks.value import first_failing
 from flexstage.mechanism.grammar.node import join
@@ -38,8 +38,8 @@ _MOMENT_DIGITS = 5
 """Digits of moments of inertia below which rounding does not excuse what no mass has: a thin bar's least one is a difference of entries."""
 
 
-def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Iterator[Finding]:
-    """Findings about materials, parts, solids, stated masses and payloads; with `departures` also about parts of single copies.
+def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterator[Finding]:
+    """Findings about materials, parts, solids, stated masses and payloads; with `overrides` also about parts of single copies.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
@@ -50,7 +50,7 @@ def geometry_findings(mechanism: Mechanism, *, departures: bool = True) -> Itera
         yield from (replace(fault, where=f"materials.{name}.{fault.where}") for fault in material.faults)
     for name, part in mechanism.parts.items():
         yield from _part(f"parts.{name}", part)
-    if departures:
+    if overrides:
         for owner, part in _departed_parts(mechanism):
             yield from _part(owner, part)
     stage = placed_bodies(mechanism)
@@ -88,14 +88,14 @@ def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
     """Mirrored copies of what has no mirror image, or none that is known."""
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         unit = drawn_units(mechanism).get(placement.unit)
         if placement.pattern.mirror is None or unit is None:
             continue
         for name, link in unit.links.items():
             part = mechanism.parts.get(link.part)
             if part is not None and part.mirrored is None:
-                yield Finding(f"place.{key}", f"{placement.unit}/{name}: {NO_IMAGE[0]}", NO_IMAGE[1])
+                yield Finding(f"placements.{key}", f"{placement.unit}/{name}: {NO_IMAGE[0]}", NO_IMAGE[1])
 
 
 def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -110,12 +110,12 @@ def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
-    """The parts as they are after the departures, by the link or the copy that departs."""
-    places = [locate(mechanism, key) for key in mechanism.changes]
+    """The parts as they are after the overrides, by the link or the copy that departs."""
+    places = [locate(mechanism, key) for key in mechanism.overrides]
     for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
         section, *inside = link_path(mechanism, owners[0])
         link = mechanism.links[inside[0]] if section == "links" else mechanism.units[inside[0]].links[inside[2]]
-        yield owners[-1], apply_changes(mechanism, link, owners)[1]
+        yield owners[-1], apply_overrides(mechanism, link, owners)[1]
 
 
 def _part(where: str, part: Part) -> Iterator[Finding]:

@@ -47,7 +47,7 @@ def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
     bodies = placed_bodies(mechanism)
     edges = [edge for name, link in mechanism.links.items() for edge in _edges(name, link.part, joined(link, bodies))]
     units = drawn_units(mechanism)
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         unit = units[placement.unit]
         for copy in copy_names(key):
             for name, link in unit.links.items():

@@ -20,7 +20,7 @@ from flexstage.parts.part import counter_of, material_of
 MOST_COPIES = 360
 _LONGEST = 60
 _RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
-_NAMED = ("materials", "parts", "bodies", "links", "units", "place", "sensors", "gauges", "payloads", "forces", "stops")
+_NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -46,10 +46,10 @@ def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
     >>> from flexstage.mechanism.mechanism import Placement
     >>> from flexstage.mechanism.assembly.pattern import Pose
-    >>> print(*copy_findings(Mechanism("", place={"B3-B1": Placement("leg", Pose())})))
-    place.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
+    >>> print(*copy_findings(Mechanism("", placements={"B3-B1": Placement("leg", Pose())})))
+    placements.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
     """
-    for section in ("place", "gauges", "stops"):
+    for section in ("placements", "gauges", "stops"):
         keys = getattr(mechanism, section)
         faults = [fault for key in keys if (fault := _range_fault(f"{section}.{key}", key))]
         yield from faults
@@ -139,7 +139,7 @@ def _materials(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _check_known(f"parts.{name}.material", "material", material_of(part), mechanism.materials)
         yield from _check_known(f"parts.{name}.counter", "material", counter_of(part), mechanism.materials)
         if isinstance(part, Given):
-            yield from _check_known(f"parts.{name}.stands_for", "part", part.stands_for or None, mechanism.parts)
+            yield from _check_known(f"parts.{name}.replaces", "part", part.replaces or None, mechanism.parts)
     for where, body in _all_bodies(mechanism):
         for name, solid in body.solids.items():
             yield from _check_known(f"{where}.solids.{name}.material", "material", solid.material, mechanism.materials)
@@ -152,8 +152,8 @@ def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) 
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
-    for name, placement in mechanism.place.items():
-        yield from _check_known(f"place.{name}.unit", "unit", placement.unit, mechanism.units)
+    for name, placement in mechanism.placements.items():
+        yield from _check_known(f"placements.{name}.unit", "unit", placement.unit, mechanism.units)
     gauged = {GROUND, *(name for name, body in placed_bodies(mechanism).items() if body.of is None)}
     for name, probe in mechanism.gauges.items():
         if not isinstance(probe, GaugeSum):
@@ -182,7 +182,7 @@ def _check_stops(mechanism: Mechanism, moving: Iterable[str]) -> Iterator[Findin
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:
     """Links of a unit that join a body of one copy: in that copy both ends may be the same."""
     bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         unit = units.get(placement.unit, Unit())
         far = {name: link for name, link in unit.links.items() if any("/" in body for body in link.bodies)}
         for copy in copy_names(key) if far else ():
@@ -194,11 +194,11 @@ def _loops(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
-    copies = {name for key in mechanism.place for name in copy_names(key)}
+    copies = {name for key in mechanism.placements for name in copy_names(key)}
     for kind, names in (("unit", mechanism.units), ("link", mechanism.links)):
         for name in sorted(copies & set(names)):
             advice = "Give one of them another name: addresses could mean either"
-            yield Finding(f"place.{name}", f"a {kind} and a copy have this name", advice)
+            yield Finding(f"placements.{name}", f"a {kind} and a copy have this name", advice)
 
 
 def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
@@ -216,6 +216,6 @@ def _link(mechanism: Mechanism, where: str, link: Link, bodies: dict[str, Body])
 
 def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:
     units = drawn_units(mechanism)
-    for key, placement in mechanism.place.items():
+    for key, placement in mechanism.placements.items():
         links = units[placement.unit].links if placement.unit in units else ()
         yield from (f"{copy}/{name}" for copy in copy_names(key) for name in links)

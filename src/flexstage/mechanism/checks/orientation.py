@@ -36,8 +36,8 @@ def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for name, part in mechanism.parts.items():
         for port, placed in ports_of(part).items():
             yield from _pair(f"parts.{name}.ports.{port}.along", placed.along, f"parts.{name}.ports.{port}.up", placed.up)
-    for name, placement in mechanism.place.items():
-        yield from _pattern(f"place.{name}", placement.pattern)
+    for name, placement in mechanism.placements.items():
+        yield from _pattern(f"placements.{name}", placement.pattern)
     for name, probe in posed(mechanism.gauges).items():
         yield from _pattern(f"gauges.{name}", probe.pattern, has_up=False)
     for name, stop in mechanism.stops.items():

@@ -1,4 +1,4 @@
-"""Departures and tags: they point somewhere, and say what they mean."""
+"""Overrides and tags: they point somewhere, and say what they mean."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ DERIVED = "derived"
 _WORDS = (STATED, DERIVED, ASSUMED)
 
 
-def change_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about departures: each must address a link's value, be of its kind, and stand alone.
+def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
+    """Findings about overrides: each must address a link's value, be of its kind, and stand alone.
 
-    >>> print(*change_findings(Mechanism("", changes={"parts.neck.thickness": 0.001})))
-    change."parts.neck.thickness": there is no "neck". There are none.
+    >>> print(*override_findings(Mechanism("", overrides={"parts.neck.thickness": 0.001})))
+    overrides."parts.neck.thickness": there is no "neck". There are none.
     """
     made: dict[str, str] = {}
     inside: dict[str, str] = {}
-    for key, value in mechanism.changes.items():
-        where = f'change."{key}"'
+    for key, value in mechanism.overrides.items():
+        where = f'overrides."{key}"'
         try:
             place = locate(mechanism, key)
         except DesignError as error:
             yield from (replace(finding, where=where) for finding in error.findings)
             continue
-        yield from _departure(where, key, place, value)
+        yield from _override(where, key, place, value)
         prefixes = [".".join((*place.owners[-1:], *place.path[:depth])) for depth in range(1, len(place.path) + 1)]
         other = inside.get(place.address) or next((made[prefix] for prefix in prefixes if prefix in made), None)
         if other is not None:
@@ -41,10 +41,10 @@ def change_findings(mechanism: Mechanism) -> Iterator[Finding]:
         inside.update(dict.fromkeys(prefixes, key))
 
 
-def _departure(where: str, key: str, place: Place, value: Any) -> Iterator[Finding]:
+def _override(where: str, key: str, place: Place, value: Any) -> Iterator[Finding]:
     if not any(key.startswith(f"{owner}.") for owner in place.owners):
-        advice = "Set that value itself; departures are written unit/link.field or copy/link.field"
-        yield Finding(where, f"it addresses {place.address}, which is no departure of a link", advice)
+        advice = "Set that value itself; overrides are written unit/link.field or copy/link.field"
+        yield Finding(where, f"it addresses {place.address}, which is no override of a link", advice)
     elif expected := place.node.wanted(value):
         yield Finding(where, f"found {value!r} where {expected[0]} is expected", expected[1])
 
@@ -55,7 +55,7 @@ def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> print(*tag_findings(Mechanism("", tags={"gravity": "published"})))
     tags."gravity": found "published", which does not begin with stated, derived or assumed. Write for example "stated paper 2.2".
     """
-    without = replace(mechanism, changes=Table({}))
+    without = replace(mechanism, overrides=Table({}))
     for address, tag in mechanism.tags.items():
         where = f'tags."{address}"'
         try:

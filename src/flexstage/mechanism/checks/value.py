@@ -51,8 +51,8 @@ def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
 
 def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
     yield from node_of(Mechanism).numbers(mechanism)
-    for key, value in mechanism.changes.items():
-        yield from locate(mechanism, key).node.numbers(value, f'change."{key}"')
+    for key, value in mechanism.overrides.items():
+        yield from locate(mechanism, key).node.numbers(value, f'overrides."{key}"')
 
 
 def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:

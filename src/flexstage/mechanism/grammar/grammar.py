@@ -102,7 +102,6 @@ _TAGS_SCHEMA: dict[str, Any] = {
 }
 _KIND = "kind"
 _ELSEWHERE = "A kind that another package offers is known where that package is installed"
-_FILE_KEYS = {(Mechanism, "changes"): "change", (Mechanism, "requirements"): "require"}
 
 
 @dataclass(frozen=True)
@@ -258,7 +257,7 @@ class JoinsNode(Node):
         return self._node(value).child(value, name)
 
 
-CHANGES = OpenNode("Departures by address: unit/link.field of all copies, copy/link.field of one.")
+OVERRIDES = OpenNode("Overrides by address: unit/link.field of all copies, copy/link.field of one.")
 
 
 @dataclass(frozen=True)
@@ -335,7 +334,7 @@ class RecordNode(Node):
             value = getattr(record, name)
             default = name not in _ALWAYS and not slot.required and digest(value) == digest(slot.default)
             stated = not default or writer.has_formula(join(where, name))
-            if stated and name != TAGS and slot.node is not CHANGES:
+            if stated and name != TAGS and slot.node is not OVERRIDES:
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
@@ -568,8 +567,8 @@ def _slots(record: type) -> Mapping[str, Slot]:
 
 def _slot(record: type, field: dataclasses.Field[Any], hint: Any) -> Slot:
     inner, optional = _without_none(hint)
-    key = field.metadata.get(KEY) or _FILE_KEYS.get((record, field.name), field.name)
-    node = CHANGES if (record, field.name) == (Mechanism, "changes") else _node(inner)
+    key = field.metadata.get(KEY, field.name)
+    node = OVERRIDES if (record, field.name) == (Mechanism, "overrides") else _node(inner)
     default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
     if default is dataclasses.MISSING and isinstance(node, (TableNode, OpenNode)):
         default = Table({})

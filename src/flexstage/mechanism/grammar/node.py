@@ -451,7 +451,7 @@ STIFFNESSES = Blocks("stiffness", (STIFFNESS, COUPLING_STIFFNESS, ROTATIONAL_STI
 
 @dataclass(frozen=True)
 class RowNode(Node):
-    """A row of a 6x6; files and departures state the whole matrix or single entries."""
+    """A row of a 6x6; files and overrides state the whole matrix or single entries."""
 
     row: int
     blocks: Blocks = COMPLIANCES

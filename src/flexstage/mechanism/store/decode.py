@@ -17,7 +17,7 @@ from flexstage.mechanism.catalogue import Catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
 from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
-from flexstage.mechanism.grammar.grammar import CHANGES, TAGS, node_of
+from flexstage.mechanism.grammar.grammar import OVERRIDES, TAGS, node_of
 from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.anchor import anchor_paths
@@ -136,7 +136,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
         return reader.note(missing)  # what they offer is not known, which says nothing about the rest
-    body = {key: value for key, value in raw.items() if key not in ("format", "change", STAGES)}
+    body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES)}
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
@@ -146,27 +146,27 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         mechanism = mount_all(mechanism, files.carried(reader, raw[STAGES]) if STAGES in raw else {})
     except DesignError as error:
         return reader.note(error.findings)
-    changes = raw.get("change", {})
+    overrides = raw.get("overrides", {})
     formulas = {canonical(mechanism, where): text for where, text in reader.formulas.items()}
     reader.formulas.clear()
-    if included and isinstance(changes, dict):
+    if included and isinstance(overrides, dict):
         stated = replace(mechanism, formulas=Table(formulas), tags=Table({**mechanism.tags, **reader.tags}))
-        mechanism, changes = _with_own_values(reader, stated, changes, included)
+        mechanism, overrides = _with_own_values(reader, stated, overrides, included)
         formulas, reader.tags = dict(mechanism.formulas), dict(mechanism.tags) | _tags_above(raw)
-    values = _changes(reader, mechanism, changes) if isinstance(changes, dict) else reader.read(CHANGES, changes, "change")
+    values = _overrides(reader, mechanism, overrides) if isinstance(overrides, dict) else reader.read(OVERRIDES, overrides, "overrides")
     if not isinstance(values, dict):
         return BAD
     sources = reader.sources | dict(mechanism.sources)
     tags = {**mechanism.tags, **reader.tags}
-    mechanism = replace(mechanism, changes={**mechanism.changes, **values}, tags=Table(tags), sources=Table(sources))
-    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # a departure, where it is one by now
+    mechanism = replace(mechanism, overrides={**mechanism.overrides, **values}, tags=Table(tags), sources=Table(sources))
+    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # an override, where it is one by now
     return replace(mechanism, formulas=Table(formulas))
 
 
 def _with_own_values(
     reader: Reader, mechanism: Mechanism, raw: dict[str, Any], included: frozenset[str]
 ) -> tuple[Mechanism, dict[str, Any]]:
-    """The description with the values that its changes state of included entries, and the other changes."""
+    """The description with the values that its overrides state of included entries, and the other overrides."""
     rest: dict[str, Any] = {}
     for address, value in raw.items():
         if not _is_of(mechanism, address, included):
@@ -178,7 +178,7 @@ def _with_own_values(
             else:
                 mechanism = set_value(mechanism, address, locate(mechanism, address).node.read(value, address, reader))
         except DesignError as error:
-            reader.note(replace(finding, where=f'change."{short(address)}"') for finding in error.findings)
+            reader.note(replace(finding, where=f'overrides."{short(address)}"') for finding in error.findings)
     return mechanism, rest
 
 
@@ -197,12 +197,12 @@ def _tags_above(raw: dict[str, Any]) -> dict[str, str]:
     return {key: tag for key, tag in tags.items() if isinstance(tag, str)} if isinstance(tags, dict) else {}
 
 
-def _changes(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[str, Any]:
+def _overrides(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for address, value in raw.items():
-        where = f'change."{short(address)}"'
+        where = f'overrides."{short(address)}"'
         if address == TAGS:
-            reader.refuse(where, "this is no address", "Tags of changes stand in [tags], by address")
+            reader.refuse(where, "this is no address", "Tags of overrides stand in [tags], by address")
             continue
         try:
             values[address] = reader.read(locate(mechanism, address).node, value, where)

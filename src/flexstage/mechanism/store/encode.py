@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.file import FORMAT
 
 _FIRST = ("format", "name", "numbers")
-_LAST = ("change", "require", "sources", TAGS)
+_LAST = ("overrides", "requirements", "sources", TAGS)
 
 
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
@@ -28,10 +28,10 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     require(kind_findings(mechanism))
     writer = Writer(formulas=mechanism.formulas)
     tree = {"format": FORMAT} | writer.write(node_of(Mechanism), mechanism, "")
-    places = {key: locate(mechanism, key) for key in mechanism.changes}
-    changes = {key: writer.write(place.node, mechanism.changes[key], place.address) for key, place in places.items()}
+    places = {key: locate(mechanism, key) for key in mechanism.overrides}
+    overrides = {key: writer.write(place.node, mechanism.overrides[key], place.address) for key, place in places.items()}
     require(writer.findings)
-    tree |= {"change": changes} if changes else {}
+    tree |= {"overrides": overrides} if overrides else {}
     for address, tag in mechanism.tags.items():
         table, key = _home(tree, address)
         table.setdefault(TAGS, {})[key] = tag

@@ -69,7 +69,7 @@ def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ())
                 other = origin[address][0] if address in origin else "this file"
                 what = f"{address} stands in {file} and in {other}"
                 findings.append(
-                    Finding(INCLUDE, what, "Rename one or take it out; single values of included entries are changed in [change]")
+                    Finding(INCLUDE, what, "Rename one or take it out; single values of included entries are changed in [overrides]")
                 )
                 continue
             tree[section][entry] = value

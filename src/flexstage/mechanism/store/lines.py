@@ -18,9 +18,9 @@ _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?"
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
     r"""The findings with the file `where` and the line in front of their addresses; of an inline table's entry the table's line.
 
-    >>> found = with_lines([Finding("place.B1.unit", "it is lost", "Find it")], "[place]\nB1 = { unit = 1 }", "stage.toml")
+    >>> found = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(found))
-    stage.toml: line 2: place.B1.unit: it is lost. Find it.
+    stage.toml: line 2: placements.B1.unit: it is lost. Find it.
     """
     lines = line_numbers(text)
     for finding in findings:
@@ -40,8 +40,8 @@ class Spot:
 def spot_of(finding: Finding, where: str) -> Spot:
     """Where in the file `where` a finding points; the whole of its own words where that is another file.
 
-    >>> spot_of(Finding("stage.toml: line 2: place.B1.unit", "it is lost", "Find it"), "stage.toml")
-    Spot(address='place.B1.unit', line=2, column=None)
+    >>> spot_of(Finding("stage.toml: line 2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
+    Spot(address='placements.B1.unit', line=2, column=None)
     """
     found = _PLACE.fullmatch(finding.where)
     if found is None or found["file"] != where:
@@ -52,7 +52,7 @@ def spot_of(finding: Finding, where: str) -> Spot:
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
     """The line of an address, or of the nearest table around it; of a link the line that draws it. `None` where the text has neither.
 
-    >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "place.B1": 9}), line_of("gravity", {})
+    >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
     """
     around = (table for each in _ways(address.replace('"', ""), lines) for table in _tables(each) if table != "tags")
@@ -77,8 +77,8 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
     link = f".links.{name}"
     drawn = [each for each in lines if each.startswith("units.") and each.endswith(link)]
     unit = f"units.{owner}{link}" if f"units.{owner}{link}" in drawn else drawn[0] if len(drawn) == 1 else None
-    yield from (each for each in (f"change.{address}", f"place.{owner}") if each in lines and unit is None)
-    yield from (f"{unit}.{rest}" if rest else unit,) if unit else (f"place.{owner}",)
+    yield from (each for each in (f"overrides.{address}", f"placements.{owner}") if each in lines and unit is None)
+    yield from (f"{unit}.{rest}" if rest else unit,) if unit else (f"placements.{owner}",)
 
 
 def line_numbers(text: str) -> Mapping[str, int]:

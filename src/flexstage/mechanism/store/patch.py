@@ -32,11 +32,11 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
 
     Comments stay. The tags of the old values are taken out: what was stated of them is not true of the new ones.
 
-    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"  # a stage' + chr(10) + 'mode_limit = "1 kHz"  # enough'
-    >>> print(patch(text, {"mode_limit": "800 Hz"}))
+    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"  # a stage' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough'
+    >>> print(patch(text, {"max_mode_frequency": "800 Hz"}))
     format = "flexstage 1"
     name = "a"  # a stage
-    mode_limit = "800 Hz"  # enough
+    max_mode_frequency = "800 Hz"  # enough
     """
     tree = parse_toml(text, where)
     mechanism = mechanism_from(tree, shipped_catalogue(), where)
@@ -53,11 +53,11 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
 
 
 def _elsewhere(place: Place, tree: dict[str, Any]) -> Iterator[Finding]:
-    """Values of a stage that another file describes; departures from them may be stated here."""
+    """Values of a stage that another file describes; overrides of them may be stated here."""
     name = place.path[1].partition("/")[0] if len(place.path) > 1 and not place.owners and "/" in place.path[1] else ""
     if name in tree.get(STAGES, {}):
         what = "it stands in the file of a stage that this one carries"
-        yield Finding(place.address, what, f"Change it in {tree[STAGES][name]['file']}, or state a departure of one link")
+        yield Finding(place.address, what, f"Change it in {tree[STAGES][name]['file']}, or state an override of one link")
 
 
 _Step = tuple[Mechanism, Mechanism, str]
@@ -87,10 +87,10 @@ def _patch_steps(text: str, steps: list[_Step]) -> str:
 def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) -> None:
     place = locate(mechanism, address)
     if place.owners:
-        _set_changes(document, mechanism, changed)
+        _set_overrides(document, mechanism, changed)
         return
     if _is_included(document, place):
-        table = document.setdefault("change", tomlkit.table())
+        table = document.setdefault("overrides", tomlkit.table())
         table[place.address] = plain(place.node, get(changed, address), place.address, changed.formulas)
         return
     for path in with_mirror(place.path):
@@ -98,19 +98,19 @@ def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) 
 
 
 def _is_included(document: Any, place: Place) -> bool:
-    """Whether a value stands in a file that this one includes: what this one says of it stands under `change`."""
+    """Whether a value stands in a file that this one includes: what this one says of it stands under `overrides`."""
     path = place.path
     return INCLUDE in document and len(path) > 1 and path[0] in SECTIONS and path[1] not in document.get(path[0], {})
 
 
-def _set_changes(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
-    if "change" not in document:
-        document["change"] = {}
-    table = document["change"]
-    for key in mechanism.changes.keys() - changed.changes.keys():
+def _set_overrides(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
+    if "overrides" not in document:
+        document["overrides"] = {}
+    table = document["overrides"]
+    for key in mechanism.overrides.keys() - changed.overrides.keys():
         del table[key]
-    for key, value in changed.changes.items():
-        if key not in mechanism.changes or mechanism.changes[key] is not value:
+    for key, value in changed.overrides.items():
+        if key not in mechanism.overrides or mechanism.overrides[key] is not value:
             place = locate(changed, key)
             table[key] = plain(place.node, value, place.address, changed.formulas)
 

@@ -25,18 +25,18 @@ else:
 
 
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
-    """Return a design file's text with tags at some addresses, in the tables of the values, those of departures in `[tags]`.
+    """Return a design file's text with tags at some addresses, in the tables of the values, those of overrides in `[tags]`.
 
     Raises `DesignError` where the file's layout does not allow it.
 
-    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'mode_limit = "1 kHz"  # enough' + chr(10)
-    >>> print(set_tags(text, {"mode_limit": "derived test"}))
+    >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough' + chr(10)
+    >>> print(set_tags(text, {"max_mode_frequency": "derived test"}))
     format = "flexstage 1"
     name = "a"
-    mode_limit = "1 kHz"  # enough
+    max_mode_frequency = "1 kHz"  # enough
     <BLANKLINE>
     [tags]
-    mode_limit = "derived test"
+    max_mode_frequency = "derived test"
     <BLANKLINE>
     """
     mechanism = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
@@ -68,7 +68,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
     except (tomlkit.exceptions.TOMLKitError, ValueError):  # findings are ValueErrors
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())
-    return found if told and now.changes == mechanism.changes and _same_physics(now, mechanism) else None
+    return found if told and now.overrides == mechanism.overrides and _same_physics(now, mechanism) else None
 
 
 def _same_physics(first: Mechanism, second: Mechanism) -> bool:

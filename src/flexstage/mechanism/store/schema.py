@@ -18,7 +18,7 @@ from flexstage.mechanism.store.include import INCLUDE
 def schema() -> dict[str, Any]:
     """Return the JSON Schema of a design file. Each class is a definition; quantities are texts whose unit the example shows.
 
-    >>> schema()["properties"]["mode_limit"]["examples"]
+    >>> schema()["properties"]["max_mode_frequency"]["examples"]
     ['4 kHz']
     """
     found = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})

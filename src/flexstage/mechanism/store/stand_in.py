@@ -28,7 +28,7 @@ KEPT = "-drawn"
 
 @dataclass(frozen=True, eq=False)
 class StandIn:
-    """A `given` part that stands for the drawn one its `stands_for` names, at the `links` (drawn addresses) that are listed."""
+    """A `compliance_matrix` part that stands for the drawn one its `replaces` names, at the `links` (drawn addresses) that are listed."""
 
     given: Given
     links: tuple[str, ...]
@@ -37,10 +37,10 @@ class StandIn:
     def drawn_name(self) -> str:
         """The name that the drawn part had.
 
-        >>> StandIn(Given(((0.0,) * 6,) * 6, (), stands_for="neck-drawn"), ()).drawn_name
+        >>> StandIn(Given(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
         'neck'
         """
-        return self.given.stands_for.removesuffix(KEPT)
+        return self.given.replaces.removesuffix(KEPT)
 
 
 def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
@@ -51,9 +51,9 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> leaf = StandIn(Given(unit, free=(), stands_for="leaf-drawn"), ("links.left", "links.right"))
+    >>> leaf = StandIn(Given(unit, free=(), replaces="leaf-drawn"), ("links.left", "links.right"))
     >>> text = write_stand_ins(dumps(parallelogram()), {"leaf": leaf}, "derived test")
-    >>> loads(text).parts["leaf"].stands_for, "leaf-drawn" in loads(text).parts
+    >>> loads(text).parts["leaf"].replaces, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)
     """
     before = mechanism_from(parse_toml(text, where), shipped_catalogue(), where)
@@ -85,11 +85,11 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
     links = [(f"{unit}/{name}", link.part) for unit, drawn in mechanism.units.items() for name, link in drawn.links.items()]
     links += [(name, link.part) for name, link in mechanism.links.items()]
     touched = {address: part for address, part in links if part in drawn}
-    for key in mechanism.changes:
+    for key in mechanism.overrides:
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
             what = f"it departs from {touched[ends[0]]}, whose 6x6 is shared"
-            found.append(Finding(f'change."{key}"', what, "Give that link a part of its own, or take the departure out"))
+            found.append(Finding(f'overrides."{key}"', what, "Give that link a part of its own, or take the override out"))
     return found
 
 

@@ -22,7 +22,7 @@ HEADINGS: Mapping[str, str] = {
     "bodies": "Bodies of the stage. The ground is implied; the platform is the moving part.",
     "links": "Links of the stage itself: what they join, first to second, and where.",
     "units": "Units: drawn once in their own frame, x = push. A link joins two bodies; bends = axis of the compliant rotation.",
-    "place": "Copies of the units. first = position angle of the first copy; facing = where its push points.",
+    "placements": "Copies of the units. first = position angle of the first copy; facing = where its push points.",
     "sensors": "Gauges of the catalogue or by their data.",
     "gauges": "Where the gauges read: x of each copy points from the gauge to its target.",
     "payloads": "Masses carried by bodies, in the stage's frame.",
@@ -30,8 +30,8 @@ HEADINGS: Mapping[str, str] = {
     "stops": "Gaps at which strokes end: the body may move by gap along x of each copy against its base.",
     "paths": "Strokes at large displacements, from where the stage rests: what requirements over a stroke are judged along.",
     "temperatures": "Changes of temperature since the stage was made, by body; all: of what has none of its own.",
-    "change": "Departures: unit/link.field for all copies, copy/link.field for one.",
-    "require": "Judged first in every report.",
+    "overrides": "Overrides: unit/link.field for all copies, copy/link.field for one.",
+    "requirements": "Judged first in every report.",
     "sources": "Sources that tags name. A value without tag is assumed.",
 }
 """Comments above the sections of a file that has none of its own."""
@@ -40,11 +40,11 @@ HEADINGS: Mapping[str, str] = {
 def text_of(tree: Mapping[str, Any], comments: Mapping[str, str]) -> str:
     """Return the TOML text of a file's tree, with comments by address; raises `DesignError` for a comment that has no place.
 
-    >>> print(text_of({"name": "a", "place": {"B1": {"unit": "u"}}}, {"place": "copies"}), end="")
+    >>> print(text_of({"name": "a", "placements": {"B1": {"unit": "u"}}}, {"placements": "copies"}), end="")
     name = "a"
     <BLANKLINE>
     # copies
-    [place]
+    [placements]
     B1 = { unit = "u" }
     """
     writer = _Writer({**{key: text for key, text in HEADINGS.items() if key in tree}, **comments})

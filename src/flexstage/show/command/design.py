@@ -53,7 +53,7 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
 def _valid(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
     """The description checked, where what is wrong with a number that was assigned names the assignment."""
     assigned = {text.partition("=")[0].strip(): text for text in changes}
-    places = {place: text for address, text in assigned.items() for place in (address, f'change."{address}"')}
+    places = {place: text for address, text in assigned.items() for place in (address, f'overrides."{address}"')}
     try:
         return require_valid(mechanism)
     except DesignError as error:

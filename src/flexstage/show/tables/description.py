@@ -25,14 +25,14 @@ TITLES = {
     "bodies": "Bodies",
     "links": "Links",
     "units": "Units",
-    "place": "Placement of units",
+    "placements": "Placement of units",
     "sensors": "Gauge types",
     "gauges": "Placement of gauges",
     "payloads": "Payloads",
     "forces": "Forces",
     "stops": "Stops",
     "temperatures": "Temperatures",
-    "changes": "Departures of single copies",
+    "overrides": "Overrides of single copies",
     "": "Stage",
 }
 _TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
@@ -49,7 +49,7 @@ def composition_table(mechanism: Mechanism) -> Table:
     links = (*assembly.links.values(), *assembly.superelements.values())
     kinds = Counter(kind_name(link.part) for link in links)
     gauges = Counter(getattr(place, "gauge", "sum") for key, place in mechanism.gauges.items() for _ in copy_names(key))
-    units = Counter(placement.unit for key, placement in mechanism.place.items() for _ in copy_names(key))
+    units = Counter(placement.unit for key, placement in mechanism.placements.items() for _ in copy_names(key))
     rows = [
         ("bodies", str(len(assembly.bodies)), ", ".join(f"{count} x {unit}" for unit, count in units.items())),
         ("links", str(len(links)), ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
@@ -90,7 +90,7 @@ def link_table(mechanism: Mechanism) -> Table:
 
 
 _Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
-"""Numbers that stand in a description by address; departures have their values where they are made."""
+"""Numbers that stand in a description by address; overrides have their values where they are made."""
 
 
 def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
@@ -176,8 +176,8 @@ def _group_of(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, st
     address = next(iter(addresses))
     address = address.rpartition(".")[0] if len(addresses) > 1 else address
     first, _, rest = address.partition(".")
-    if "/" in first or address in mechanism.changes or first not in TITLES or not rest:
-        return ("changes" if "/" in first or address in mechanism.changes else "", address)
+    if "/" in first or address in mechanism.overrides or first not in TITLES or not rest:
+        return ("overrides" if "/" in first or address in mechanism.overrides else "", address)
     return first, rest
 
 

@@ -24,7 +24,7 @@ _DIGITS = 4
 _ROWS = 8
 _LOSS = 3
 """Columns of the table of lost motion up to the loss."""
-_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [require] in the design file."
+_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [requirements] in the design file."
 
 
 def stage_text(analysis: Analysis) -> str:

@@ -59,7 +59,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
-    require([*_refuse_members(mechanism), *_refuse_departures(mechanism)])
+    require([*_refuse_members(mechanism), *_refuse_overrides(mechanism)])
     found = solid_hinges(mechanism, compute)
     parts = stand_ins(found)
     errors = max(hinge.found.error for hinge in found.values())
@@ -89,7 +89,7 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
             mass=_mass(hinge),
             origin=Origin.FEA,
             source=_source(hinge),
-            stands_for=hinge.shared + KEPT,
+            replaces=hinge.shared + KEPT,
         )
     require(findings)
     return parts
@@ -111,7 +111,7 @@ def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> M
     >>> substitute_parts(double_triangle(), {}) == double_triangle()
     True
     """
-    require(_refuse_departures(mechanism))
+    require(_refuse_overrides(mechanism))
     found = {name: hinge for name, hinge in found.items() if not isinstance(mechanism.parts[hinge.shared], Compound)}
     parts = stand_ins(found)
     kept = {hinge.shared + KEPT: hinge.form.part for hinge in found.values()}
@@ -137,7 +137,7 @@ def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
         yield Finding(f"parts.{name}", what, "Draw them as links of their own to calibrate them")
 
 
-def _refuse_departures(mechanism: Mechanism) -> Iterator[Finding]:
+def _refuse_overrides(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
         if link.described.part != mechanism.parts[link.link.part]:
             yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")

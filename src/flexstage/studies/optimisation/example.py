@@ -10,7 +10,7 @@ _TEXT = """
 format = "flexstage study 1"
 name = "thicker leaves"
 case = "parallelogram"
-variables.leaf = { of = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm", step = "10 um" }
+variables.leaf = { address = "parts.leaf.thickness", from = "0.6 mm", to = "2 mm", step = "10 um" }
 responses.f1 = "frequency.platform.1"
 optimise = { maximise = "f1", starts = 2 }
 """

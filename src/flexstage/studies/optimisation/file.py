@@ -22,7 +22,7 @@ def load_wanted(study: Study, where: str = "text") -> Wanted:
     """
     table = study_file(study.text, where).optimise
     findings: list[Finding] = []
-    wanted = Wanted(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.require)
+    wanted = Wanted(_objectives(table, study, findings), table.starts, table.seed, table.pareto_points, table.requirements)
     require(with_lines(findings, study.text, where))
     return wanted
 

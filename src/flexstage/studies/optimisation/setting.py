@@ -37,11 +37,11 @@ class Setting:
     @property
     def problem(self) -> Problem:
         """The first objective under all limits."""
-        return Problem((self.aim(0),), tuple(self.side(number) for number in range(len(self.kept))))
+        return Problem((self.objective(0),), tuple(self.side(number) for number in range(len(self.kept))))
 
-    def aim(self, number: int) -> Side:
+    def objective(self, number: int) -> Side:
         """An objective as a side: c is its value over its scale, negative where it is maximised."""
-        return Side(number, self.wanted.objectives[number].aim.sense, 0.0, self.scale(number))
+        return Side(number, self.wanted.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:
         """What an objective is measured by: its value in the design as it stands."""

@@ -56,7 +56,7 @@ def write_optimum(text: str, study: Study, wanted: Wanted, values: Array | Seque
     (0.00123, 'derived optimise thicker leaves, maximise f1')
     """
     changed = dict(_changes(study, np.asarray(values, dtype=float)))
-    aims = ", ".join(f"{each.aim.value} {each.name}" for each in wanted.objectives)
+    aims = ", ".join(f"{each.direction.value} {each.name}" for each in wanted.objectives)
     tags = dict.fromkeys(changed, f"derived optimise {study.name}, {aims}")
     return set_tags(patch(text, changed, where=where), tags, where=where)
 

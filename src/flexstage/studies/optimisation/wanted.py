@@ -25,7 +25,7 @@ class Aim(Enum):
 class Objective(Asked):
     """A response by name, its measure, and which way it is to go."""
 
-    aim: Aim
+    direction: Aim
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,14 @@ class Wanted:
     """What the `[optimise]` section of a study's file says.
 
     One objective, or two for a front of `points` designs. `starts`: how many designs the search begins from, the design as it stands first,
-    the others a Sobol sequence of this `seed`. `require`: the design's own `[require]` lines are limits too.
+    the others a Sobol sequence of this `seed`. `requirements`: the design's own `[requirements]` lines are limits too.
     """
 
     objectives: tuple[Objective, ...]
     starts: int = 3
     seed: int = 0
     points: int = 9
-    require: bool = True
+    requirements: bool = True
 
 
 def limits(study: Study, wanted: Wanted) -> tuple[Requirement, ...]:
@@ -50,6 +50,6 @@ def limits(study: Study, wanted: Wanted) -> tuple[Requirement, ...]:
     >>> [each.key for each in limits(*leaf_study())]
     ['stroke.x', 'frequency.platform.1', 'safety']
     """
-    own = requirements(study.design) if wanted.require else ()
+    own = requirements(study.design) if wanted.requirements else ()
     said = {(each.key, each.point, each.sense) for each in study.limits}
     return (*study.limits, *(each for each in own if (each.key, each.point, each.sense) not in said))

@@ -33,7 +33,7 @@ class Asked:
 
     @property
     def key(self) -> Annotated[str, VIEW, Called("measure")]:
-        """The measure, as in `[require]`."""
+        """The measure, as in `[requirements]`."""
         return self.measure.key
 
     @property

@@ -49,7 +49,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     >>> study = loads_study('''
     ... format = "flexstage study 1"
     ... case = "double-triangle"
-    ... variables.neck = { of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }
+    ... variables.neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }
     ... responses.tilt = "frequency.platform.1"
     ... sweep = { sampling = "sobol", designs = 8 }
     ... ''')
@@ -101,7 +101,7 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
 def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variable, ...]:
     """All variables; the name of one that gives no address is its address."""
     if not tables:
-        what = 'Write for example neck = { of = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
+        what = 'Write for example neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
         head.findings.append(Finding("variables", "nothing is varied", what))
     found = []
     for name, table in tables.items():
@@ -115,7 +115,7 @@ def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variab
 def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
     where = f"variables.{name}"
     if table.parameter is None:
-        addresses, variant = table.of or (name,), None
+        addresses, variant = table.address or (name,), None
         quantity = _quantity(where, addresses, head.design)
     else:
         variant = head.variant
@@ -164,7 +164,7 @@ def _quantity(where: str, addresses: tuple[str, ...], design: Mechanism) -> Quan
         except DesignError as error:
             findings += error.findings
     require(Finding(where, f"{each.where}: {each.what}", each.advice) for each in findings)
-    return one_quantity(f"{where}.of", found)
+    return one_quantity(f"{where}.address", found)
 
 
 def _responses(file: StudyFile, design: Mechanism, findings: list[Finding]) -> dict[str, Measure]:

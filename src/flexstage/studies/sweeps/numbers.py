@@ -14,7 +14,7 @@ _BEYOND = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers at `addresses`: each is variable `of` (P,) times `factor` (P,); shared parts before departures from them."""
+    """P numbers at `addresses`: each is variable `of` (P,) times `factor` (P,); shared parts before overrides of them."""
 
     addresses: tuple[str, ...]
     of: Array

@@ -78,10 +78,10 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
     >>> names, quantity.name
     (('neck.profile.radius',), 'length')
     """
-    if table.of is not None:
-        raise refuse(f"{where}.of", "both an address and a parameter are named", "Name one of them")
+    if table.address is not None:
+        raise refuse(f"{where}.address", "both an address and a parameter are named", "Name one of them")
     if variant is None:
-        advice = 'Give the address of a number: of = "parts.neck.thickness"'
+        advice = 'Give the address of a number: address = "parts.neck.thickness"'
         raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
     names: list[str] = []
     found: list[Quantity] = []
@@ -106,7 +106,7 @@ def one_quantity(where: str, found: list[Quantity]) -> Quantity:
     """The quantity that all have; raises `DesignError` where they have several.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
-    >>> one_quantity("variables.a.of", [LENGTH, LENGTH]).name
+    >>> one_quantity("variables.a.address", [LENGTH, LENGTH]).name
     'length'
     """
     if len({each.si for each in found}) > 1:

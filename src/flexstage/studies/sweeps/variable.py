@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.assessment.sensitivities import departure
+from flexstage.analysis.assessment.sensitivities import override_level
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array, Number
 from flexstage.base.record import INNER, VIEW, Called
@@ -96,7 +96,7 @@ class Variable:
 def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
     """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
 
-    Parameters of a case come first: the design is drawn from them. Then shared parts are written, then departures from them, whatever the
+    Parameters of a case come first: the design is drawn from them. Then shared parts are written, then overrides of them, whatever the
     order of the variables.
 
     >>> import numpy as np
@@ -122,7 +122,7 @@ def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns
     moves = [(address, *move) for move in zip(variables, columns, strict=True) for address in move[0].addresses]
     start = result = _draw(mechanism, [move for move in moves if move[1].variant is not None])
     written = [move for move in moves if move[1].variant is None]
-    for address, variable, value in sorted(written, key=lambda move: departure(mechanism, move[0])):
+    for address, variable, value in sorted(written, key=lambda move: override_level(mechanism, move[0])):
         wanted = get(start, address) * value if variable.relative else value
         result = set_value(result, address, wanted)
     return result

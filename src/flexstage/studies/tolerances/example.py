@@ -19,9 +19,9 @@ name = "leaves"
 case = "parallelogram"
 responses = {{ guide = "stiffness.x" }}
 limits = {{ "stiffness.x" = "at least 10 N/um" }}
-tolerance = {{ copies = {copies}, require = false, crosstalk = false }}
+tolerance = {{ copies = {copies}, requirements = false, crosstalk = false }}
 [scatter]
-wire = {{ of = "parts.leaf.thickness", normal = "5 um" }}
-wear = {{ of = "links.left.thickness", uniform = "5 um" }}
+wire = {{ address = "parts.leaf.thickness", normal = "5 um" }}
+wear = {{ address = "links.left.thickness", uniform = "5 um" }}
 """
     )

@@ -38,7 +38,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     """Read a study's file with sections `[scatter]` and, if need be, `[tolerance]`.
 
     Raises `DesignError` with every finding: what points nowhere (with the nearest names), deviations that are not above nought or wider
-    than the number, `each` of what there is only one of.
+    than the number, `independent` of what there is only one of.
 
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
@@ -54,7 +54,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     >>> study = loads_tolerance('''
     ... format = "flexstage study 1"
     ... case = "parallelogram"
-    ... scatter.wire = { of = "hinges.thickness", normal = "5 um", each = true }
+    ... scatter.wire = { address = "hinges.thickness", normal = "5 um", independent = true }
     ... ''')
     >>> [variable.name for variable in study.variables][:2]
     ['wire.links.left.thickness', 'wire.links.right.thickness']
@@ -66,11 +66,13 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(Finding("scatter", "nothing scatters", 'Write for example wire = { of = "hinges.thickness", normal = "5 um" }'))
+        findings.append(
+            Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
+        )
     if file.tolerance.copies > _MOST:
         findings.append(Finding("tolerance.copies", f"these are {file.tolerance.copies:.3g} copies", f"Ask for at most {_MOST:.0e}"))
     asked = _command(file.tolerance, design, findings)
-    limits = (*(_lines(design, findings) if file.tolerance.require else ()), *head.limits)
+    limits = (*(_lines(design, findings) if file.tolerance.requirements else ()), *head.limits)
     if not head.responses and not limits and asked is None:
         findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
     require(with_lines(findings, text, where))
@@ -137,21 +139,21 @@ def _scatters(tables: Mapping[str, ScatterTable], bench: _Reached, findings: lis
 def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     """One entry; raises `DesignError` with all findings about it."""
     where = f"scatter.{name}"
-    sources = table.of or (name,)
+    sources = table.address or (name,)
     findings: list[Finding] = []
     components = _components(sources, where, bench, findings)
     addresses = [address for members in components.values() for address in members]
     shape = _shape(table, where, findings)
     require(findings)
-    quantity = one_quantity(f"{where}.of", [quantity_of(bench.design, address) for address in addresses])
+    quantity = one_quantity(f"{where}.address", [quantity_of(bench.design, address) for address in addresses])
     distribution, relative = _distribution(table, where, shape, quantity)
-    if table.each and len(addresses) < 2:
-        findings.append(Finding(f"{where}.each", f"{addresses[0]} is one number, and has no copies", "Leave it out"))
+    if table.independent and len(addresses) < 2:
+        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is one number, and has no copies", "Leave it out"))
     if relative:
         findings += _no_share(where, addresses, bench.design)
     require(findings)
-    members = tuple((address,) for address in addresses) if table.each else tuple(tuple(found) for found in components.values())
-    return Scatter(name, sources, RATIO if relative else quantity, distribution, members, table.each, relative)
+    members = tuple((address,) for address in addresses) if table.independent else tuple(tuple(found) for found in components.values())
+    return Scatter(name, sources, RATIO if relative else quantity, distribution, members, table.independent, relative)
 
 
 def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Finding]:

@@ -98,7 +98,7 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
         return tuple(copies)
     if owner == "gauges":
         return tuple(name for key in posed(design.gauges) for name in copy_names(key))
-    if owner in (*design.place, *design.gauges) and len(copy_names(owner)) > 1:
+    if owner in (*design.placements, *design.gauges) and len(copy_names(owner)) > 1:
         return copy_names(owner)
     return tuple(copy for copy, unit in copies.items() if unit == owner)
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.assessment.sensitivities import departure
+from flexstage.analysis.assessment.sensitivities import override_level
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.units.quantity import Quantity
@@ -25,15 +25,15 @@ class Scatter:
     """One entry of a study's `[scatter]`: a `distribution` of what is added to numbers, in SI of `quantity`.
 
     `members` are the addresses that deviate together, member by member: one for what is common to all, one a copy for what each copy has
-    for itself. `relative`: deviations are shares of what the design states. `source` is the user's own words: `of`.
+    for itself. `relative`: deviations are shares of what the design states. `source` is the user's own words: `address`.
     """
 
     name: str
-    source: Annotated[tuple[str, ...], Called("of")]
+    source: Annotated[tuple[str, ...], Called("address")]
     quantity: Annotated[Quantity, INNER]
     distribution: Distribution
     members: Annotated[tuple[tuple[str, ...], ...], Called("numbers")]
-    each: bool
+    independent: bool
     relative: bool = False
 
     @property
@@ -58,7 +58,7 @@ class Scatter:
 
     def _label(self, member: tuple[str, ...]) -> str:
         """What tells a member apart: the copy, or the component of what is common."""
-        return member[0] if self.each else member[0].rpartition(".")[2]
+        return member[0] if self.independent else member[0].rpartition(".")[2]
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, 
             factor = float(get(design, address)) if variable.relative else 1.0
             reached[address] = (*reached.get(address, ()), (number, factor))
     found = _merge_copies(design, reached, shared)
-    return tuple(sorted(found, key=lambda target: departure(design, target.address)))
+    return tuple(sorted(found, key=lambda target: override_level(design, target.address)))
 
 
 def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float], ...]], shared: dict[str, str]) -> list[Target]:

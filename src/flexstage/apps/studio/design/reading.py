@@ -125,7 +125,7 @@ def _column(row: str, address: str) -> int:
 def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, float, NumberNode]]:
     """Every single number, by address."""
     yield from node_of(Mechanism).numbers(mechanism)
-    for key, value in mechanism.changes.items():
+    for key, value in mechanism.overrides.items():
         place = locate(mechanism, key)
         yield from place.node.numbers(value, place.address)
 
@@ -189,7 +189,7 @@ def _span(value: float, factor: float, bound: Bound | None) -> tuple[float, floa
 def _group(address: str) -> str:
     """The table of the file that an address stands in."""
     if "/" in address.partition(".")[0]:
-        return "change"
+        return "overrides"
     steps = address.split(".")
     return ".".join(steps[:2]) if len(steps) > 2 else steps[0] if len(steps) > 1 else ""
 

@@ -62,7 +62,7 @@ def _stack(given: Machine) -> tuple[list[str], tuple[State, ...]]:
     lines += table("unmoved", model.step(model.start(bias), bias)[1])
     if given.relief is None:
         return lines, (state,)
-    lines += [*table("relieved", 1.0 - given.relief.left), *table("leak", given.relief.leak)]
+    lines += [*table("relieved", 1.0 - given.relief.residual_hysteresis), *table("leak", given.relief.leak)]
     return lines, (state, State("leaked", (len(given.actuators),)))
 
 

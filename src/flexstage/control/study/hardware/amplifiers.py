@@ -88,21 +88,21 @@ class ChargeSetup(AmplifierSetup):
     """Amplifiers that hold the charge of stacks: what voltage amplifiers have, counted in the volts that a stack free of load would have.
 
     `coupling` is k of the stack (k33 of its ceramic at most, 0.7 of soft PZT): at constant charge it is stiffer by 1/(1 - k^2). Below the
-    `corner`, stated or that of the `leakage` resistance beside the stack, 1/(2 pi R C), the drive is one of volts. `left` is the share of
-    hysteresis and creep that the stroke keeps above it: one fifth (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996) 209, by
-    Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
+    `corner`, stated or that of the `leakage` resistance beside the stack, 1/(2 pi R C), the drive is one of volts. `residual_hysteresis` is
+    the share of hysteresis and creep that the stroke keeps above it: one fifth (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996)
+    209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
     """
 
     kind: ClassVar[str] = "charge"
     coupling: Annotated[float, RATIO, _COUPLED] | None = None
     corner: Annotated[float, FREQUENCY, POSITIVE] | None = None
     leakage: Annotated[float, RESISTANCE, POSITIVE] | None = None
-    left: Annotated[float, RATIO, _LEFT] = 0.2
+    residual_hysteresis: Annotated[float, RATIO, _LEFT] = 0.2
 
     @property
     def settings(self) -> AmplifierSettings:
         """As stated, charge held."""
-        held = ChargeHold(self.coupling or 0.0, self.left, self.corner, self.leakage)
+        held = ChargeHold(self.coupling or 0.0, self.residual_hysteresis, self.corner, self.leakage)
         return replace(super().settings, charge=held)
 
     @property

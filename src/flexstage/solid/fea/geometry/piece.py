@@ -152,7 +152,7 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
     if not isinstance(part, Joint) and part.stated(link.material) is not None:
         return None
     what = f"a part of kind {part.kind} has no shape, and states no stiffness"
-    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "given")')
+    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "compliance_matrix")')
 
 
 def form_digest(form: Form) -> str:

@@ -169,4 +169,9 @@ def in_words(stated: Mapping[str, str]) -> str:
     return f"{said} as stated" if said else ""
 
 
-_NOUNS = {"given": "given part", "force": "force actuator", "amplified": "amplified actuator", "stepper": "stepping drive"}
+_NOUNS = {
+    "compliance_matrix": "compliance matrix",
+    "force": "force actuator",
+    "amplified": "amplified actuator",
+    "stepper": "stepping drive",
+}

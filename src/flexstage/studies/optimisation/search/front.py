@@ -73,13 +73,13 @@ def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
     ends: list[Point] = []
     all_traces: list[Trace] = []
     for number in (0, 1):
-        problem = Problem((set_up.aim(number),), set_up.problem.limits)
+        problem = Problem((set_up.objective(number),), set_up.problem.limits)
         traces = run_searches([search(problem, start) for start in set_up.starts()], set_up.values, counted)
         best = best_of(problem, traces)
         all_traces += traces
         if best is None:
             return [], traces
-        other = Problem((set_up.aim(1 - number),), (*problem.limits, _bound(set_up, number, best)))
+        other = Problem((set_up.objective(1 - number),), (*problem.limits, _bound(set_up, number, best)))
         again = run_searches([search(other, best.shares)], set_up.values, counted)
         ends.append(best_of(other, again) or best)
     return ends, all_traces
@@ -87,7 +87,7 @@ def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
 
 def _bound(set_up: Setting, number: int, point: Point) -> Side:
     """An objective kept at its value in a design, but for a millionth."""
-    aim, value = set_up.aim(number), float(point.values[number])
+    aim, value = set_up.objective(number), float(point.values[number])
     give = _KEEP * (abs(value) or aim.scale)
     return replace(aim, limit=value - give if aim.sense is Sense.AT_LEAST else value + give)
 
@@ -98,7 +98,9 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
     levels = np.linspace(first, last, set_up.wanted.points)[1:-1]
     if abs(last - first) <= _KEEP * set_up.scale(1):
         return []  # one design is best in both
-    problems = [Problem((set_up.aim(0),), (*set_up.problem.limits, replace(set_up.aim(1), limit=float(level)))) for level in levels]
+    problems = [
+        Problem((set_up.objective(0),), (*set_up.problem.limits, replace(set_up.objective(1), limit=float(level)))) for level in levels
+    ]
     walks = [search(problem, end.shares) for problem in problems for end in ends]
     traces = run_searches(walks, set_up.values, counted)
     found = [best_of(problem, traces[2 * number : 2 * number + 2]) for number, problem in enumerate(problems)]
@@ -108,7 +110,7 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
 def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
     """The points that no other one beats in one objective and equals in the other, from the best in the first on."""
     points = list(points)
-    worth = np.array([[set_up.aim(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
+    worth = np.array([[set_up.objective(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
     kept = [number for number in range(len(points)) if not _is_dominated(worth, number)]
     return [points[number] for number in sorted(kept, key=lambda each: tuple(worth[each]))]
 

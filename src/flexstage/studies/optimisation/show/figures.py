@@ -74,6 +74,6 @@ def front_figure(found: Front) -> Any:
         ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="as it stands")
         for axis, number in ((ax.set_xlabel, 1), (ax.set_ylabel, 0)):
             each = found.wanted.objectives[number]
-            axis(f"{each.name} [{forms[number].unit}], {each.aim.value}")
+            axis(f"{each.name} [{forms[number].unit}], {each.direction.value}")
         ax.legend()
     return figure

@@ -29,7 +29,7 @@ def optimise_tables(found: Optimum) -> list[Table]:
 def front_tables(found: Front) -> list[Table]:
     """The designs of a front: objectives and variables."""
     objectives = found.wanted.objectives
-    heads = [f"{each.name} ({each.aim.value})" for each in objectives]
+    heads = [f"{each.name} ({each.direction.value})" for each in objectives]
     rows = []
     for index, point in enumerate(found.points):
         cells = [format_value(float(point.values[number]), each.measure.quantity.si, 6) for number, each in enumerate(objectives)]
@@ -66,7 +66,7 @@ def _objective(found: Optimum) -> Table:
     elif found.rounded is not None:
         notes.append(f"Not rounded: {found.rounded.reason}.")
     notes += _notes(interrupted=found.interrupted, idle=found.idle)
-    heads = [f"{objective.aim.value} {objective.name}", Column(objective.measure.key), Column("change")]
+    heads = [f"{objective.direction.value} {objective.name}", Column(objective.measure.key), Column("change")]
     return make_table("Objective", heads, rows, notes=notes)
 
 

@@ -135,8 +135,8 @@ def _frame(file: Any, study: Study, size: int) -> None:
     for number, kind in enumerate(("variables", "responses")):
         data = file.create_dataset(kind, (count, len(names[number])), "f8", fillvalue=np.nan, chunks=_chunks(count, len(names[number])))
         data.attrs["names"], data.attrs["units"] = list(names[number]), list(units[number])
-    file["variables"].attrs["of"] = [", ".join(each.addresses) for each in study.variables]
-    file["responses"].attrs["of"] = [f"{each.key} at {each.point}" for each in study.columns.values()]
+    file["variables"].attrs["address"] = [", ".join(each.addresses) for each in study.variables]
+    file["responses"].attrs["measure"] = [f"{each.key} at {each.point}" for each in study.columns.values()]
     file.create_dataset("failed", (count,), "u1", chunks=(min(count, _ROWS),))
     file.create_dataset("computed", (-(-count // size),), "u1")
     kind = np.dtype([("design", "i8"), ("reason", h5py.string_dtype())])

@@ -22,7 +22,7 @@ _COLUMNS = (
     "alone: the others as stated; equal shares: all at once, each with the same share of the room; all alike: all at once, in the "
     "proportions stated."
 )
-_NO_YIELD = "There is no yield: neither the design's [require] nor the study's [limits] state what a good stage is."
+_NO_YIELD = "There is no yield: neither the design's [requirements] nor the study's [limits] state what a good stage is."
 
 
 def tolerance_tables(found: Toleranced) -> list[Table]:
@@ -49,7 +49,7 @@ def scatter_table(found: Toleranced) -> Table:
 
 def _reach_text(scatter: Scatter) -> str:
     count = len(scatter.members)
-    if scatter.each:
+    if scatter.independent:
         return f"each of {count}"
     reached = sum(len(member) for member in scatter.members)
     return f"common to {reached}" if reached > 1 else "one"
