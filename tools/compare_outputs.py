@@ -43,9 +43,35 @@ NATIVE = CACHE / "native"
 """Compiled kernels of all sides; their names are those of their sources."""
 
 # What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
-WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read
-TEXTS: Mapping[str, str] = {}  # of terminal, HTML and other text
-PATHS: Mapping[str, str] = {}  # in JSON, MAT, HDF5 and tables
+WORDS: Mapping[str, str] = {  # of command lines and of the files that they read
+    r"\bof = ": "address = ",
+    r"\beach = true": "independent = true",
+    r"\brequire = ": "requirements = ",
+}
+TEXTS: Mapping[str, str] = {  # of terminal, HTML and other text
+    r"\[place\]": "[placements]",
+    r"\[require\]": "[requirements]",
+    r"\[change\]": "[overrides]",
+    r"\bplace\.(?=[A-Z])": "placements.",
+    r"\brequire\.": "requirements.",
+    r"\bchange\.": "overrides.",
+    r"\bmode_limit\b": "max_mode_frequency",
+    r"\bstands_for\b": "replaces",
+    r"\bDeparture": "Override",
+    r"\bgiven (part|6x6)": r"compliance_matrix \1",
+    r"\bhysteresis left\b": "residual hysteresis",
+    **WORDS,
+}
+PATHS: Mapping[str, str] = {  # in JSON, MAT, HDF5 and tables
+    r"^place\b": "placements",
+    r"\bplace\.(?=[A-Z])": "placements.",
+    r"(objectives\[\])\.aim$": r"\1.direction",
+    r"(scatter\[\])\.of\b": r"\1.address",
+    r"(scatter\[\])\.each$": r"\1.independent",
+    r"(charge\.actuators\..*)\.left$": r"\1.residual_hysteresis",
+    r"(variables.*)@of$": r"\1@address",
+    r"(responses.*)@of$": r"\1@measure",
+}
 ALONE: Mapping[str, str] = {}  # paths of one side only, and why
 RULES: tuple[Rule, ...] = ()  # numbers whose arithmetic or its order changed
 

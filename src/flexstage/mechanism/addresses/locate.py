@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
+from flexstage.base.renamed import new_name
 from flexstage.mechanism.addresses.path import completions, has_member, member
 from flexstage.mechanism.assembly.expand import copy_names
 from flexstage.mechanism.assembly.likeness import ancestry, drawn_units, link_lineage
@@ -63,8 +64,8 @@ def locate(mechanism: Mechanism, address: str) -> Place:
     owner, slash, link = steps[0].rpartition("/")
     if slash and not _is_whole(mechanism, steps[0]):
         return _in_unit(mechanism, address, owner.strip(), (link.strip(), *steps[1:]))
-    if steps[0] in _DOCUMENT:
-        raise refuse(address, f'"{steps[0]}" holds no values of the stage', "Address the value itself")
+    if (first := new_name(steps[0], _DOCUMENT) or steps[0]) in _DOCUMENT:
+        raise refuse(address, f'"{first}" holds no values of the stage', "Address the value itself")
     if _stands(mechanism, address, steps):
         return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
     return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Mapping
 
 from flexstage.base.finding import suggest_nearest
+from flexstage.base.renamed import new_name
 
 _NOTCH = 'with profile = { shape = "circular", radius = "5 mm" }, or another shape'
 _KINDS: Mapping[str, tuple[str, ...]] = {
@@ -132,7 +133,7 @@ def advise_kind(word: str, known: Collection[str]) -> str:
     plain = re.sub(r"[\s_-]", "", word.strip('"').lower())
     meant = [kind for kind, words in _KINDS.items() if kind in known and plain in words]
     if not meant:
-        return suggest_nearest(word, known)
+        return suggest_nearest(word.strip('"'), known)
     told = " or ".join(f"{kind} ({_REMARKS[kind]})" if kind in _REMARKS else kind for kind in meant)
     return f"It is called {told} here"
 
@@ -143,7 +144,7 @@ def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
     ('It is called young here', 'The nearest name is thickness')
     """
-    meant = [name for name, words in _KEYS.items() if name in known and key in words]
+    meant = [name for name, words in _KEYS.items() if name in known and key in words] or [*filter(None, [new_name(key, known)])]
     if meant:
         return f"It is called {' or '.join(meant)} here"
     advice = [suggest_nearest(key, names) for names in (unused, known) if names]

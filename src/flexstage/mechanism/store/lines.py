@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 
 from flexstage.base.finding import Finding
 
@@ -50,13 +51,14 @@ def spot_of(finding: Finding, where: str) -> Spot:
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """The line of an address, or of the nearest table around it; of a link the line that draws it. `None` where the text has neither.
+    """The line of an address, of the nearest table around it, or of the first key in it; of a link the line that draws it (`None`: none).
 
     >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
     """
-    around = (table for each in _ways(address.replace('"', ""), lines) for table in _tables(each) if table != "tags")
-    return next((lines[table] for table in around if table in lines), None)
+    plain = address.replace('"', "")
+    around = (lines[table] for each in _ways(plain, lines) for table in _tables(each) if table != "tags" and table in lines)
+    return next(chain(around, (line for each, line in lines.items() if each.startswith(f"{plain}."))), None)
 
 
 def _tables(address: str) -> Iterator[str]:
