@@ -44,7 +44,7 @@ NATIVE = CACHE / "native"
 
 # What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
 WORDS: Mapping[str, str] = {  # of command lines and of the files that they read
-    r"\bof = ": "address = ",
+    r"\{ of = ": "{ address = ",
     r"\beach = true": "independent = true",
     r"\brequire = ": "requirements = ",
 }

@@ -27,7 +27,7 @@ STUDY = """
 format = "flexstage study 1"
 name = "leaves"
 design = "stage.toml"
-variables.leaf = { of = OF, from = "0.6 mm", to = "1.4 mm", step = "10 um", levels = 3 }
+variables.leaf = { address = OF, from = "0.6 mm", to = "1.4 mm", step = "10 um", levels = 3 }
 responses.f1 = "frequency.platform.1"
 sweep = { sampling = "grid" }
 optimise = { maximise = "f1", starts = 1 }
@@ -36,7 +36,7 @@ TOLERANCE = """
 format = "flexstage study 1"
 name = "made"
 design = "stage.toml"
-scatter.wire = { of = OF, uniform = "5 um" }
+scatter.wire = { address = OF, uniform = "5 um" }
 responses.f1 = "frequency.platform.1"
 tolerance = { copies = 16, requirements = false }
 """

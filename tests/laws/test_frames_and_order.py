@@ -77,7 +77,7 @@ def reordered(stage: Mechanism) -> Mechanism:
         return dict(reversed(list(table.items())))
 
     units = {name: replace(unit, bodies=back(unit.bodies), links=back(unit.links)) for name, unit in stage.units.items()}
-    sections = ("materials", "parts", "bodies", "links", "place", "sensors", "gauges", "payloads", "forces", "stops", "temperatures")
+    sections = ("materials", "parts", "bodies", "links", "placements", "sensors", "gauges", "payloads", "forces", "stops", "temperatures")
     return replace(stage, **{each: back(getattr(stage, each)) for each in sections}, units=back(units))
 
 
