@@ -44,7 +44,7 @@ def test_what_the_catalogue_gave_is_overridden_in_its_table() -> None:
     assert (read.materials["steel"].young, tag_of(read, "steel.young")) == (210e9, "assumed")
 
 
-def test_overrides_are_listed_under_change() -> None:
+def test_overrides_are_listed_under_overrides() -> None:
     once = patch(TEXT, {"L2/front.diameter": "1.1 mm"})
     assert once.startswith(TEXT.rstrip())
     assert '[overrides]\n"L2/front.diameter" = "1.1 mm"' in once

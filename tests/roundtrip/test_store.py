@@ -55,7 +55,7 @@ def test_shipped_cases_survive_their_files_and_pass_the_checks(name: str, tmp_pa
     assert list(expand(read).actuators) == list(expand(mechanism).actuators)
 
 
-def test_a_formula_under_change_is_the_overrides_not_the_units() -> None:
+def test_a_formula_under_overrides_is_not_the_units() -> None:
     """The unit's own place stays; what the formula is worked out of moves the override."""
     text = dumps(CASES["double-triangle"].build())
     text = text.replace("\n[materials", '\n[numbers]\narm = "10 mm"\n\n[materials', 1)
@@ -68,7 +68,7 @@ def test_a_formula_under_change_is_the_overrides_not_the_units() -> None:
     assert moved.units == stage.units
 
 
-def test_changes_that_are_no_table_are_told() -> None:
+def test_overrides_that_are_no_table_are_told() -> None:
     with pytest.raises(DesignError, match="overrides: found 5 where a table is expected"):
         loads(f"{START}overrides = 5\n")
 

@@ -38,7 +38,7 @@ class Geometric:
 
 @keep
 def geometric(part: Part, material: Material | None) -> Geometric:
-    """Geometric stiffness of any part; one without a drawn length (a given matrix, a joint) is taken as a point.
+    """Geometric stiffness of any part; one without a drawn length (a compliance matrix, a joint) is taken as a point.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.06, thickness=0.0003, width=0.02)

@@ -12,7 +12,7 @@ from flexstage.parts.part import Restricted, material_of
 
 
 def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
-    """The stage with every given part that stands for a drawn one replaced by it.
+    """The stage with every compliance matrix that replaces a drawn part replaced by it.
 
     Raises `DesignError` where the part it stands for is not there.
 

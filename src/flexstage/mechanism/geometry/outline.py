@@ -60,7 +60,7 @@ class Outline:
 
 
 def outlines(assembly: Assembly) -> tuple[Outline, ...]:
-    """Outlines of all solids, the ground's included, and of all parts with dimensions; given 6x6 parts and ideal joints have none.
+    """Outlines of all solids, the ground's included, and of all parts with dimensions; compliance matrices and ideal joints have none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

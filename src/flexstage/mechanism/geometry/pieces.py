@@ -28,7 +28,7 @@ Form: TypeAlias = Shaped | Solid
 
 
 def form_of(part: Part) -> Form | None:
-    """The form of a link's part; a given matrix and an ideal joint have none.
+    """The form of a link's part; a compliance matrix and an ideal joint have none.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).span

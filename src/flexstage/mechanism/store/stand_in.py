@@ -1,4 +1,4 @@
-"""Given parts that stand in for drawn ones in a design file's text: the drawn parts are kept under another name, comments stay."""
+"""Compliance matrices that replace drawn parts in a design file's text: those are kept under another name, comments stay."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class StandIn:
 
 
 def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
-    """The text of a design file with given parts, by name, in the places of drawn ones, which are kept as `<name>-drawn`.
+    """The text of a design file with compliance matrices, by name, in the places of drawn ones, which are kept as `<name>-drawn`.
 
     The new matrices carry `tag`. Raises `DesignError` where links depart from such a part, and where the file's layout does not allow it.
 

@@ -68,7 +68,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 
 
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, Given]:
-    """The computed hinges as given parts, of the mass and with the intended freedoms of the drawn ones.
+    """The computed hinges as compliance matrices, of the mass and with the intended freedoms of the drawn ones.
 
     The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
     keeps beam theory's. Raises `DesignError` for a 6x6 that is known to worse than 10 %.
@@ -103,7 +103,7 @@ def _doubt(name: str, error: float | None) -> Finding:
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
-    """The stage with the computed hinges as given parts, those of which no copy departs; members of compounds stay as they are drawn.
+    """The stage with the computed hinges as compliance matrices, where no copy has an override; members of compounds stay as drawn.
 
     Raises `DesignError` where copies depart from a shared hinge.
 

@@ -33,7 +33,7 @@ OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
 """Shapes that other packages offer, without those of `draw`: the kernel that draws is not needed to ask for versions."""
 
 Form: TypeAlias = Shaped | Solid
-"""What can be drawn: given 6x6 parts and ideal joints have no shape."""
+"""What can be drawn: compliance matrices and ideal joints have no shape."""
 
 
 @dataclass(frozen=True)
