@@ -105,10 +105,10 @@ notches = [{ frequency = "106 Hz", depth = 0.1, damping = 0.5 }]
 [trajectory]
 """
 TRAJECTORIES = (
-    'kind = "step"\nby = { x = "1 um", rz = "10 urad" }\nspeed = "1 mm/s"\nacceleration = "0.2 m/s^2"\njerk = "100 m/s^3"\n',
+    'kind = "step"\namplitude = { x = "1 um", rz = "10 urad" }\nspeed = "1 mm/s"\nacceleration = "0.2 m/s^2"\njerk = "100 m/s^3"\n',
     'kind = "raster"\nlength = "20 um"\npitch = "2 um"\nlines = 8\nspeed = "0.2 mm/s"\nacceleration = "1 m/s^2"\nfast = "y"\nslow = "x"\n',
     'kind = "spiral"\nradius = "4 um"\npitch = "0.5 um"\nspeed = "0.2 mm/s"\nfirst = "z"\nsecond = "x"\n',
-    'kind = "sine"\nfrequency = "10 Hz"\nperiods = 4\nby = { x = "1 um" }\n',
+    'kind = "sine"\nfrequency = "10 Hz"\nperiods = 4\namplitude = { x = "1 um" }\n',
     'kind = "file"\nfile = "path.csv"\n',
 )
 WAYS = (

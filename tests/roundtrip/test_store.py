@@ -157,7 +157,7 @@ def test_every_entry_of_the_catalogue_can_be_read_and_is_tagged_throughout() -> 
 
 def test_tags_stand_in_any_table() -> None:
     text = START + (
-        'tags = { max_mode_frequency = "stated paper 1" }\nmode_limit = "1 kHz"\n'
+        'tags = { max_mode_frequency = "stated paper 1" }\nmax_mode_frequency = "1 kHz"\n'
         '[sources]\npaper = "a paper"\n'
         '[parts.wire]\nkind = "rod"\nmaterial = "steel"\nlength = "3 mm"\ndiameter = "1 mm"\ntags = { length = "stated paper 2" }\n'
         '[units.leg.links.front]\njoins = ["ground", "platform"]\npart = "wire"\nat = ["0 m", "0 m", "0 m"]\nalong = "x"\n'

@@ -1,7 +1,7 @@
 """Ties: what parts without a shape do in a stage of solids, by the numbers that they state.
 
-A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are data, the same
-for every model; where it ends on an elastic body is found here: it moves with the surface around its end (`field.seat_motion`).
+A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are data, the
+same for every model; where it ends on an elastic body is found here: it moves with the surface around its end (`field.seat_motion`).
 """
 
 from __future__ import annotations
