@@ -153,20 +153,22 @@ import signal, socket, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 with socket.create_server(("127.0.0.1", 0)) as listening:
     print(f"at 127.0.0.1:{listening.getsockname()[1]}: axes x", file=sys.stderr, flush=True)
-    stream = listening.accept()[0].makefile("rw")
+    connection = listening.accept()[0]
     try:
-        for number, line in enumerate(iter(stream.readline, "")):
-            stream.write(f"{number} of \\n{line}" if "?" in line else "")
-            stream.flush()
+        for number, line in enumerate(connection.makefile("r")):  # one file for both would forget lines that came before it writes
+            connection.sendall(f"{number} of \\n{line}".encode() if "?" in line else b"")
         while True:  # a call that blocks would miss a signal that comes just before it
             time.sleep(0.01)
     except KeyboardInterrupt:
         print("ended", file=sys.stderr)
 """
     with Popen([sys.executable, "-c", server], stderr=PIPE, encoding="utf-8") as running:
-        said = talk(running, "MOV x 1\nONT? x ~ 3 of \\nONT\\? x\nPOS? x\n")
-        assert said.splitlines()[1:] == ["MOV x 1", r"ONT? x ~ 3 of \nONT\? x", "POS? x", "4 of ", "POS? x"]
-        assert running.communicate(timeout=10.0)[1] == "ended\n"
+        try:
+            said = talk(running, "MOV x 1\nONT? x ~ 3 of \\nONT\\? x\nPOS? x\n")
+            assert said.splitlines()[1:] == ["MOV x 1", r"ONT? x ~ 3 of \nONT\? x", "POS? x", "4 of ", "POS? x"]
+            assert running.communicate(timeout=10.0)[1] == "ended\n"
+        finally:
+            running.kill()
 
 
 def test_every_command_writes_every_output_once() -> None:
