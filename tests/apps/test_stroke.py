@@ -32,7 +32,7 @@ def two(tmp_path: Path) -> Path:
 def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, two: Path) -> None:
     ended = flexstage("stroke", "stage.toml", "--json", "first.json")
     assert "Path out; of the others: --path back" in ended.err
-    flexstage("stroke", "stage.toml", "--path", "back", "--points", "2", "--load", "platform.fx=1 N", "--json", "back.json")
+    flexstage("stroke", "stage.toml", "--path", "back", "--steps", "2", "--load", "platform.fx=1 N", "--json", "back.json")
     first, back = (json.loads((two / name).read_text())["along"] for name in ("first.json", "back.json"))
     assert [row[0] for row in first["values"]] == pytest.approx([0.0, 0.5e-4, 1e-4])
     assert [row[0] for row in back["values"]] == pytest.approx([0.0, -1e-4])
@@ -51,7 +51,7 @@ def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
 def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> None:
     """A stack at its full stroke, a coordinate near rest; of a force nothing is near."""
     for drive, end in (("B", 38e-6), ("platform.x", 1e-4), ("platform.rz", 1e-3)):
-        flexstage("stroke", "stage.toml", "--drive", drive, "--points", "2", "--json", "found.json")
+        flexstage("stroke", "stage.toml", "--drive", drive, "--steps", "2", "--json", "found.json")
         found = json.loads((two / "found.json").read_text())["along"]
         assert [row[0] for row in found["values"]] == pytest.approx([0.0, end])
     ended = flexstage("stroke", "stage.toml", "--drive", "platform.fx")

@@ -18,12 +18,13 @@ from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
@@ -186,7 +187,7 @@ def budget(
     temperature: Annotated[
         str | None, text_option("--temperature", "VALUE", "Uniform change of temperature. Default: 1 K, where drift is known.")
     ] = None,
-    at: Annotated[str, typer.Option(metavar="POINT", help="Point of the platform: platform, or a named point.")] = "platform",
+    point: Point = PLATFORM,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -201,7 +202,7 @@ def budget(
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     stands = footing(mechanism, Place())
-    found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
+    found = budgeting.budget(mechanism, asked, at=point, temperature=warmth)
     small = second_order(mechanism, ideal(mechanism), asked)
     answer(
         "budget",

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
-
-import typer
 
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.complete import platform_modes, read
@@ -20,7 +18,7 @@ from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matri
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.analysis.loaded.stance import Stance
 from flexstage.analysis.loaded.standing import standing
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.record import SideBySide, walk
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.base.units.unit import parse
@@ -34,7 +32,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import known_point, open_design
 from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
@@ -94,16 +92,9 @@ def stiffness(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
-    at: Annotated[
-        list[str] | None,
-        text_option(
-            "--at",
-            "POINT|NAME=VALUE",
-            "Point whose motion is read, platform or a named one; and where the stage is brought from where it rests: "
-            '"platform.x=5 mm", by a force that stays. Several times.',
-        ),
-    ] = None,
-    load_at: Annotated[str, typer.Option(metavar="POINT", help="Point that is loaded. Default: the one that is read.")] = "",
+    point: Point = PLATFORM,
+    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: that of --point.")] = "",
+    at: At = None,
     load: Load = None,
     hold: Held = None,
     temperature: Warmth = None,
@@ -118,10 +109,11 @@ def stiffness(  # noqa: PLR0913 (its options)
     With a place (--at NAME=VALUE, --load, --hold, --temperature) it is that of the stage there, at large displacements, under its weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    point, brought = _point_and_place(at or ())
-    there = footing(mechanism, place(brought, load, hold, temperature), model)
+    require(Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in at or () if "=" not in text)
+    there = footing(mechanism, place(at, load, hold, temperature), model)
     linear = there.linear
-    found = statics(linear, load_point=known_point(linear, load_at or point), read_point=known_point(linear, point))
+    read_point = known_point(linear, point, "--point")
+    found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
     sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.stance is None else None
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
@@ -138,13 +130,6 @@ def stiffness(  # noqa: PLR0913 (its options)
         cautions=there.cautions,
     )
 
-
-def _point_and_place(texts: Sequence[str]) -> tuple[str, list[str]]:
-    """The one point that is read, and where the stage is brought."""
-    points = [text for text in texts if "=" not in text]
-    if len(points) > 1:
-        raise refuse("--at", f"{' and '.join(points)} are two points", "Ask for one at a time")
-    return (points or [PLATFORM])[0], [text for text in texts if "=" in text]
 
 
 def _stiffness_tables(

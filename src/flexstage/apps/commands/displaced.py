@@ -31,7 +31,7 @@ from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, steps_option, text_option
 from flexstage.show.command.output import announce, save
 from flexstage.show.displaced import (
     buckling_report,
@@ -57,9 +57,7 @@ def stroke(  # noqa: PLR0913 (its options)
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
-    points: Annotated[
-        int | None, typer.Option("--points", metavar="N", min=2, help="Points of it. Default: as the path states, 11.")
-    ] = None,
+    steps: Annotated[int | None, steps_option(" Default: that of the path, else 11.")] = None,
     load: Load = None,
     report: Report = None,
     changes: Changes = None,
@@ -79,9 +77,9 @@ def stroke(  # noqa: PLR0913 (its options)
         raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
     stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
-        _stated(mechanism, stated, points, loads)
+        _stated(mechanism, stated, steps, loads)
         if stated
-        else _asked(model, drive or "platform.x", start=start, end=end, points=points or 11, loads=loads)
+        else _asked(model, drive or "platform.x", start=start, end=end, steps=steps or 11, loads=loads)
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
@@ -109,22 +107,22 @@ def _first_path(mechanism: Mechanism) -> str:
     return first
 
 
-def _stated(mechanism: Mechanism, name: str, points: int | None, loads: dict[str, float]) -> Course:
+def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
     """A path of a design, under `loads` too."""
     if name not in mechanism.paths:
         raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
     found = course(mechanism, name)
-    values = found.values if points is None else np.linspace(found.values[0], found.values[-1], points)
+    values = found.values if steps is None else np.linspace(found.values[0], found.values[-1], steps)
     return replace(found, values=values, loads=found.loads | loads)
 
 
-def _asked(model: Nonlinear, drive: str, *, start: str, end: str, points: int, loads: dict[str, float]) -> Course:
+def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, loads: dict[str, float]) -> Course:
     quantity = drive_quantity(model.assembly, drive, "--drive")
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else _end(model, drive, quantity)
     if low == high:
         raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
-    return Course(drive, np.linspace(low, high, points), loads, (), 1.0)
+    return Course(drive, np.linspace(low, high, steps), loads, (), 1.0)
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
@@ -245,7 +243,7 @@ def misalign(  # noqa: PLR0913 (its options)
     ] = "",
     shift: Annotated[str, text_option("--along", "AXIS", "Axis along which it is shifted instead: x, y or z.")] = "",
     size: Annotated[str, text_option("--size", "VALUE", 'How far it is misaligned: "1 mrad", "10 um". Default: 1 mrad, 0.1 mm.')] = "",
-    points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points from none to all of it.")] = 11,
+    steps: Annotated[int, steps_option()] = 11,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
@@ -282,7 +280,7 @@ def misalign(  # noqa: PLR0913 (its options)
             beside=(report,),
         )
         return
-    found = misaligned(mechanism, copy, axis, wanted, points=points)
+    found = misaligned(mechanism, copy, axis, wanted, points=steps)
     if report is not None:
         save(report, misalign_report(mechanism, found), "--report")
     answer(

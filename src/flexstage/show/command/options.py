@@ -24,6 +24,11 @@ def text_option(name: str, metavar: str, about: str) -> Any:
     return typer.Option(name, metavar=metavar, help=about, show_default=False)
 
 
+def steps_option(default: str = "") -> Any:
+    """The option of the number of computed equilibria; `default` states what a path may give."""
+    return typer.Option("--steps", metavar="N", min=2, help=f"Number of equilibria, both ends included.{default}")
+
+
 def output_option(metavar: str, about: str) -> Any:
     """The option of the file that a command writes."""
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
@@ -92,6 +97,10 @@ Csv: TypeAlias = Annotated[
 
 Xlsx: TypeAlias = Annotated[
     Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
+]
+
+Point: TypeAlias = Annotated[
+    str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")
 ]
 
 Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]
