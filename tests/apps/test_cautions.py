@@ -156,7 +156,7 @@ REPORTED = {
     "optimise front.toml": "load factor goes down to 2.01",
     "tolerance tolerance.toml --workers 1": "load factor goes down to 0.232 (leaf -0.25 mm)",
     "stroke stage.toml --drive platform.y --steps 2": "122 mm wide, the envelope 1 mm",
-    "buckle stage.toml --load platform.fx=-1kN": "122 mm wide, the envelope 1 mm",
+    "buckle stage.toml --scale-load platform.fx=-1kN": "122 mm wide, the envelope 1 mm",
     "misalign stage.toml": "122 mm wide, the envelope 1 mm",
     "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles are those of stacks without it",
 }

@@ -39,6 +39,16 @@ def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, tw
 
 
 @pytest.mark.usefixtures("two")
+def test_a_constant_load_takes_its_part_of_the_critical_load(flexstage: Command) -> None:
+    push = "platform.fx=-1 kN"
+    alone, with_half = (
+        flexstage("buckle", "stage.toml", "--scale-load", push, *more, "--json", "-").document["factor"]
+        for more in ((), ("--load", "platform.fx=-500 N"))
+    )
+    assert with_half == pytest.approx(alone - 0.5, rel=1e-4)
+
+
+@pytest.mark.usefixtures("two")
 def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
     ended = flexstage("stroke", "stage.toml", "--path", "out", "--to", "1 mm")
     assert (ended.code, "a path states its drive and its ends" in ended.err) == (2, True)

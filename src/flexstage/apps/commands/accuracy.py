@@ -23,7 +23,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.displaced import Place, footing
+from flexstage.show.command.displaced import Place, footing, temperature_option
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
 from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
@@ -184,9 +184,7 @@ def budget(
     design: Design,
     *,
     command: Commands = None,
-    temperature: Annotated[
-        str | None, text_option("--temperature", "VALUE", "Uniform change of temperature. Default: 1 K, where drift is known.")
-    ] = None,
+    temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
     point: Point = PLATFORM,
     changes: Changes = None,
     json: Json = None,

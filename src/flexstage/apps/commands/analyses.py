@@ -31,7 +31,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import known_point, open_design
-from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
+from flexstage.show.command.displaced import At, Fixed, Load, Temperature, footing, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
@@ -96,8 +96,8 @@ def stiffness(  # noqa: PLR0913 (its options)
     load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: that of --point.")] = "",
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -106,11 +106,12 @@ def stiffness(  # noqa: PLR0913 (its options)
     """Compliance and stiffness of the platform.
 
     6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
-    With a place (--at NAME=VALUE, --load, --hold, --temperature) it is that of the stage there, at large displacements, under its weight.
+
+    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
     require(Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in at or () if "=" not in text)
-    there = footing(mechanism, place(at, load, hold, temperature), model)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     linear = there.linear
     read_point = known_point(linear, point, "--point")
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
@@ -151,8 +152,8 @@ def lost_motion(  # noqa: PLR0913 (its options)
     model: ModelName = Model.LUMPED,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -160,11 +161,12 @@ def lost_motion(  # noqa: PLR0913 (its options)
 ) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
-    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it. With --at, --load, --hold or
-    --temperature those of the stage where it then is; the ideal motion stays that of the drawn position.
+    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
+
+    With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, hold, temperature), model)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     found = losses.lost_motion(ideal(mechanism), there.links)
     answer(
         "lost-motion",
@@ -199,8 +201,8 @@ def modes(  # noqa: PLR0913 (its options)
     ] = None,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -209,11 +211,12 @@ def modes(  # noqa: PLR0913 (its options)
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite
-    elements needed. With --at, --load, --hold or --temperature they are those of the stage where it then is, at large displacements and
-    under its weight.
+    elements needed.
+
+    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
-    ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)
+    ending, asked = None if view is None else _view_ending(view), place(at, load, fixed, temperature)
     if ending == ".glb" and asked:
         raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {asked.options}, or write a page (.html)")
     there = footing(mechanism, asked, model)
@@ -281,8 +284,8 @@ def response(  # noqa: PLR0913 (its options)
     ] = None,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -291,11 +294,12 @@ def response(  # noqa: PLR0913 (its options)
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground. With --noise, the rms values of the outputs too. With --at, --load, --hold or --temperature it is
-    that of the stage where it then is.
+    over absolute motion of the ground. With --noise, the rms values of the outputs too.
+
+    With --at, --load, --fixed or --temperature: about that operating point.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, hold, temperature), model)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     linear = there.linear
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)

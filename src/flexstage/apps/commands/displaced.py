@@ -17,7 +17,7 @@ from flexstage.analysis.loaded.misalign import misalignments
 from flexstage.analysis.loaded.stance import require_consistent
 from flexstage.analysis.loaded.stroke import Beyond
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
-from flexstage.apps.words import Side
+from flexstage.apps.words import Branch
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
@@ -30,7 +30,7 @@ from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
+from flexstage.show.command.displaced import At, Fixed, Load, Place, Temperature, loads_of, place
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, steps_option, text_option
 from flexstage.show.command.output import announce, save
 from flexstage.show.displaced import (
@@ -155,37 +155,42 @@ class Buckling:
 def buckle(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    load: Annotated[
+    scale_load: Annotated[
         list[str] | None,
-        text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: every load case.'),
+        text_option(
+            "--scale-load",
+            "NAME=VALUE",
+            'Load that grows, e.g. "platform.fx=-20 N"; several grow in proportion. Repeatable. '
+            "Default: the weight at a stated operating point, else every load case.",
+        ),
     ] = None,
     at: At = None,
-    hold: Held = None,
-    temperature: Warmth = None,
-    beyond: Annotated[
-        int, typer.Option("--beyond", metavar="N", min=0, help="Points to follow from where the least gives way, on its branch or on.")
+    load: Load = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
+    post_buckling: Annotated[
+        int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
-    side: Annotated[
-        Side, typer.Option("--side", help="Which way the branch goes: along the shape that is told, or against it.")
-    ] = Side.ALONG,
+    branch: Annotated[Branch, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = Branch.ALONG,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
 ) -> None:
-    """How far a load may grow until the stage gives way.
+    """Find the load at which the stage buckles.
 
-    At large displacements: a limit, which the load cannot pass, a bifurcation into another motion, or a sharp bend of the path beside one.
-    All else stays, the weight too.
-    Without --load and --at of every load case (weight, stated forces, what paths hold) at rest and at every end of paths and strokes.
+    At large displacements: a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant, the weight too.
+
+    Without --scale-load and operating point: each load case (weight, stated forces, loads of paths), at rest and at all ends of paths
+    and strokes.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    asked = place(at, load, hold, temperature)
-    cases = (_case(mechanism, asked),) if load or at or hold else load_cases(mechanism)
+    asked = place(at, load, fixed, temperature)
+    cases = (_case(mechanism, asked, scale_load or ()),) if scale_load or at or load or fixed else load_cases(mechanism)
     found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
-    after = _beyond(found, cases, side, beyond) if beyond else None
+    after = _beyond(found, cases, branch, post_buckling) if post_buckling else None
     told = _buckling(found, after)
     if report is not None:
         save(report, buckling_report(mechanism, found, after), "--report")
@@ -202,34 +207,33 @@ def buckle(  # noqa: PLR0913 (its options)
     )
 
 
-def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: int) -> Beyond:
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: Branch, points: int) -> Beyond:
     """From where the least case gives way on; refused where that needs something held."""
     least = found.least
     if least is None or least.found is None:
-        raise refuse("--beyond", "nothing gives way", "Leave it out, or name a larger load")
+        raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
     if least.found.state.held:
-        raise refuse(
-            "--beyond", f"the least factor is that of {least.load} at {least.place}, where force holds the stage", "Leave out --at"
-        )
+        what = f"the least factor is that of {least.load} at {least.place}, where force holds the stage"
+        raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
-    path = follow(least.found, grows, side=1.0 if side is Side.ALONG else -1.0, points=points)
+    path = follow(least.found, grows, side=1.0 if branch is Branch.ALONG else -1.0, points=points)
     return Beyond(path, over_stroke(path))
 
 
-def _case(mechanism: Mechanism, asked: Place) -> LoadCase:
-    """What the options name: the load that grows, else the weight, and where."""
+def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
+    """What the options name: the load that grows, else the weight, and the operating point."""
     model = nonlinear(mechanism)
-    grows, there = loads_of(model, asked.load), asked.brought(model)
-    require_consistent(model, there, grows, asked.locked)
-    text, where = (", ".join(asked.load) or WEIGHT), ", ".join([*asked.at, *(f"{name} locked" for name in asked.locked)])
-    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, at=there, locked=asked.locked)
+    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load), asked.brought(model)
+    require_consistent(model, there, {**grows, **stays}, asked.locked)
+    text, where = (", ".join(scaled) or WEIGHT), ", ".join([*asked.at, *asked.load, *(f"{name} fixed" for name in asked.locked)])
+    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, stays=stays, at=there, locked=asked.locked)
 
 
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     """Why there is no answer at all: nothing loads the stage, or the one case that was asked for has no factor."""
     if not found.cases:
         what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
-        yield Finding("stage", what, 'Name a load: --load "platform.fz=-20 N"')
+        yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
         yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another place")
 

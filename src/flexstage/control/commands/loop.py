@@ -46,7 +46,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Footing, Held, Load, Place, Warmth, footing, place
+from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Temperature, footing, place
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
 from flexstage.show.command.output import announce, require_writable, save, write
@@ -149,8 +149,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = False,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     record: Annotated[
         list[Path] | None,
         text_option("--record", "FILE", "Records or responses of a test: the plant is what they tell, not the model. Several times."),
@@ -185,7 +185,9 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
     With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
-    forces drive the stage, a PID controller. With --at, --load, --hold or --temperature it is the loop of the stage where it then is.
+    forces drive the stage, a PID controller.
+
+    With --at, --load, --fixed or --temperature: about that operating point.
 
     Kinds side by side: flexstage loop stage.toml --floor VC-D --goal balance --compare --report loops.html
     """
@@ -234,7 +236,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     }
     asked = override(given, options)
     require([*values.findings, *setup_findings(asked), *file_findings(asked, exports, hardware)])
-    where = place(at, load, hold, temperature)
+    where = place(at, load, fixed, temperature)
     require(_fea_findings(where, model) if fea else ())
     written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *written_files(exports, hardware)]
     mechanism = open_design(design, changes, written)
