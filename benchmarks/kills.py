@@ -104,7 +104,7 @@ SCENES = (
     Scene("hysteresis", "hysteresis stack.csv -o h.toml --report h.html --json h.json", "h.toml h.html h.json"),
     Scene("compare", "compare rods.toml --record rods.uff --fea --report c.html --json c.json", "c.html c.json"),
     Scene("stroke", "stroke stage.toml --drive platform.x --to 0.1mm --steps 3 --json d.json", "d.json"),
-    Scene("misalign", "misalign stage.toml --copy left --steps 3 --json f.json", "f.json"),
+    Scene("misalign", "misalign stage.toml --instance left --steps 3 --json f.json", "f.json"),
     Scene("buckle", "buckle stage.toml --json b.json", "b.json"),
     Scene("superelement", "superelement rods.toml left -o e.npz --order 1", "e.npz", cold=True),
     Scene("cad", "cad rods.toml -o d.step --mesh d.vtu --gltf d.glb --order 1", "d.step d.vtu d.glb", cold=True),

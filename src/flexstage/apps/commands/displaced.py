@@ -241,12 +241,16 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
 def misalign(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    copy: Annotated[str, text_option("--copy", "NAME", "A copy of a unit, or a link on the ground. Default: each of them.")] = "",
-    about: Annotated[
-        str, text_option("--about", "AXIS", "Its own axis about which it is turned: x, y or z. Default: y; without --copy all.")
+    instance: Annotated[str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")] = "",
+    rotation: Annotated[
+        str, text_option("--rotation", "AXIS", "Axis of rotation in its own frame: x, y or z. Default: y; without --instance, all.")
     ] = "",
-    shift: Annotated[str, text_option("--along", "AXIS", "Axis along which it is shifted instead: x, y or z.")] = "",
-    size: Annotated[str, text_option("--size", "VALUE", 'How far it is misaligned: "1 mrad", "10 um". Default: 1 mrad, 0.1 mm.')] = "",
+    translation: Annotated[
+        str, text_option("--translation", "AXIS", "Axis of translation, instead of a rotation: x, y or z. Default: none.")
+    ] = "",
+    amount: Annotated[
+        str, text_option("--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad or 0.1 mm.')
+    ] = "",
     steps: Annotated[int, steps_option()] = 11,
     report: Report = None,
     changes: Changes = None,
@@ -254,29 +258,31 @@ def misalign(  # noqa: PLR0913 (its options)
     csv: Csv = None,
     xlsx: Xlsx = None,
 ) -> None:
-    """What a misaligned copy does to an over-constrained stage.
+    """Compute internal loads of a misaligned, over-constrained stage.
 
-    A copy or link is forced into a seat on the ground that is turned, or shifted: the loads that this leaves in all flexures, the
-    stage's frequencies over it, and the misalignment at which the stage gives way. Without --copy: where it gives way, load and stress copy
-    by copy, about all axes or the one that is named; the worst of them is played in the report.
+    An instance of a unit, or a link, is forced into a rotated or translated seat on the ground. Results: loads in all flexures,
+    frequencies over the misalignment, and the critical misalignment at which the stage buckles.
+
+    Without --instance: critical misalignment, load and stress of each instance, about all axes or the stated one. The report animates
+    the worst.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    axis = _axis(about, shift)
+    axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH
-    wanted = parse(size, quantity, where="--size") if size else (1e-3 if quantity is ANGLE else 1e-4)
+    wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
-        raise refuse("--size", "a misalignment of zero does nothing", "Give it a size")
-    if not copy:
-        told = misalignments(mechanism, (axis,) if about or shift else COMPONENTS[3:], size=wanted)
+        raise refuse("--amount", "a misalignment of zero does nothing", 'Use for example --amount "1 mrad"')
+    if not instance:
+        told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
-            raise refuse("stage", "no copy of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
+            raise refuse("stage", "no instance of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
         if report is not None:
             save(report, misalignments_report(mechanism, told), "--report")
         answer(
             "misalign",
             mechanism,
             lambda: told,
-            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --copy NAME."],
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --instance NAME."],
             json=json,
             csv=csv,
             xlsx=xlsx,
@@ -284,7 +290,7 @@ def misalign(  # noqa: PLR0913 (its options)
             beside=(report,),
         )
         return
-    found = misaligned(mechanism, copy, axis, wanted, points=steps)
+    found = misaligned(mechanism, instance, axis, wanted, points=steps)
     if report is not None:
         save(report, misalign_report(mechanism, found), "--report")
     answer(
@@ -300,13 +306,13 @@ def misalign(  # noqa: PLR0913 (its options)
     )
 
 
-def _axis(about: str, shift: str) -> str:
-    if about and shift:
-        raise refuse("--along", f"it is turned about {about} already", "Leave out --about, or --along")
-    option, axis = ("--along", shift) if shift else ("--about", about or "y")
+def _axis(rotation: str, translation: str) -> str:
+    if rotation and translation:
+        raise refuse("--translation", f"it is rotated about {rotation} already", "Leave out --rotation, or --translation")
+    option, axis = ("--translation", translation) if translation else ("--rotation", rotation or "y")
     if axis not in COMPONENTS[:3]:
         raise refuse(option, f'"{axis}" is no axis', "Write x, y or z")
-    return axis if shift else f"r{axis}"
+    return axis if translation else f"r{axis}"
 
 
 def _buckling(found: CaseFactors, after: Beyond | None) -> Buckling:
