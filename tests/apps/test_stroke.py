@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from flexstage.mechanism.store import dump
 from tests.apps.command import Command, design_in
+from tests.laws.test_nonlinear import guide
 
 PATHS = """
 [paths.out]
@@ -38,12 +40,11 @@ def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, tw
     assert [row[0] for row in back["values"]] == pytest.approx([0.0, -1e-4])
 
 
-@pytest.mark.usefixtures("two")
-def test_a_constant_load_takes_its_part_of_the_critical_load(flexstage: Command) -> None:
-    push = "platform.fx=-1 kN"
+def test_a_constant_load_takes_its_part_of_the_critical_load(flexstage: Command, tmp_path: Path) -> None:
+    dump(guide(), tmp_path / "guide.toml")
     alone, with_half = (
-        flexstage("buckle", "stage.toml", "--scale-load", push, *more, "--json", "-").document["factor"]
-        for more in ((), ("--load", "platform.fx=-500 N"))
+        flexstage("buckle", "guide.toml", "--scale-load", "platform.fx=-10 N", *more, "--json", "-").document["factor"]
+        for more in ((), ("--load", "platform.fx=-5 N"))
     )
     assert with_half == pytest.approx(alone - 0.5, rel=1e-4)
 

@@ -132,7 +132,6 @@ def stiffness(  # noqa: PLR0913 (its options)
     )
 
 
-
 def _stiffness_tables(
     found: Statics, freedoms: FreedomStiffness | None, mass: MassMatrix, sagging: Deflection | None
 ) -> Iterator[Table | None]:

@@ -241,7 +241,9 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
 def misalign(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    instance: Annotated[str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")] = "",
+    instance: Annotated[
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")
+    ] = "",
     rotation: Annotated[
         str, text_option("--rotation", "AXIS", "Axis of rotation in its own frame: x, y or z. Default: y; without --instance, all.")
     ] = "",
