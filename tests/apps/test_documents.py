@@ -156,7 +156,9 @@ def test_transmissibility_is_one_at_low_frequency(flexstage: Command) -> None:
 
 def test_random_inputs_give_rms_values(flexstage: Command) -> None:
     named = ("--output", "platform.z", "--band", "1 Hz", "1 kHz", "--json", "-")
-    document = flexstage("response", "stage.toml", "--noise", "ground.z=1e-5 m/s^2/Hz^0.5", "--noise", "B4=1 nm/Hz^0.5", *named).document
+    document = flexstage(
+        "response", "stage.toml", "--input-asd", "ground.z=1e-5 m/s^2/Hz^0.5", "--input-asd", "B4=1 nm/Hz^0.5", *named
+    ).document
     found = document["random"]
     spectra = {"ground.z": Spectrum(1e-10, rate=Rate.ACCELERATION), "B4": Spectrum(1e-18)}
     expected = random_response(lumped(load("stage.toml")), ("platform.z",), spectra, (1.0, 1000.0))

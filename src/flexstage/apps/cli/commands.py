@@ -102,7 +102,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_SOLID}.solid:calibrate",
             "flexstage calibrate stage.toml -o stage-calibrated.toml"),
     Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_EXPERIMENT}.rig:rig",
-            "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
+            "flexstage rig stage.toml --seconds 10 --drive-rms 1um --drift 5nm -o record.uff"),
     Command("identify", _TEST, "Find the modes in records of a test.", f"{_EXPERIMENT}.identify:identify",
             "flexstage identify record.uff --stage stage.toml --report modes.html"),
     Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_EXPERIMENT}.compare:compare",

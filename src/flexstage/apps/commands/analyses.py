@@ -32,7 +32,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import known_point, open_design
 from flexstage.show.command.displaced import At, Fixed, Load, Temperature, footing, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
@@ -266,19 +266,24 @@ def response(  # noqa: PLR0913 (its options)
     model: ModelName = Model.LUMPED,
     inputs: Annotated[
         list[str] | None,
-        text_option("--input", "NAME", "Stroke (B1), force (platform.fx), ground motion (ground); several times."),
+        text_option("--input", "NAME", "Input: stroke (B1), force (platform.fx) or ground motion (ground). Repeatable. Default: strokes."),
     ] = None,
     outputs: Annotated[
         list[str] | None,
-        text_option("--output", "NAME", "Motion (platform, chuck.x), gauge (S1), resultant (B4/pivot.mz); several times."),
+        text_option(
+            "--output",
+            "NAME",
+            "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Repeatable. Default: platform and gauges.",
+        ),
     ] = None,
-    band: Annotated[tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Frequencies, e.g. --band "1 Hz" "1 kHz".')] = None,
-    noise: Annotated[
+    band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
+    input_asd: Annotated[
         list[str] | None,
         text_option(
-            "--noise",
+            "--input-asd",
             "INPUT=DENSITY",
-            'White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
+            'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". '
+            "Repeatable.",
         ),
     ] = None,
     at: At = None,
@@ -293,7 +298,7 @@ def response(  # noqa: PLR0913 (its options)
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground. With --noise, the rms values of the outputs too.
+    over absolute motion of the ground. With --input-asd, the rms values of the outputs too.
 
     With --at, --load, --fixed or --temperature: about that operating point.
     """
@@ -305,7 +310,7 @@ def response(  # noqa: PLR0913 (its options)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
     found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
-    shaken = random_response(linear, chosen, spectra(linear, noise), limits, damping=law) if noise else None
+    shaken = random_response(linear, chosen, spectra(linear, input_asd), limits, damping=law) if input_asd else None
     answer(
         "response",
         mechanism,

@@ -29,6 +29,26 @@ def steps_option(default: str = "") -> Any:
     return typer.Option("--steps", metavar="N", min=2, help=f"Number of equilibria, both ends included.{default}")
 
 
+def rate_option(default: str) -> Any:
+    """The option of a sampling rate, with its default in words."""
+    return text_option("--rate", "FREQUENCY", f'Sampling rate, e.g. "2 kHz". Default: {default}.')
+
+
+def band_option(default: str) -> Any:
+    """The option of a band of frequencies, with its default in words."""
+    return text_option("--band", "LOW HIGH", f'Frequency band, e.g. --band "50 Hz" "400 Hz". Default: {default}.')
+
+
+def parameters_option(default: str = "") -> Any:
+    """The option of parameters of a design; `default` states which, if none has to be named."""
+    return text_option("--parameters", "ADDRESSES", f'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.{default}')
+
+
+def order_option(lowest: int, default: str = "") -> Any:
+    """The option of the order of finite elements from `lowest` on; `default` states which, if it is chosen."""
+    return typer.Option("--order", min=lowest, max=5, help=f"Order of the elements.{default}", show_default=not default)
+
+
 def output_option(metavar: str, about: str) -> Any:
     """The option of the file that a command writes."""
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
@@ -98,6 +118,31 @@ Csv: TypeAlias = Annotated[
 Xlsx: TypeAlias = Annotated[
     Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
 ]
+
+Modes: TypeAlias = Annotated[int, typer.Option("--modes", min=0, max=100, help="Number of lowest modes.")]
+
+Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
+
+GaugeNoise: TypeAlias = Annotated[
+    str | None, text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: that of the design.')
+]
+
+GaugeResolution: TypeAlias = Annotated[
+    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for none. Default: that of the design.")
+]
+
+AmplifierValues: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--amplifier",
+        "VALUE",
+        "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Repeatable. Default: ideal.",
+    ),
+]
+
+Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
+
+FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
 
 Point: TypeAlias = Annotated[
     str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")

@@ -14,7 +14,7 @@ from flexstage.models.linear.port import ports
 from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
-_NOISE_EXAMPLE = 'Write for example --noise "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+_ASD_EXAMPLE = 'Write for example --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
 
 
 class Values:
@@ -67,17 +67,17 @@ def motions(texts: Sequence[str]) -> dict[str, float]:
     return found
 
 
-def spectra(model: LinearModel, noises: Sequence[str]) -> dict[str, Spectrum]:
-    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--noise`, of the input or of its first or second rate.
+def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
+    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second rate.
 
     All mistakes are told together.
     """
     found: dict[str, Spectrum] = {}
     findings: list[Finding] = []
-    for text in noises:
+    for text in densities:
         name, _, value = (part.strip() for part in text.partition("="))
         try:
-            found[name] = _spectrum(model, name, value, f"--noise {text}")
+            found[name] = _spectrum(model, name, value, f"--input-asd {text}")
         except DesignError as error:
             findings += error.findings
     require(findings)
@@ -94,4 +94,4 @@ def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum
         except DesignError:
             continue
     what = f'found "{value}", which is no amplitude density of {name} [{unit}/Hz^0.5] or of its rates'
-    raise DesignError([Finding(where, what, _NOISE_EXAMPLE)])
+    raise DesignError([Finding(where, what, _ASD_EXAMPLE)])
