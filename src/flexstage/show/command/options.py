@@ -83,22 +83,26 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
 
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
-ModelName: TypeAlias = Annotated[
-    Model,
-    word_option(
+
+def model_option(default: str = "") -> Any:
+    """The option of the model; `default` states which, if a file may."""
+    return word_option(
         "--model",
         Model,
-        "Model of the stage: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
+        f"Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.{default}",
         otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
-    ),
-]
+        show_default=not default,
+    )
+
+
+ModelName: TypeAlias = Annotated[Model, model_option()]
 
 Changes: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--set",
         "ADDRESS=VALUE",
-        "Change a value before the analysis, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. May be given several times.",
+        "Changed value of the design, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. Repeatable.",
     ),
 ]
 

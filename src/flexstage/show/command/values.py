@@ -46,8 +46,8 @@ def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, fl
     return None
 
 
-def motions(texts: Sequence[str]) -> dict[str, float]:
-    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of `--command`; all mistakes are told together."""
+def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
+    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
     found: dict[str, float] = {}
     findings: list[Finding] = []
     for text in texts:
@@ -55,12 +55,12 @@ def motions(texts: Sequence[str]) -> dict[str, float]:
         if name not in COMPONENTS or not value:
             findings.append(
                 Finding(
-                    f"--command {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
+                    f"{option} {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
                 )
             )
             continue
         try:
-            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"--command {text}"))
+            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"{option} {text}"))
         except DesignError as error:
             findings += error.findings
     require(findings)
