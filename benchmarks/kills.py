@@ -99,7 +99,7 @@ SCENES = (
     Scene("rig mat", "rig stage.toml --seconds 2 --model mapped -o w.mat", "w.mat"),
     Scene("rig csv", "rig stage.toml --seconds 2 --model mapped -o w.csv", "w.csv"),
     Scene("identify", "identify record.uff --report i.html --json i.json", "i.html i.json"),
-    Scene("update", "update stage.toml --record record.uff --free leaf.thickness -o u.toml --json u.json", "u.toml u.json"),
+    Scene("update", "update stage.toml --record record.uff --parameters leaf.thickness -o u.toml --json u.json", "u.toml u.json"),
     Scene("plan", "plan stage.toml -o p.svg", "p.svg"),
     Scene("hysteresis", "hysteresis stack.csv -o h.toml --report h.html --json h.json", "h.toml h.html h.json"),
     Scene("compare", "compare rods.toml --record rods.uff --fea --report c.html --json c.json", "c.html c.json"),
@@ -108,7 +108,7 @@ SCENES = (
     Scene("buckle", "buckle stage.toml --json b.json", "b.json"),
     Scene("superelement", "superelement rods.toml left -o e.npz --order 1", "e.npz", cold=True),
     Scene("cad", "cad rods.toml -o d.step --mesh d.vtu --gltf d.glb --order 1", "d.step d.vtu d.glb", cold=True),
-    Scene("solid", "solid rods.toml --what hinge --order 2 --report s.html --json s.json", "s.html s.json", cold=True),
+    Scene("solid", "solid rods.toml --scope hinge --order 2 --report s.html --json s.json", "s.html s.json", cold=True),
     Scene("verify", "verify rods.toml --order 2 --report v.html --json v.json", "v.html v.json", cold=True),
     Scene("calibrate", "calibrate rods.toml -o k.toml --json k.json --order 2", "k.toml k.json", cold=True),
 )

@@ -102,7 +102,9 @@ def leaves(folder: Path, mass: float) -> None:
     (folder / "stage.toml").write_text(dumps(stage))
 
 
-@pytest.mark.parametrize("command", ["check", "analyse", "modes", "stiffness", "response", "sensitivities", "verify", "solid --what stage"])
+@pytest.mark.parametrize(
+    "command", ["check", "analyse", "modes", "stiffness", "response", "sensitivities", "verify", "solid --scope stage"]
+)
 def test_a_stage_that_its_weight_topples_has_no_elastic_results(flexstage: Command, tmp_path: Path, command: str) -> None:
     leaves(tmp_path, 10.0)
     ended = flexstage(*command.split(), "stage.toml")

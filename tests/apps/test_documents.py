@@ -80,7 +80,7 @@ def test_every_command_gives_a_document_for_every_model(flexstage: Command, name
 
 @pytest.mark.parametrize("name", LUMPED_ONLY)
 def test_commands_of_the_lumped_reading_give_a_document(flexstage: Command, name: str) -> None:
-    arguments = ["--parameter", "parts.neck.thickness"] if name == "sensitivities" else []
+    arguments = ["--parameters", "parts.neck.thickness"] if name == "sensitivities" else []
     document = flexstage(name, "stage.toml", *arguments, "--json", "-").document
     assert (document["kind"], document["model"]) == (name, "lumped")
 
@@ -233,7 +233,7 @@ def page_section(kind: str) -> str:
 
 @pytest.mark.parametrize("name", [*WITH_MODEL, *LUMPED_ONLY, "check", "catalogue"])
 def test_every_key_is_documented(flexstage: Command, name: str) -> None:
-    extra = {"analyse": ["--set", "horizontal/front.thickness=1.4mm"], "sensitivities": ["--parameter", "parts.neck.thickness"]}
+    extra = {"analyse": ["--set", "horizontal/front.thickness=1.4mm"], "sensitivities": ["--parameters", "parts.neck.thickness"]}
     extra |= {"mapping": ["--model", "lumped"]}
     design = [] if name == "catalogue" else ["stage.toml"]
     document = flexstage(name, *design, *extra.get(name, []), "--json", "-").document

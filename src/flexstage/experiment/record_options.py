@@ -27,6 +27,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.show.command.options import band_option, rate_option, text_option, word_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
+from flexstage.show.command.values import names
 
 if TYPE_CHECKING:
     from flexstage.experiment.formats import read as files
@@ -169,11 +170,6 @@ def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
     if found.missing:
         print_note(f"not given: shapes on the stage: {found.missing}")
     return found
-
-
-def names(texts: Sequence[str] | None) -> tuple[str, ...]:
-    """Names that stand in texts, with commas between."""
-    return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
 
 
 def _repeated(paths: Sequence[Path]) -> Iterator[Finding]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, TypeAlias
 
-import typer
-
 from flexstage.analysis.assessment import budget as budgeting
 from flexstage.analysis.assessment import sensitivities as derivatives
 from flexstage.analysis.complete import read, required_command
@@ -24,8 +22,8 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.displaced import Place, footing, temperature_option
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, text_option
-from flexstage.show.command.values import motions
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, modes_option, parameters_option, text_option
+from flexstage.show.command.values import motions, names
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
@@ -151,10 +149,8 @@ def drift(
 def sensitivities(
     design: Design,
     *,
-    parameters: Annotated[
-        list[str] | None, text_option("--parameter", "ADDRESS", "Value to vary; several times. Default: every number.")
-    ] = None,
-    count: Annotated[int, typer.Option("--modes", min=1, help="Number of lowest modes.")] = 12,
+    parameters: Annotated[list[str] | None, parameters_option(" Default: every number.")] = None,
+    count: Annotated[int, modes_option(1)] = 12,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -166,7 +162,7 @@ def sensitivities(
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
-    found = derivatives.sensitivities(mechanism, tuple(parameters) if parameters else None, modes=count)
+    found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
     answer(
         "sensitivities",
         mechanism,

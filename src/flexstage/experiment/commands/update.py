@@ -26,7 +26,6 @@ from flexstage.experiment.record_options import (
     RecordTexts,
     Units,
     identify_records,
-    names,
 )
 from flexstage.experiment.updating import update as updating
 from flexstage.experiment.updating.free import DEFAULT, Known
@@ -38,16 +37,17 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, text_option
+from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, parameters_option, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
+from flexstage.show.command.values import names
 
 
 def update(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     record: Annotated[list[Path], RECORD],
-    free: Annotated[list[str], text_option("--free", "ADDRESSES", 'Numbers that may change, e.g. "neck.thickness, steel.density".')],
+    parameters: Annotated[list[str], parameters_option()],
     output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
     prior: Annotated[
         list[str] | None,
@@ -89,7 +89,7 @@ def update(  # noqa: PLR0913 (its options)
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
-    chosen = names(free)
+    chosen = names(parameters)
     free_numbers(mechanism, chosen, known)  # refused before the records are read
     model = standing(mechanism)
     seen = identify_records(record, texts, model, highest_mode(mechanism, model))

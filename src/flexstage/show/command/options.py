@@ -44,9 +44,14 @@ def parameters_option(default: str = "") -> Any:
     return text_option("--parameters", "ADDRESSES", f'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.{default}')
 
 
-def order_option(lowest: int, default: str = "") -> Any:
-    """The option of the order of finite elements from `lowest` on; `default` states which, if it is chosen."""
-    return typer.Option("--order", min=lowest, max=5, help=f"Order of the elements.{default}", show_default=not default)
+def modes_option(least: int, most: int | None = None) -> Any:
+    """The option of a number of modes, `least` to `most`."""
+    return typer.Option("--modes", min=least, max=most, help="Number of lowest modes.")
+
+
+def order_option(default: str = "") -> Any:
+    """The option of the order of finite elements; `default` states which is chosen from 2 on."""
+    return typer.Option("--order", min=2 if default else 1, max=5, help=f"Order of the elements.{default}", show_default=not default)
 
 
 def output_option(metavar: str, about: str) -> Any:
@@ -123,7 +128,6 @@ Xlsx: TypeAlias = Annotated[
     Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
 ]
 
-Modes: TypeAlias = Annotated[int, typer.Option("--modes", min=0, max=100, help="Number of lowest modes.")]
 
 Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
 

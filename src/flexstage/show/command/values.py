@@ -36,6 +36,11 @@ class Values:
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
+def names(texts: Sequence[str] | None) -> tuple[str, ...]:
+    """Names in texts, separated by commas."""
+    return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
+
+
 def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
     """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
     for name, quantity in known.items():
