@@ -43,7 +43,32 @@ NATIVE = CACHE / "native"
 """Compiled kernels of all sides; their names are those of their sources."""
 
 # What a change means to differ: regular expression at BASE -> replacement in the working tree, or the reason. Empty where nothing should.
-WORDS: Mapping[str, str] = {}  # of command lines and of the files that they read
+WORDS: Mapping[str, str] = {  # of command lines and of the files that they read
+    r"^(stiffness .*)--at (?=\w+$)": r"\1--point ",
+    r"--points\b": "--steps",
+    r"--hold\b": "--fixed",
+    r"^(buckle .*)--load\b": r"\1--scale-load",
+    r"--beyond\b": "--post-buckling",
+    r"--copy\b": "--instance",
+    r"--about\b": "--rotation",
+    r"^(rig .*)--inputs\b": r"\1--input-quantity",
+    r"--tap\b": "--input-signal",
+    r"^(rig .*)--noise\b": r"\1--drive-rms",
+    r"^(response .*)--noise\b": r"\1--input-asd",
+    r"^(identify .*)--only\b": r"\1--channels",
+    r"^(loop .*)--command\b": r"\1--amplitude",
+    r"--follow\b": "--tracking",
+    r"--compensate\b": "--feedforward",
+    r"--goal\b": "--tune-for",
+    r"--single\b": "--float32",
+    r"--fast\b": "--no-realtime",
+    r"--free\b": "--parameters",
+    r"^(new .*)--parameters\b": r"\1--list-parameters",
+    r"^(new .*)--parameter\b": r"\1--case-parameter",
+    r"^(sensitivities .*)--parameter\b": r"\1--parameters",
+    r"--what\b": "--scope",
+    r"--of\b ": "",
+}
 TEXTS: Mapping[str, str] = {}  # of terminal, HTML and other text
 PATHS: Mapping[str, str] = {}  # in JSON, MAT, HDF5 and tables
 ALONE: Mapping[str, str] = {}  # paths of one side only, and why
