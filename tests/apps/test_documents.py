@@ -85,6 +85,12 @@ def test_commands_of_the_lumped_reading_give_a_document(flexstage: Command, name
     assert (document["kind"], document["model"]) == (name, "lumped")
 
 
+def test_parameters_are_separated_by_commas_or_options(flexstage: Command) -> None:
+    words = (("parts.neck.thickness, parts.neck.width",), ("parts.neck.thickness", "--parameters", "parts.neck.width"))
+    one, two = (flexstage("sensitivities", "stage.toml", "--parameters", *each, "--json", "-").document for each in words)
+    assert one == two
+
+
 def test_mapping_is_that_of_the_paper(flexstage: Command) -> None:
     document = flexstage("mapping", "stage.toml", "--json", "-").document
     assert document["R_a"]["rows"] == ["B1", "B2", "B3", "B4", "B5", "B6"]

@@ -21,8 +21,20 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.displaced import Place, footing, temperature_option
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, modes_option, parameters_option, text_option
+from flexstage.show.command.displaced import Place, footing
+from flexstage.show.command.options import (
+    Changes,
+    Csv,
+    Design,
+    Json,
+    ModelName,
+    Point,
+    Xlsx,
+    modes_option,
+    parameters_option,
+    temperature_option,
+    text_option,
+)
 from flexstage.show.command.values import motions, names
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
@@ -149,8 +161,8 @@ def drift(
 def sensitivities(
     design: Design,
     *,
-    parameters: Annotated[list[str] | None, parameters_option(" Default: every number.")] = None,
-    count: Annotated[int, modes_option(1)] = 12,
+    parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
+    count: Annotated[int, modes_option(min=1)] = 12,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,

@@ -31,7 +31,7 @@ from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
 from flexstage.show.command.displaced import At, Fixed, Load, Place, Temperature, loads_of, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, steps_option, text_option
+from flexstage.show.command.options import STEPS, Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import announce, save
 from flexstage.show.displaced import (
     buckling_report,
@@ -57,7 +57,7 @@ def stroke(  # noqa: PLR0913 (its options)
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
-    steps: Annotated[int | None, steps_option(" Default: that of the path, else 11.")] = None,
+    steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
     report: Report = None,
     changes: Changes = None,
@@ -235,7 +235,7 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
         what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
         yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
-        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another place")
+        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
 
 
 def misalign(  # noqa: PLR0913 (its options)
@@ -253,7 +253,7 @@ def misalign(  # noqa: PLR0913 (its options)
     amount: Annotated[
         str, text_option("--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad or 0.1 mm.')
     ] = "",
-    steps: Annotated[int, steps_option()] = 11,
+    steps: Annotated[int, STEPS] = 11,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,

@@ -51,6 +51,7 @@ from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Te
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
+    MODEL,
     AmplifierValues,
     Changes,
     Csv,
@@ -61,7 +62,6 @@ from flexstage.show.command.options import (
     Report,
     Seed,
     Xlsx,
-    model_option,
     rate_option,
     text_option,
     word_option,
@@ -145,7 +145,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     resolution: GaugeResolution = None,
     amplifier: AmplifierValues = None,
     seed: Seed = None,
-    model: Annotated[Model | None, model_option(" Default: lumped.")] = None,
+    model: Annotated[Model | None, MODEL] = None,
     fea: Annotated[bool, FEA] = False,
     at: At = None,
     load: Load = None,
@@ -181,8 +181,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
-    forces drive the stage, a PID controller.
+    With nothing else given: the lumped model, a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one
+    sample late. Where forces drive the stage, a PID controller.
 
     With --at, --load, --fixed or --temperature: about that operating point.
 

@@ -16,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
-from flexstage.show.command.options import text_option
+from flexstage.show.command.options import temperature_option, text_option
 from flexstage.show.table import Table, matrix_table
 
 if TYPE_CHECKING:
@@ -42,11 +42,6 @@ At: TypeAlias = Annotated[
 ]
 
 Fixed: TypeAlias = Annotated[list[str] | None, text_option("--fixed", "NAME", "Fixed coordinate, e.g. platform.rz. Repeatable.")]
-
-
-def temperature_option(default: str) -> Any:
-    """The option of a uniform temperature change, with its default in words."""
-    return text_option("--temperature", "VALUE", f'Uniform temperature change, e.g. "5 K". Default: {default}.')
 
 
 Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
@@ -146,7 +141,7 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
     if not asked:
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
+        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = stances.stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), fixed=asked.locked, temperature=asked.warmth)
     return Footing(mechanism, model, there)

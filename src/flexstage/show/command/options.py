@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import Enum
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, TypeAlias, TypeVar
@@ -19,39 +20,9 @@ _Kind = TypeVar("_Kind", bound=Enum)
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
-def text_option(name: str, metavar: str, about: str) -> Any:
-    """An option that is a text; its default is said in words, if at all."""
-    return typer.Option(name, metavar=metavar, help=about, show_default=False)
-
-
-def steps_option(default: str = "") -> Any:
-    """The option of the number of computed equilibria; `default` states what a path may give."""
-    return typer.Option("--steps", metavar="N", min=2, help=f"Number of equilibria, both ends included.{default}")
-
-
-def rate_option(default: str) -> Any:
-    """The option of a sampling rate, with its default in words."""
-    return text_option("--rate", "FREQUENCY", f'Sampling rate, e.g. "2 kHz". Default: {default}.')
-
-
-def band_option(default: str) -> Any:
-    """The option of a band of frequencies, with its default in words."""
-    return text_option("--band", "LOW HIGH", f'Frequency band, e.g. --band "50 Hz" "400 Hz". Default: {default}.')
-
-
-def parameters_option(default: str = "") -> Any:
-    """The option of parameters of a design; `default` states which, if none has to be named."""
-    return text_option("--parameters", "ADDRESSES", f'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.{default}')
-
-
-def modes_option(least: int, most: int | None = None) -> Any:
-    """The option of a number of modes, `least` to `most`."""
-    return typer.Option("--modes", min=least, max=most, help="Number of lowest modes.")
-
-
-def order_option(default: str = "") -> Any:
-    """The option of the order of finite elements; `default` states which is chosen from 2 on."""
-    return typer.Option("--order", min=2 if default else 1, max=5, help=f"Order of the elements.{default}", show_default=not default)
+def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
+    """An option that is a text; its default is stated in words, if at all."""
+    return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
 def output_option(metavar: str, about: str) -> Any:
@@ -89,18 +60,13 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
 
-def model_option(default: str = "") -> Any:
-    """The option of the model; `default` states which, if a file may."""
-    return word_option(
-        "--model",
-        Model,
-        f"Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.{default}",
-        otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
-        show_default=not default,
-    )
-
-
-ModelName: TypeAlias = Annotated[Model, model_option()]
+MODEL = word_option(
+    "--model",
+    Model,
+    "Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.",
+    otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
+)
+ModelName: TypeAlias = Annotated[Model, MODEL]
 
 Changes: TypeAlias = Annotated[
     list[str] | None,
@@ -147,6 +113,18 @@ AmplifierValues: TypeAlias = Annotated[
         "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Repeatable. Default: ideal.",
     ),
 ]
+
+rate_option = partial(text_option, "--rate", "FREQUENCY", 'Sampling rate, e.g. "2 kHz".')
+band_option = partial(text_option, "--band", "LOW HIGH", 'Frequency band, e.g. --band "50 Hz" "400 Hz".')
+temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform temperature change, e.g. "5 K".')
+parameters_option = partial(
+    text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
+)
+order_option = partial(typer.Option, "--order", max=5, help="Order of the elements.")
+modes_option = partial(typer.Option, "--modes", help="Number of lowest modes.")
+STEPS = typer.Option(
+    "--steps", metavar="N", min=2, help="Number of equilibria, both ends included. Default: that of a path, else 11.", show_default=False
+)
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 

@@ -34,8 +34,8 @@ def cad(
     output: Annotated[Path | None, output_option("STAGE.STEP", "Write the named solids as a STEP assembly.")] = None,
     mesh: Annotated[Path | None, text_option("--mesh", "STAGE.VTU", "Mesh the stage and write the tetrahedra as VTU.")] = None,
     gltf: Annotated[Path | None, text_option("--gltf", "STAGE.GLB", "Read the stage as solids; write its modes as animations.")] = None,
-    order: Annotated[int, order_option()] = 2,
-    modes: Annotated[int, modes_option(0, 100)] = 12,
+    order: Annotated[int, order_option(min=1)] = 2,
+    modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Write a stage as solids.
@@ -85,8 +85,8 @@ def superelement(
     solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that the solid is, or is part of.", show_default=False)],
     *,
     output: Annotated[Path, output_option("FRAME.NPZ", "Write stiffness and mass as an NPZ file.")],
-    order: Annotated[int, order_option()] = 3,
-    modes: Annotated[int, modes_option(0, 100)] = 12,
+    order: Annotated[int, order_option(min=1)] = 3,
+    modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Reduce one solid of a stage to a superelement.
