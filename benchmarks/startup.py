@@ -31,7 +31,7 @@ MADE = ("new stage.toml", "rig stage.toml --seconds 60 -o record.h5", "rig stage
 LONG = (
     "identify long.h5",
     "compare stage.toml --record long.h5",
-    "update stage.toml --record long.h5 --free neck.thickness,steel.density -o updated.toml",
+    "update stage.toml --record long.h5 --parameters neck.thickness,steel.density -o updated.toml",
 )
 """Commands on one record of 655,360 samples a channel: each may take `MOST` times as much of a processor as the first."""
 MOST, ROUNDS = 1.1, 5

@@ -64,8 +64,8 @@ def main() -> None:
         run(folder, "new", stage)
         cold, kept = (run(folder, "verify", stage) for _ in range(2))
         changes = {unit: [f"--set={unit}/{change}" for change in numbers] for unit, numbers in UNITS.items()}
-        run(folder / "units", "solid", stage, "--what", "unit")
-        units = {f"{unit} alone": run(folder / "units", "solid", stage, "--what", "unit", *change) for unit, change in changes.items()}
+        run(folder / "units", "solid", stage, "--scope", "unit")
+        units = {f"{unit} alone": run(folder / "units", "solid", stage, "--scope", "unit", *change) for unit, change in changes.items()}
     for how, found in {"from nothing": cold, "from the cache": kept, **units}.items():
         print(
             f"{how:16} {found.processor:8.1f} s of processor {found.wall:8.1f} s of wall {found.memory:8.0f} MB; "

@@ -22,7 +22,7 @@ TABLE = (
 )
 THIN = 1e-6
 # width, reinforced thickness of a leaf of 40 x 0.3 mm, 8 mm thin at both ends | C_x, C_y, C_z, C_rx, C_ry, C_rz in N and mm by `flexstage
-# solid --what hinge --accuracy 0.2%` between rigid faces | error of our law in percent
+# solid --scope hinge --accuracy 0.2%` between rigid faces | error of our law in percent
 REINFORCED = (
     ((20.0, 3.0), (1.51620e-5, 4.29275e-1, 1.51814e-4, 2.15649e-4, 4.65570e-7, 1.65329e-3), (1.13, -0.29, 1.66, 4.08, -1.20, -0.80)),
     ((8.0, 3.0), (3.89520e-5, 1.09864, 1.81065e-3, 1.60754e-3, 7.37940e-6, 4.23251e-3), (-1.59, -0.66, -0.83, 0.80, -2.60, -1.18)),

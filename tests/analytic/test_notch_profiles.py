@@ -29,7 +29,7 @@ ELLIPTIC = (
     (8.0, 2.0, 0.8, 6.704537e-5, -1.17, 6.251940e-6, -2.33, 4.100871e-4, -2.15, 6.9853e-5),
     (5.0, 5.0, 0.5, 9.176335e-5, -3.80, 4.434686e-6, -13.0, 8.275846e-5, -7.18, 8.9411e-5),
 )
-# t = 1, b = 5 mm | C_rz, C_x, C_y about the centre by `flexstage solid --what hinge --accuracy 0.3%` (blocks at both ends), each with the
+# t = 1, b = 5 mm | C_rz, C_x, C_y about the centre by `flexstage solid --scope hinge --accuracy 0.3%` (blocks at both ends), each with the
 # error of beam theory
 CONTOURS = {
     "parabolic": (Parabolic(5.0, 3.0), 2.9815e-5, -3.48, 5.4286e-6, -11.02, 5.1174e-5, 0.91),

@@ -90,7 +90,7 @@ def test_loads_past_what_a_stage_bears_are_told_with_how_far_it_stays():
 
 def test_what_stays_locked_is_said_once():
     with pytest.raises(fs.DesignError, match="given twice"):
-        footing(parallelogram(), Place(["platform.x=1 um"], hold=["platform.x", "platform.x"]))
+        footing(parallelogram(), Place(["platform.x=1 um"], fixed=["platform.x", "platform.x"]))
 
 
 def test_what_is_bent_beyond_the_theory_is_told():

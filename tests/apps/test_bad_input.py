@@ -153,15 +153,17 @@ def test_bad_changes_are_refused(flexstage: Command, change: str) -> None:
         (("response", "stage.toml", "--input", "B9"), ("B9",)),
         (("response", "stage.toml", "--band", "1 Hz", "1 mm"), ("--band", "frequency")),
         (("response", "stage.toml", "--band", "10 Hz", "1 Hz"), ("--band", "10 Hz")),
-        (("response", "stage.toml", "--noise", "ground.z=1 m"), ("--noise ground.z=1 m", "amplitude density")),
-        (("response", "stage.toml", "--noise", "B9=1 nm/Hz^0.5"), ("B9", "B1")),
-        (("stiffness", "stage.toml", "--at", "chuk"), ("chuk",)),
+        (("response", "stage.toml", "--input-asd", "ground.z=1 m"), ("--input-asd ground.z=1 m", "amplitude density")),
+        (("response", "stage.toml", "--input-asd", "B9=1 nm/Hz^0.5"), ("B9", "B1")),
+        (("stiffness", "stage.toml", "--point", "chuk"), ("--point", "chuk")),
+        (("stiffness", "stage.toml", "--load-point", "chuk"), ("--load-point", "chuk")),
+        (("stiffness", "stage.toml", "--at", "chuk"), ("--at chuk", "Use --point chuk")),
         (("workspace", "stage.toml", "--command", "x=50"), ("--command x=50", "without a unit")),
         (("workspace", "stage.toml", "--command", "q=50um"), ("--command q=50um", "x, y, z")),
         (("budget", "stage.toml", "--temperature", "1 mm"), ("--temperature", "length")),
-        (("budget", "stage.toml", "--at", "chuck"), ("chuck", "platform")),
+        (("budget", "stage.toml", "--point", "chuck"), ("chuck", "platform")),
         (("drift", "stage.toml", "--ground", "stel"), ("stel", "steel")),
-        (("sensitivities", "stage.toml", "--parameter", "parts.nek.thickness"), ("nek", "neck")),
+        (("sensitivities", "stage.toml", "--parameters", "parts.nek.thickness"), ("nek", "neck")),
         (("plan", "stage.toml", "-o", "plan.gif"), (".gif", ".svg")),
         (("catalogue", "screws"), ("screws", "materials")),
         (("new", "other.toml", "--case", "double-triangel"), ("double-triangel", "double-triangle")),
@@ -180,7 +182,7 @@ def test_bad_options_are_refused(flexstage: Command, arguments: tuple[str, ...],
             '--model: "solid" is none of ideal, mapped, lumped. Solids have commands of their own: flexstage solid, flexstage verify.',
         ),
         (("modes", "stage.toml", "--model", "lumpd"), '--model: "lumpd" is none of ideal, mapped, lumped.'),
-        (("solid", "stage.toml", "--what", "hinges"), '--what: "hinges" is none of hinge, unit, stage.'),
+        (("solid", "stage.toml", "--scope", "hinges"), '--scope: "hinges" is none of hinge, unit, stage.'),
     ],
 )
 def test_words_that_are_no_choice_are_told_in_one_line(flexstage: Command, arguments: tuple[str, ...], said: str) -> None:
@@ -195,14 +197,38 @@ def test_words_that_are_a_choice_are_taken(flexstage: Command, model: str) -> No
     assert flexstage("mapping", "stage.toml", "--model", model, "--json", "-").document["model"] == model
 
 
-@pytest.mark.parametrize("words", [("--reading", "mapped"), ("--reading=mapped",)])
-def test_an_option_by_its_old_name_is_refused_with_the_new_one(flexstage: Command, words: tuple[str, ...]) -> None:
-    ended = flexstage("modes", "stage.toml", *words)
-    assert (ended.code, ended.out) == (2, "")
-    assert "--reading: this option is not known. It is called --model." in ended.err
+OLD_OPTIONS = """
+modes --reading --model, stiffness --load-at --load-point, budget --at --point, stroke --points --steps, misalign --points --steps
+loop --hold --fixed, buckle --beyond --post-buckling, buckle --side --branch, misalign --copy --instance, misalign --size --amount
+misalign --about --rotation, misalign --along --translation, rig --inputs --input-quantity, rig --tap --input-signal
+response --noise --input-asd, rig --noise --drive-rms, identify --allow --accept-fault, compare --only --channels
+loop --command --amplitude, loop --sensitivity --max-sensitivity, loop --follow --tracking, loop --compensate --feedforward
+loop --damping --force-feedback, loop --goal --tune-for, loop --single --float32, loop --allow --accept-fault, serve --fast --no-realtime
+update --free --parameters, sensitivities --parameter --parameters, new --parameters --list-parameters, new --parameter --case-parameter
+solid --what --scope, update --resolution --frequency-resolution
+"""
 
 
-@pytest.mark.parametrize("arguments", [("analyze", "stage.toml"), ("modes",), ("new",), ("plan", "stage.toml")])
+@pytest.mark.parametrize("case", OLD_OPTIONS.strip().replace("\n", ", ").split(", "))
+def test_an_option_by_its_old_name_is_refused_with_the_new_one(flexstage: Command, case: str) -> None:
+    command, old, new = case.split()
+    for words in ((old, "x"), (f"{old}=x",)):
+        expect_refusal(flexstage(command, "stage.toml", *words), f"{old}: this option is not known. It is called {new}.")
+
+
+def test_an_option_that_became_an_argument_is_refused_with_the_argument(flexstage: Command) -> None:
+    expect_refusal(flexstage("schema", "--of", "study"), "--of: this option is not known. Write schema KIND.")
+
+
+@pytest.mark.parametrize(("spelled", "command"), [("analyze", "analyse"), ("optimize", "optimise")])
+def test_american_spelling_is_taken(flexstage: Command, spelled: str, command: str) -> None:
+    first, second = (flexstage(name, "--help") for name in (spelled, command))
+    assert first.code == second.code == 0
+    assert first.out.replace(spelled, command) == second.out
+    assert spelled not in flexstage("--help").out
+
+
+@pytest.mark.parametrize("arguments", [("analyst", "stage.toml"), ("modes",), ("new",), ("plan", "stage.toml")])
 def test_wrong_usage_is_told(flexstage: Command, arguments: tuple[str, ...]) -> None:
     ended = flexstage(*arguments)
     assert ended.code == 2

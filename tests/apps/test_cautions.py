@@ -102,7 +102,9 @@ def leaves(folder: Path, mass: float) -> None:
     (folder / "stage.toml").write_text(dumps(stage))
 
 
-@pytest.mark.parametrize("command", ["check", "analyse", "modes", "stiffness", "response", "sensitivities", "verify", "solid --what stage"])
+@pytest.mark.parametrize(
+    "command", ["check", "analyse", "modes", "stiffness", "response", "sensitivities", "verify", "solid --scope stage"]
+)
 def test_a_stage_that_its_weight_topples_has_no_elastic_results(flexstage: Command, tmp_path: Path, command: str) -> None:
     leaves(tmp_path, 10.0)
     ended = flexstage(*command.split(), "stage.toml")
@@ -155,8 +157,8 @@ REPORTED = {
     "optimise least.toml": "load factor 2.01",
     "optimise front.toml": "load factor goes down to 2.01",
     "tolerance tolerance.toml --workers 1": "load factor goes down to 0.232 (leaf -0.25 mm)",
-    "stroke stage.toml --drive platform.y --points 2": "122 mm wide, the envelope 1 mm",
-    "buckle stage.toml --load platform.fx=-1kN": "122 mm wide, the envelope 1 mm",
+    "stroke stage.toml --drive platform.y --steps 2": "122 mm wide, the envelope 1 mm",
+    "buckle stage.toml --scale-load platform.fx=-1kN": "122 mm wide, the envelope 1 mm",
     "misalign stage.toml": "122 mm wide, the envelope 1 mm",
     "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles are those of stacks without it",
 }

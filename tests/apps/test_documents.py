@@ -80,9 +80,15 @@ def test_every_command_gives_a_document_for_every_model(flexstage: Command, name
 
 @pytest.mark.parametrize("name", LUMPED_ONLY)
 def test_commands_of_the_lumped_reading_give_a_document(flexstage: Command, name: str) -> None:
-    arguments = ["--parameter", "parts.neck.thickness"] if name == "sensitivities" else []
+    arguments = ["--parameters", "parts.neck.thickness"] if name == "sensitivities" else []
     document = flexstage(name, "stage.toml", *arguments, "--json", "-").document
     assert (document["kind"], document["model"]) == (name, "lumped")
+
+
+def test_parameters_are_separated_by_commas_or_options(flexstage: Command) -> None:
+    words = (("parts.neck.thickness, parts.neck.width",), ("parts.neck.thickness", "--parameters", "parts.neck.width"))
+    one, two = (flexstage("sensitivities", "stage.toml", "--parameters", *each, "--json", "-").document for each in words)
+    assert one == two
 
 
 def test_mapping_is_that_of_the_paper(flexstage: Command) -> None:
@@ -156,7 +162,9 @@ def test_transmissibility_is_one_at_low_frequency(flexstage: Command) -> None:
 
 def test_random_inputs_give_rms_values(flexstage: Command) -> None:
     named = ("--output", "platform.z", "--band", "1 Hz", "1 kHz", "--json", "-")
-    document = flexstage("response", "stage.toml", "--noise", "ground.z=1e-5 m/s^2/Hz^0.5", "--noise", "B4=1 nm/Hz^0.5", *named).document
+    document = flexstage(
+        "response", "stage.toml", "--input-asd", "ground.z=1e-5 m/s^2/Hz^0.5", "--input-asd", "B4=1 nm/Hz^0.5", *named
+    ).document
     found = document["random"]
     spectra = {"ground.z": Spectrum(1e-10, rate=Rate.ACCELERATION), "B4": Spectrum(1e-18)}
     expected = random_response(lumped(load("stage.toml")), ("platform.z",), spectra, (1.0, 1000.0))
@@ -231,7 +239,7 @@ def page_section(kind: str) -> str:
 
 @pytest.mark.parametrize("name", [*WITH_MODEL, *LUMPED_ONLY, "check", "catalogue"])
 def test_every_key_is_documented(flexstage: Command, name: str) -> None:
-    extra = {"analyse": ["--set", "horizontal/front.thickness=1.4mm"], "sensitivities": ["--parameter", "parts.neck.thickness"]}
+    extra = {"analyse": ["--set", "horizontal/front.thickness=1.4mm"], "sensitivities": ["--parameters", "parts.neck.thickness"]}
     extra |= {"mapping": ["--model", "lumped"]}
     design = [] if name == "catalogue" else ["stage.toml"]
     document = flexstage(name, *design, *extra.get(name, []), "--json", "-").document

@@ -63,7 +63,7 @@ def test_identify_gives_a_document(recorded: Command) -> None:
 
 
 def test_identify_without_a_stage_at_a_stated_resolution(recorded: Command, tmp_path: Path) -> None:
-    ended = recorded("identify", "record.uff", "--resolution", "2 Hz", "--json", "modes.json")
+    ended = recorded("identify", "record.uff", "--frequency-resolution", "2 Hz", "--json", "modes.json")
     assert ended.code == 0
     document = json.loads((tmp_path / "modes.json").read_text())
     assert document["name"] is None
@@ -203,7 +203,7 @@ def test_faults_are_named_and_used_only_when_allowed(flexstage: Command, tmp_pat
     assert ended.out == ""
     assert told in ended.err
     assert "Traceback" not in ended.err
-    cured = flexstage(*arguments, "--allow", allowed)
+    cured = flexstage(*arguments, "--accept-fault", allowed)
     assert cured.code == 0, cured.err
     assert cured.document["modes"]
 
@@ -236,7 +236,7 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
     [
         (("nowhere.uff",), "there is no such file"),
         (("stage.toml",), "stage.toml"),
-        (("record.uff", "--allow", "everything"), '"everything" is none of truncated, gaps'),
+        (("record.uff", "--accept-fault", "everything"), '"everything" is none of truncated, gaps'),
         (("record.uff", "--kind", "film"), '"film" is none of record, responses'),
         (("record.uff", "--kind", "responses"), "record.uff"),
         (("record.uff", "--units", "um"), "names no channel and unit"),
@@ -244,10 +244,10 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
         (("record.uff", "--rate", "0 Hz"), "--rate"),
         (("record.uff", "--band", "200 Hz", "100 Hz"), "is no band"),
         (("record.uff", "--band", "2 kHz", "3 kHz"), "less than twice the highest mode"),
-        (("record.uff", "--resolution", "0.1 Hz"), "averages at a resolution of 0.1 Hz"),
+        (("record.uff", "--frequency-resolution", "0.1 Hz"), "averages at a resolution of 0.1 Hz"),
         (("record.uff", "--inputs", "X*"), "no channel is called so"),
         (("record.uff", "--inputs", "B1", "--outputs", "B1"), "as an input and as an output"),
-        (("record.uff", "--only", "S*"), "is an input"),
+        (("record.uff", "--channels", "S*"), "is an input"),
         (("record.uff", "--stage", "nowhere.toml"), "nowhere.toml"),
         (("record.uff", "--report", "record.uff"), "a record that is read"),
         (("record.uff", "--report", "no/folder.html"), "cannot be written"),

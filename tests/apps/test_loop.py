@@ -63,15 +63,15 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
 
 
 def test_options_of_records_need_a_record_and_are_heard(guide: Command, tmp_path: Path) -> None:
-    ended = guide("loop", "stage.toml", "--units", "S*=um", "--only", "S")
+    ended = guide("loop", "stage.toml", "--units", "S*=um", "--channels", "S")
     assert ended.code == 2
     assert "--units: it is of records" in ended.err
-    assert "--only: it is of records" in ended.err
+    assert "--channels: it is of records" in ended.err
     write(tmp_path / "record.h5", one_mode_record())
-    ended = guide("loop", "stage.toml", "--record", "record.h5", "--units", "=um", "--allow", "everything")
+    ended = guide("loop", "stage.toml", "--record", "record.h5", "--units", "=um", "--accept-fault", "everything")
     assert ended.code == 2
     assert "--units =um" in ended.err
-    assert "--allow everything" in ended.err
+    assert "--accept-fault everything" in ended.err
     assert "Traceback" not in ended.err
 
 
@@ -95,7 +95,9 @@ def test_every_case_closes_or_is_refused_with_the_reason(flexstage: Command, tmp
 
 def test_options_go_before_the_set_up_file(guide: Command, tmp_path: Path) -> None:
     (tmp_path / "loop.toml").write_text(f'format = "{FORMAT}"\nrate = "20 kHz"\nseed = 3\n[controller]\nintegral = "100 1/s"')
-    document = guide("loop", "stage.toml", "--setup", "loop.toml", "--rate", "12 kHz", "--command", "x=2um", "--json", "-", *SMALL).document
+    document = guide(
+        "loop", "stage.toml", "--setup", "loop.toml", "--rate", "12 kHz", "--amplitude", "x=2um", "--json", "-", *SMALL
+    ).document
     assert document["plant"]["hardware"]["rate_hz"] == 12000.0
     assert document["setup"]["seed"] == 3
     assert document["controller"]["loops"]["x"]["law"]["integral_per_s"] == 100.0
@@ -109,8 +111,8 @@ def test_every_option_is_heard(guide: Command) -> None:
         "--controller": "pid",
         "--coordinates": "actuator",
         "--bandwidth": "60 Hz",
-        "--sensitivity": "1.9",
-        "--compensate": "reference",
+        "--max-sensitivity": "1.9",
+        "--feedforward": "reference",
         "--floor": "x=VC-C",
         "--gauge-noise": "0.2 nm/Hz^0.5",
         "--resolution": "0.5 nm",
@@ -141,8 +143,8 @@ def test_the_example_can_be_used_as_it_is(guide: Command, tmp_path: Path) -> Non
 
 
 def test_open_loop_and_hysteresis(guide: Command) -> None:
-    words = ("--controller", "none", "--hysteresis", "15 %", "--trajectory", "sine", "--command", "x=3um", "--json", "-")
-    bare, inverted = (guide("loop", "stage.toml", *words, *more).document for more in ((), ("--compensate", "hysteresis")))
+    words = ("--controller", "none", "--hysteresis", "15 %", "--trajectory", "sine", "--amplitude", "x=3um", "--json", "-")
+    bare, inverted = (guide("loop", "stage.toml", *words, *more).document for more in ((), ("--feedforward", "hysteresis")))
     assert bare["margins"] is None
     assert bare["reasons"]["margins"] == "the stage is commanded in open loop"
     stack = bare["hysteresis"]["actuators"]["B"]
@@ -157,7 +159,7 @@ def test_a_file_of_hysteresis_and_one_of_poses(guide: Command, tmp_path: Path) -
         'format = "flexstage hysteresis 1"\nthresholds = ["0 V", "20 V"]\nweights = ["100 nm/V", "20 nm/V"]\nvolts = ["0 V", "100 V"]\n'
     )
     (tmp_path / "path.csv").write_text("time [ms],x [um]\n0,0\n20,1\n40,0\n")
-    words = ("--hysteresis", "stack.toml", "--trajectory", "path.csv", "--compensate", "hysteresis", "--json", "-")
+    words = ("--hysteresis", "stack.toml", "--trajectory", "path.csv", "--feedforward", "hysteresis", "--json", "-")
     ended = guide("loop", "stage.toml", *words)
     assert ended.code == 0, ended.err
     assert ended.document["hysteresis"]["actuators"]["B"]["rms_error_inverse"] < 1e-9  # the stack is the model: the inverse is exact
@@ -286,15 +288,15 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--rate", "5"), ("--rate", "without a unit")),
     (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
-    (("--command", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
-    (("--command", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
-    (("--command", "q=1um"), ("--command q=1um", "rx, ry, rz, x, y, z")),
+    (("--amplitude", "x=1mm"), ("trajectory x", "leaves what the strokes reach", "Shrink the trajectory")),
+    (("--amplitude", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
+    (("--amplitude", "q=1um"), ("--amplitude q=1um", "rx, ry, rz, x, y, z")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
     (("--trajectory", "sinus"), ("sinus", "sine")),
     (("--trajectory", "nowhere.csv"), ("nowhere.csv", "no such file")),
     (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
-    (("--compensate", "everything"), ("--compensate everything", "lost-motion, load, reference, hysteresis")),
-    (("--compensate", "hysteresis"), ("compensate", "the stacks have none")),
+    (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
+    (("--feedforward", "hysteresis"), ("compensate", "the stacks have none")),
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--hysteresis", "80 %"), ("hysteresis.width", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
@@ -304,12 +306,12 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", "pi, pid, resonant, lqg, none")),
-    (("--sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),
+    (("--max-sensitivity", "0.9"), ("controller.sensitivity", "greater than 1")),
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
     (("--export", "path.csv"), ("--export path.csv", "nothing but the trajectory itself")),
-    (("--export", "path.csv", "--follow", "inverse"), ("--export path.csv", "several paths")),
+    (("--export", "path.csv", "--tracking", "inverse"), ("--export path.csv", "several paths")),
     (("--setup", "nowhere.toml"), ("nowhere.toml", "no such file")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),
 )
@@ -358,5 +360,5 @@ def test_all_findings_come_at_once(guide: Command, tmp_path: Path) -> None:
     (tmp_path / "loop.toml").write_text(
         f'format = "{FORMAT}"\n\n[gauges]\nfilter_order = 3\n[controller]\nkind = "pi"\nderivative = "1 ms"'
     )
-    ended = guide("loop", "stage.toml", "--setup", "loop.toml", "--rate", "5 m", "--floor", "VC-Z", "--compensate", "x")
+    ended = guide("loop", "stage.toml", "--setup", "loop.toml", "--rate", "5 m", "--floor", "VC-Z", "--feedforward", "x")
     assert ended.err.startswith("error: 5 findings")

@@ -93,7 +93,7 @@ def known(work, package):
         "schema",
         "check pair.toml",
         "loop s.toml --setup loop.toml --json loop.json",
-        "schema --of loop",
+        "schema loop",
         *(f"sweep study.toml -o {workers}.h5 --workers {workers} --json {workers}.json" for workers in ("1", "2")),
     )
     return flexstage(work, *commands, path=package)
@@ -150,7 +150,7 @@ def test_its_shape_is_all_that_finite_elements_need(work, package):
     """Theory and finite elements of the hinge and of the first mode agree within what either is good for; calibration takes that over."""
     whole = (
         f"verify small.toml {ROUGH} --json verify.json",
-        f"solid small.toml --what hinge {ROUGH} --json hinge.json",
+        f"solid small.toml --scope hinge {ROUGH} --json hinge.json",
         f"calibrate small.toml -o calibrated.toml {ROUGH}",
     )
     flexstage(work, *whole, path=package)
@@ -171,7 +171,7 @@ def test_its_shape_is_all_that_finite_elements_need(work, package):
 
 def test_without_a_shape_it_is_not_known_to_finite_elements(work, tmp_path):
     package = installed(tmp_path, without="flexstage.shapes")
-    told = flexstage(work, "solid small.toml --what hinge", "check small.toml", path=package, ok=2)
+    told = flexstage(work, "solid small.toml --scope hinge", "check small.toml", path=package, ok=2)
     assert "leaf: its shape as a solid is not known: nobody offers one for this kind. Install the package that does" in told
     assert "no findings" in told
 

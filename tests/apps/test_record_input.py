@@ -17,7 +17,7 @@ from flexstage.experiment.formats.write import write
 from tests.apps.command import Command, Ended
 from tests.models.stage_records import stage_record
 
-UPDATE = ("update", "stage.toml", "--free", "horizontal/front.thickness", "-o", "new.toml", "--record")
+UPDATE = ("update", "stage.toml", "--parameters", "horizontal/front.thickness", "-o", "new.toml", "--record")
 
 
 @pytest.fixture(scope="module")

@@ -40,14 +40,14 @@ def test_a_record_is_that_of_the_rig_in_python(flexstage: Command, tmp_path: Pat
 
 def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
     options = {
-        "--noise": "2V",
+        "--drive-rms": "2V",
         "--band": ("10 Hz", "400 Hz"),
         "--filter-order": "4",
         "--filter-corner": "500 Hz",
         "--gauge-noise": "0.1 nm/Hz^0.5",
         "--resolution": "1 nm",
-        "--tap": "command",
-        "--inputs": "voltage",
+        "--input-signal": "command",
+        "--input-quantity": "voltage",
         "--rate": "2 kHz",
     }
     words = [word for key, value in options.items() for word in (key, *((value,) if isinstance(value, str) else value))]
@@ -85,15 +85,15 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--rate", "0 Hz"), ("rate", "0 Hz")),
         (("--rate", "300 Hz"), ("300 Hz", "twice the highest platform mode, 176.7 Hz")),
         (("--rate", "300"), ("--rate", "without a unit")),
-        (("--noise", "50um"), ("B1", "6 x 50 um", "-75 um to 75 um")),
-        (("--noise", "1kg"), ("--noise", "displacement", "voltage")),
+        (("--drive-rms", "50um"), ("B1", "6 x 50 um", "-75 um to 75 um")),
+        (("--drive-rms", "1kg"), ("--drive-rms", "displacement", "voltage")),
         (("--actuator", "B11"), ("actuator B11", "B1")),
         (("--amplifier", "5 s"), ("--amplifier", "frequency", "resistance", "current")),
         (("--band", "100 Hz", "50 Hz"), ("band", "100 Hz to 50 Hz")),
         (("--gauge-noise", "1 nm"), ("--gauge-noise", "noise density")),
         (("--drift", "2"), ("--drift", "without a unit")),
         (("--model", "ideal"), ("--model ideal", "no modes")),
-        (("--tap", "both"), ("--tap", "monitor, command")),
+        (("--input-signal", "both"), ("--input-signal", "monitor, command")),
         (("-o", "record.xyz"), ("record.xyz", ".uff")),
         (("-o", "nowhere/record.uff"), ("no folder nowhere",)),
         (("-o", "stage.toml"), ("the design file",)),
@@ -111,7 +111,7 @@ def test_bad_input_is_named_and_nothing_written(
 
 
 def test_all_that_is_wrong_is_told_at_once(flexstage: Command) -> None:
-    ended = flexstage(*SHORT, "-o", "record.uff", "--noise", "1kg", "--rate", "fast", "--drift", "2")
+    ended = flexstage(*SHORT, "-o", "record.uff", "--drive-rms", "1kg", "--rate", "fast", "--drift", "2")
     assert ended.err.startswith("error: 3 findings")
     ended = flexstage("rig", "stage.toml", "-o", "record.uff", "--seconds", "0", "--rate", "10 Hz", "--actuator", "B9")
     assert ended.err.startswith("error: 3 findings")

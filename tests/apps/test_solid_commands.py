@@ -43,7 +43,7 @@ def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -
 
 
 def test_hinges(command: Command) -> None:
-    found = command("solid", "stage.toml", "--what", "hinge", *ROUGH, "--json", "-").document
+    found = command("solid", "stage.toml", "--scope", "hinge", *ROUGH, "--json", "-").document
     assert found["kind"] == "solid"
     assert set(found["hinges"]) == {"leaf", "neck-back", "neck-front"}
     back, front = (found["hinges"][f"neck-{end}"] for end in ("back", "front"))
@@ -57,7 +57,7 @@ def test_hinges(command: Command) -> None:
 
 
 def test_units(command: Command, tmp_path: Path) -> None:
-    ended = command("solid", "stage.toml", "--what", "unit", "--json", "-", "--report", "units.html")
+    ended = command("solid", "stage.toml", "--scope", "unit", "--json", "-", "--report", "units.html")
     assert ended.code == 0, ended.err
     unit = ended.document["units"]["drive"]
     assert unit["axial_n_per_m"] == pytest.approx(small_unit().axial)
@@ -128,8 +128,8 @@ def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "words",
     [
-        ("solid", "stage.toml", "--what", "unit"),
-        ("solid", "stage.toml", "--what", "stage"),
+        ("solid", "stage.toml", "--scope", "unit"),
+        ("solid", "stage.toml", "--scope", "stage"),
         ("verify", "stage.toml"),
         ("calibrate", "stage.toml", "-o", "out.toml"),
     ],
@@ -152,7 +152,7 @@ def test_what_has_no_shape_is_named(command: Command, tmp_path: Path) -> None:
 
 def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> None:
     fs.dump(bridge(), tmp_path / "bridge.toml")
-    ended = command("solid", "bridge.toml", "--what", "unit", "--json", "out.json")
+    ended = command("solid", "bridge.toml", "--scope", "unit", "--json", "out.json")
     assert ended.code == 2
     assert "none of the stage's units drives an output" in ended.err
     assert not (tmp_path / "out.json").exists()
@@ -250,7 +250,7 @@ def test_impossible_memory_is_refused_at_once(command: Command, memory: str, sai
 @pytest.mark.parametrize("scope", [pytest.param("hinge", marks=pytest.mark.full), "stage"])
 def test_too_little_memory_is_refused_by_name(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scope: str) -> None:
     monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "cache"))
-    ended = command("solid", "stage.toml", "--what", scope, "--memory", "1 MB")
+    ended = command("solid", "stage.toml", "--scope", scope, "--memory", "1 MB")
     assert ended.code == 2
     assert "0.001 GB are there" in ended.err
     assert "leaf: its coarsest mesh needs" in ended.err if scope == "hinge" else "left: its reduction at order 2 needs" in ended.err

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from flexstage.mechanism.store import dump
 from tests.apps.command import Command, design_in
+from tests.laws.test_nonlinear import guide
 
 PATHS = """
 [paths.out]
@@ -32,10 +34,19 @@ def two(tmp_path: Path) -> Path:
 def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, two: Path) -> None:
     ended = flexstage("stroke", "stage.toml", "--json", "first.json")
     assert "Path out; of the others: --path back" in ended.err
-    flexstage("stroke", "stage.toml", "--path", "back", "--points", "2", "--load", "platform.fx=1 N", "--json", "back.json")
+    flexstage("stroke", "stage.toml", "--path", "back", "--steps", "2", "--load", "platform.fx=1 N", "--json", "back.json")
     first, back = (json.loads((two / name).read_text())["along"] for name in ("first.json", "back.json"))
     assert [row[0] for row in first["values"]] == pytest.approx([0.0, 0.5e-4, 1e-4])
     assert [row[0] for row in back["values"]] == pytest.approx([0.0, -1e-4])
+
+
+def test_a_constant_load_takes_its_part_of_the_critical_load(flexstage: Command, tmp_path: Path) -> None:
+    dump(guide(), tmp_path / "guide.toml")
+    alone, with_half = (
+        flexstage("buckle", "guide.toml", "--scale-load", "platform.fx=-10 N", *more, "--json", "-").document["factor"]
+        for more in ((), ("--load", "platform.fx=-5 N"))
+    )
+    assert with_half == pytest.approx(alone - 0.5, rel=1e-4)
 
 
 @pytest.mark.usefixtures("two")
@@ -51,7 +62,7 @@ def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
 def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> None:
     """A stack at its full stroke, a coordinate near rest; of a force nothing is near."""
     for drive, end in (("B", 38e-6), ("platform.x", 1e-4), ("platform.rz", 1e-3)):
-        flexstage("stroke", "stage.toml", "--drive", drive, "--points", "2", "--json", "found.json")
+        flexstage("stroke", "stage.toml", "--drive", drive, "--steps", "2", "--json", "found.json")
         found = json.loads((two / "found.json").read_text())["along"]
         assert [row[0] for row in found["values"]] == pytest.approx([0.0, end])
     ended = flexstage("stroke", "stage.toml", "--drive", "platform.fx")

@@ -17,7 +17,7 @@ from tests.apps.test_documents import matrices
 from tests.models.stage_records import stage_record
 
 BUILT = set_value(double_triangle(), "parts.neck.thickness", 1.617e-3)
-FREE = ("--free", "neck.thickness, steel.density", "--prior", "steel.density=1 %")
+FREE = ("--parameters", "neck.thickness, steel.density", "--prior", "steel.density=1 %")
 
 
 @pytest.fixture
@@ -58,15 +58,15 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--free", "neck.thickness", "-o", "stage.toml"), "stage.toml is the design file too"),
-        (("--free", "neck.thickness", "-o", "record.uff"), "record.uff is a record that is read"),
-        (("--free", "neck.thicknes", "-o", "u.toml"), "The nearest name is thickness"),
-        (("--free", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
-        (("--free", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
-        (("--free", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the frequencies compared"),
-        (("--free", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: 200 % is no relative standard deviation"),
-        (("--free", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
-        (("--free", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"), "5 free numbers"),
+        (("--parameters", "neck.thickness", "-o", "stage.toml"), "stage.toml is the design file too"),
+        (("--parameters", "neck.thickness", "-o", "record.uff"), "record.uff is a record that is read"),
+        (("--parameters", "neck.thicknes", "-o", "u.toml"), "The nearest name is thickness"),
+        (("--parameters", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
+        (("--parameters", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
+        (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the frequencies compared"),
+        (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: 200 % is no relative standard deviation"),
+        (("--parameters", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
+        (("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"), "5 free numbers"),
     ],
 )
 def test_bad_input_ends_with_code_2_and_writes_nothing(recorded: Command, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
@@ -81,7 +81,7 @@ def test_records_of_another_stage_are_refused(recorded: Command, tmp_path: Path)
     made = stage_record(BUILT)
     others = tuple(replace(each, name=each.name.replace("S", "gap")) for each in made.channels)
     write(tmp_path / "other.uff", replace(made, channels=others))
-    ended = recorded("update", "stage.toml", "--record", "other.uff", "--free", "neck.thickness", "-o", "u.toml")
+    ended = recorded("update", "stage.toml", "--record", "other.uff", "--parameters", "neck.thickness", "-o", "u.toml")
     assert ended.code == 2
     assert "gap1" in ended.err
     assert not (tmp_path / "u.toml").exists()

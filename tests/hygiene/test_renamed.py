@@ -83,7 +83,9 @@ def test_an_old_address_is_refused_with_the_new_one(address: str, new: str) -> N
 
 @pytest.mark.parametrize(("old", "new"), [pair for pair in RENAMED if pair[0].startswith("--")])
 def test_some_command_has_the_new_option_and_not_the_old_one(old: str, new: str) -> None:
-    options = [{option for each in LazyCommand(command).load().params for option in each.opts} for command in COMMANDS]
+    options = [
+        {option for each in LazyCommand(command).load().params for option in (*each.opts, *each.secondary_opts)} for command in COMMANDS
+    ]
     assert any(new in each and old not in each for each in options)
 
 

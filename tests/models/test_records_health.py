@@ -253,7 +253,7 @@ def test_a_windowed_force_that_is_allowed_gives_the_mode(seed: int) -> None:
     moved = np.fft.irfft(np.fft.rfft(force, 2 * count) / (natural**2 - lines**2 + 2j * ratio * natural * lines))[:count]
     moved += 1e-3 * np.max(moved) * random.standard_normal(count)
     made = in_memory([Channel("hammer", "N", Role.INPUT), Channel("y", "um", Role.OUTPUT)], rate, np.stack([force, moved], axis=1))
-    with pytest.raises(DesignError, match='allow "windowed"'):
+    with pytest.raises(DesignError, match='accept "windowed"'):
         usable_record(made)
     found = identify(usable_record(made, frozenset({Allow.WINDOWED})))
     assert len(found.frequencies) == 1

@@ -151,7 +151,7 @@ def _contours() -> Section:
     for name, (_, *numbers) in test_notch_profiles.CONTOURS.items():
         rows += _errors(test_notch_profiles.contour(name), name, numbers, "3-D finite elements, ours", 0.012)
     text = (
-        "t = 1, b = 5 mm, 10 mm long, cuts 3 mm high (the V: 4.17 mm), with blocks of full height, by `flexstage solid --what hinge "
+        "t = 1, b = 5 mm, 10 mm long, cuts 3 mm high (the V: 4.17 mm), with blocks of full height, by `flexstage solid --scope hinge "
         "--accuracy 0.3%`. No law of these errors was fitted. Closed forms of Lobontiu et al. (2002) are met to rounding."
     )
     return Section("Parabolic, hyperbolic, power, V and free notches", text, tuple(rows))
@@ -201,7 +201,7 @@ def _reinforced() -> Section:
             what = f"b = {width:g} mm, {thick:g} mm thick: {name}"
             rows.append(Row(what, "3-D finite elements, ours", f"{true:.5e}", float(ours), unit, beam_error(percent, 0.012)))
     text = (
-        "40 mm long, 0.3 mm thin over 8 mm at both ends, between rigid faces, by `flexstage solid --what hinge --accuracy 0.2%`. Three "
+        "40 mm long, 0.3 mm thin over 8 mm at both ends, between rigid faces, by `flexstage solid --scope hinge --accuracy 0.2%`. Three "
         "beams in series, the thin ones as plates between ends that cannot curve across them."
     )
     return Section("Reinforced leaf", text, tuple(rows))

@@ -12,8 +12,8 @@ class File(Enum):
     HYSTERESIS = "hysteresis"
 
 
-class Side(Enum):
-    """The two ways of a branch: with the shape that gives way, or the other way."""
+class Branch(Enum):
+    """The two post-buckling branches: along the buckling mode, or against it."""
 
     ALONG = "along"
     AGAINST = "against"

@@ -4,13 +4,13 @@ from collections.abc import Collection
 
 _OPTIONS = """
 --reading --model          --at --point                --load-at --load-point        --points --steps          --hold --fixed
---load --scale-load        --beyond --post-buckling    --side --branch               --copy --instance         --size --amount
+--beyond --post-buckling   --side --branch            --copy --instance         --size --amount
 --about --rotation         --along --translation       --inputs --input-quantity     --tap --input-signal      --noise --drive-rms
 --noise --input-asd        --allow --accept-fault      --only --channels             --resolution --frequency-resolution
 --command --amplitude      --sensitivity --max-sensitivity                           --follow --tracking       --compensate --feedforward
 --damping --force-feedback --goal --tune-for           --single --float32            --fast --no-realtime      --free --parameters
 --parameter --parameters   --parameters --list-parameters                            --parameter --case-parameter
---what --scope
+--what --scope             --of kind
 """
 _KEYS = """
 reading model              place placements            require requirements          change overrides          mode_limit max_mode_frequency

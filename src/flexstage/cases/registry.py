@@ -74,7 +74,7 @@ CASES: Mapping[str, Shipped] = {
 def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
     """The description of a shipped case, its numbers as a file shows them; with some of its `parameters` stated otherwise.
 
-    A parameter is named as `flexstage new --case NAME --parameters` lists it, and is a text with its unit, or a number in SI. Arrays make
+    A parameter is named as `flexstage new --list-parameters` lists it, and is a text with its unit, or a number in SI. Arrays make
     the description a batch. Numbers that do not vary are rounded to twelve digits. Raises `DesignError` with the nearest name where there
     is no case or no parameter of this name, and for values that cannot be.
 

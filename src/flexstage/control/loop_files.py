@@ -64,10 +64,10 @@ def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Pat
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):
         if asked.follow is None:
-            advice = f"Add --follow: {', '.join(each.value for each in Following)}"
+            advice = f"Add --tracking: {', '.join(each.value for each in Following)}"
             yield Finding(f"--export {target}", "nothing but the trajectory itself is commanded", advice)
         elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.amplitude)) != 1:
-            yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them, as --command x=1um")
+            yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them: --amplitude x=1um")
 
 
 def write_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Annotated, Any, TypeAlias, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.quantity import ACCELERATION_NOISE, CURRENT, FREQUENCY, NOISE_DENSITY, RATIO, RESISTANCE, VELOCITY_NOISE
 from flexstage.control.study import setup as forms
 from flexstage.control.study.choices import Compensation, Criterion, Following
+from flexstage.show.command.options import text_option
 from flexstage.show.command.values import Values, first_that_parses, motions
+
+Setup: TypeAlias = Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file of the loop.")]
 
 _Record = TypeVar("_Record")
 _NOTHING = "none"
@@ -48,12 +52,12 @@ def hysteretic_stacks(said: str | None) -> forms.HystereticStacks | None:
 
 
 def compensation(words: Sequence[str] | None) -> tuple[Compensation, ...] | None:
-    """What is fed forward by the words of `--compensate`."""
+    """The feedforward that the words of `--feedforward` name."""
     if words is None:
         return None
     known = {each.value: each for each in Compensation}
     require(
-        Finding(f"--compensate {word}", "this is nothing that is fed forward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
+        Finding(f"--feedforward {word}", "this is no feedforward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
         for word in words
         if word not in known and (word != _NOTHING or len(words) > 1)
     )
@@ -98,8 +102,8 @@ def trajectory_setup(given: forms.TrajectorySetup, word: str | None, moves: Sequ
         return found if word is not None else None
     if not isinstance(found, (forms.StepMotion, forms.SineMotion)):
         name = found.TOLD_BY[1]
-        raise refuse("--command", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
-    return replace(found, amplitude=override(forms.Motion(), motions(moves)))
+        raise refuse("--amplitude", f"a trajectory of kind {name} has its sizes in the set-up file", "Use it with step or sine")
+    return replace(found, amplitude=override(forms.Motion(), motions(moves, "--amplitude")))
 
 
 def _trajectory_of_name(word: str, given: forms.TrajectorySetup) -> forms.TrajectorySetup:

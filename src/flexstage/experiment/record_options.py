@@ -24,55 +24,59 @@ from flexstage.experiment.spectral.cross_spectra import Segments
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.linear.model import LinearModel
-from flexstage.show.command.options import text_option, word_option
+from flexstage.show.command.options import band_option, rate_option, text_option, word_option
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
+from flexstage.show.command.values import names
 
 if TYPE_CHECKING:
     from flexstage.experiment.formats import read as files
 else:
     files = Late("flexstage.experiment.formats.read")  # a loop is not always closed around a record
 
+RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[
-    list[str] | None, text_option("--inputs", "NAMES", 'Channels that were inputs, e.g. "u*" or B1,B2. Default: told by name.')
+    list[str] | None, text_option("--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Repeatable. Default: by role, else by name.')
 ]
-Outputs: TypeAlias = Annotated[list[str] | None, text_option("--outputs", "NAMES", 'Channels that were outputs, e.g. "S?".')]
-Only: TypeAlias = Annotated[list[str] | None, text_option("--only", "NAMES", "The channels that count at all.")]
-Units: TypeAlias = Annotated[
-    list[str] | None, text_option("--units", "NAMES=UNIT", 'Units of channels, e.g. "S*=um". May be given several times.')
+Outputs: TypeAlias = Annotated[
+    list[str] | None, text_option("--outputs", "NAMES", 'Output channels, e.g. "S?". Repeatable. Default: by role, else by name.')
 ]
-Rate: TypeAlias = Annotated[
-    str | None, text_option("--rate", "FREQUENCY", 'Sampling rate, if the file has none or a wrong one: "2048 Hz".')
+Channels: TypeAlias = Annotated[
+    list[str] | None, text_option("--channels", "NAMES", 'Channels to use, e.g. "S*". Repeatable. Default: all.')
 ]
+Units: TypeAlias = Annotated[list[str] | None, text_option("--units", "NAMES=UNIT", 'Units of channels, e.g. "S*=um". Repeatable.')]
+Rate: TypeAlias = Annotated[str | None, rate_option("that of the file")]
 Arrays: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--array",
         "MEANING=NAMES",
-        "Which arrays of the file are what, e.g. samples=u,y or time=t (also rate, step, names, units, frequencies, responses, coherence). "
-        "May be given several times.",
+        "Meaning of arrays of the file, e.g. samples=u,y or time=t. "
+        "Also: rate, step, names, units, frequencies, responses, coherence. Repeatable.",
     ),
 ]
-Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Which is meant of a file that holds both.")]
-Allow: TypeAlias = Annotated[
+Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Kind of data, if a file holds both.")]
+AcceptFault: TypeAlias = Annotated[
     list[str] | None,
     text_option(
-        "--allow",
+        "--accept-fault",
         "FAULT",
-        "What may be used although it is bad: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed, incomplete.",
+        "Accepted fault: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed or incomplete. Repeatable.",
     ),
 ]
-Band: TypeAlias = Annotated[
-    tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Where modes are looked for, e.g. --band "50 Hz" "400 Hz".')
-]
+Band: TypeAlias = Annotated[tuple[str, str] | None, band_option("all that the record can show")]
 Moved: TypeAlias = Annotated[
     Excitation | None,
     word_option(
-        "--excitation", Excitation, "What moved the stage: recorded inputs, the floor all along, nothing after a blow.", show_default=False
+        "--excitation",
+        Excitation,
+        "Excitation: recorded inputs, floor, or free decay after a blow. Default: recorded.",
+        show_default=False,
     ),
 ]
-Resolution: TypeAlias = Annotated[
-    str | None, text_option("--resolution", "FREQUENCY", 'Resolution of the spectra, e.g. "0.5 Hz". Default: by length.')
+FrequencyResolution: TypeAlias = Annotated[
+    str | None,
+    text_option("--frequency-resolution", "FREQUENCY", 'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: by record length.'),
 ]
 
 
@@ -82,13 +86,13 @@ class RecordTexts:
 
     inputs: list[str] | None = None
     outputs: list[str] | None = None
-    only: list[str] | None = None
+    channels: list[str] | None = None
     units: list[str] | None = None
     rate: str | None = None
     kind: str | None = None
-    allow: list[str] | None = None
+    accept_fault: list[str] | None = None
     band: tuple[str, str] | None = None
-    resolution: str | None = None
+    frequency_resolution: str | None = None
     arrays: list[str] | None = None
     excitation: Excitation | None = None
 
@@ -96,24 +100,24 @@ class RecordTexts:
         """The options of the reader; raises `DesignError` with all that is wrong with them."""
         findings: list[Finding] = []
         units = _units(self.units, findings)
-        allowed = [_word("--allow", word, options.Allow, findings) for word in names(self.allow)]
+        accepted = [_word("--accept-fault", word, options.Allow, findings) for word in names(self.accept_fault)]
         kind = None if self.kind is None else _word("--kind", self.kind, options.Kind, findings)
         arrays = _arrays(self.arrays, findings)
         require(findings)
         return options.Options(
             inputs=names(self.inputs),
             outputs=names(self.outputs),
-            only=names(self.only),
+            only=names(self.channels),
             rate=None if self.rate is None else _hertz("--rate", self.rate),
             units=units,
             kind=None if kind is None else options.Kind(kind),
             arrays=arrays,
-            allow=frozenset(options.Allow(word) for word in allowed if word is not None),
+            allow=frozenset(options.Allow(word) for word in accepted if word is not None),
         )
 
     def require_unsaid(self) -> None:
         """Refuse every option that is given: there is no record that it could be of."""
-        said = {"array" if name == "arrays" else name: value for name, value in vars(self).items() if value}
+        said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
         require(Finding(f"--{name}", "it is of records, and none is given", "Name them by --record, or leave it out") for name in said)
 
     def search(self) -> Search:
@@ -133,7 +137,7 @@ class RecordTexts:
         return Needs(resolution=self._resolution(), highest=top, outputs=outputs, unrecorded=unrecorded)
 
     def _resolution(self) -> float | None:
-        return None if self.resolution is None else _hertz("--resolution", self.resolution)
+        return None if self.frequency_resolution is None else _hertz("--frequency-resolution", self.frequency_resolution)
 
 
 def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
@@ -166,11 +170,6 @@ def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
     if found.missing:
         print_note(f"not given: shapes on the stage: {found.missing}")
     return found
-
-
-def names(texts: Sequence[str] | None) -> tuple[str, ...]:
-    """Names that stand in texts, with commas between."""
-    return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
 
 
 def _repeated(paths: Sequence[Path]) -> Iterator[Finding]:

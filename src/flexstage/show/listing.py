@@ -40,7 +40,7 @@ def parameter_table(name: str) -> Table:
     own = shipped_case(name).parameters
     rows = [(Cell(each.name, Mark.STRONG), each.kind, each.text) for each in parameters(own).values()]
     meaning = " ".join((inspect.getdoc(type(own)) or "").partition("\n\n")[2].replace("`", "").split())
-    notes = [meaning, f"flexstage new stage.toml --case {name} --parameter NAME=VALUE"]
+    notes = [meaning, f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
     return make_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 

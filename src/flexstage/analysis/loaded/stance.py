@@ -68,7 +68,7 @@ def stance(
     at: Mapping[str, float] | None = None,
     *,
     loads: Mapping[str, float] | None = None,
-    hold: Sequence[str] = (),
+    fixed: Sequence[str] = (),
     temperature: float = 0.0,
 ) -> Stance:
     """Bring a stage somewhere at large displacements, and read small motions about that place.
@@ -76,7 +76,7 @@ def stance(
     The stage first sags under its weight, payloads, preloads and stated forces, under `loads` (as in `equilibrium`) and `temperature` (a
     uniform change [K]). From there `at` brings coordinates (`platform.y` [m], `platform.rz` [rad], a component of the rotation vector) by
     the dead force that holds them, which then stays while the coordinate is released; strokes in `at` (of a stack, by its name) are kept.
-    Coordinates in `hold` stay locked: where the stage sags to, or where `at` brings them. Raises `DesignError` for unknown names, for what
+    Coordinates in `fixed` are fixed: where the stage sags to, or where `at` brings them. Raises `DesignError` for unknown names, for what
     contradicts itself, where no equilibrium is found (it says how far there is one), and where the released stage does not stay.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -84,7 +84,7 @@ def stance(
     >>> round(float(found.moved.at("platform", "x")) * 1e6, 3), round(float(found.held.at("platform.x", "force")))
     (100.0, 1939)
     """
-    asked = _Asked(nonlinear(mechanism, temperature=temperature), dict(at or {}), dict(loads or {}), tuple(dict.fromkeys(hold)))
+    asked = _Asked(nonlinear(mechanism, temperature=temperature), dict(at or {}), dict(loads or {}), tuple(dict.fromkeys(fixed)))
     require(_contradictions(asked))
     rest = equilibrium(asked.model, asked.loads)
     require_equilibrium(rest)
@@ -206,7 +206,7 @@ def _require_stable(asked: _Asked, state: State) -> None:
         loose = [name for name in asked.coordinates if name not in asked.hold]
         under = "under the force that brings it there the released stage" if loose else "under its weight and loads, or strokes, the stage"
         what = f"{under} leaves in {ways}; its largest strain is {most:.2%}{_stable_until(asked)}"
-        lock = f"Lock it: --hold {loose[0]}, or ask" if loose else "Ask"
+        lock = f"Fix it: --fixed {loose[0]}, or ask" if loose else "Ask"
         raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle what gives way")
 
 

@@ -82,33 +82,33 @@ COMMANDS: tuple[Command, ...] = (
     Command("response", _ANALYSE, "Frequency response of outputs to inputs.", f"{_APPS}.analyses:response",
             'flexstage response stage.toml --input ground.z --output platform.z --band "1 Hz" "1 kHz"'),
     Command("stroke", _ANALYSE, "Force, stiffness, parasitic motion, frequencies over a stroke.", f"{_APPS}.displaced:stroke",
-            'flexstage stroke stage.toml --drive platform.x --to "50 um" --points 3'),
-    Command("buckle", _ANALYSE, "How far a load may grow until the stage gives way.", f"{_APPS}.displaced:buckle",
-            'flexstage buckle stage.toml --load "platform.fz=-100 kN" --beyond 3'),
-    Command("misalign", _ANALYSE, "What a misaligned copy does to an over-constrained stage.", f"{_APPS}.displaced:misalign",
-            "flexstage misalign stage.toml --copy B4 --about y --points 3"),
+            'flexstage stroke stage.toml --drive platform.x --to "50 um" --steps 3'),
+    Command("buckle", _ANALYSE, "Find the load at which the stage buckles.", f"{_APPS}.displaced:buckle",
+            'flexstage buckle stage.toml --scale-load "platform.fz=-100 kN" --post-buckling 3'),
+    Command("misalign", _ANALYSE, "Compute internal loads of a misaligned, over-constrained stage.", f"{_APPS}.displaced:misalign",
+            "flexstage misalign stage.toml --instance B4 --rotation y --steps 3"),
     Command("workspace", _ANALYSE, "What the stage reaches and bears.", f"{_APPS}.accuracy:workspace",
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
     Command("drift", _ANALYSE, "Thermal drift of platform, named points and gauges.", f"{_APPS}.accuracy:drift",
             "flexstage drift stage.toml --ground none"),
     Command("sensitivities", _ANALYSE, "Exact derivatives with respect to every number.", f"{_APPS}.accuracy:sensitivities",
-            "flexstage sensitivities stage.toml --parameter parts.neck.thickness"),
+            "flexstage sensitivities stage.toml --parameters parts.neck.thickness"),
     Command("budget", _ANALYSE, "Error budget in nm and nrad, one line an axis.", f"{_APPS}.accuracy:budget",
             "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
     Command("solid", _PROVE, "Read a stage as elastic solids, by finite elements.", f"{_SOLID}.solid:solid",
-            "flexstage solid stage.toml --what unit --report units.html"),
+            "flexstage solid stage.toml --scope unit --report units.html"),
     Command("verify", _PROVE, "Compare theory with finite elements: which to trust?", f"{_SOLID}.solid:verify",
             "flexstage verify stage.toml --report verified.html"),
     Command("calibrate", _PROVE, "Give hinges their 6x6 from finite elements.", f"{_SOLID}.solid:calibrate",
             "flexstage calibrate stage.toml -o stage-calibrated.toml"),
     Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_EXPERIMENT}.rig:rig",
-            "flexstage rig stage.toml --seconds 10 --noise 1um --drift 5nm -o record.uff"),
+            "flexstage rig stage.toml --seconds 10 --drive-rms 1um --drift 5nm -o record.uff"),
     Command("identify", _TEST, "Find the modes in records of a test.", f"{_EXPERIMENT}.identify:identify",
             "flexstage identify record.uff --stage stage.toml --report modes.html"),
     Command("compare", _TEST, "Theory, FEA and experiment side by side.", f"{_EXPERIMENT}.compare:compare",
             "flexstage compare stage.toml --record record.uff --report compared.html"),
     Command("update", _TEST, "Bring a stage's numbers to agree with a test.", f"{_EXPERIMENT}.update:update",
-            'flexstage update stage.toml --record record.uff --free "neck.thickness, steel.density" -o updated.toml'),
+            'flexstage update stage.toml --record record.uff --parameters "neck.thickness, steel.density" -o updated.toml'),
     Command("hysteresis", _TEST, "Identify the hysteresis of a stack.", f"{_CONTROLLED}.hysteresis:hysteresis",
             'flexstage hysteresis stack.csv --limits "0 V" "1000 V" -o stack.toml'),
     Command("loop", _CONTROL, "Close the control loop of a stage.", f"{_CONTROLLED}.loop:loop",
@@ -127,6 +127,8 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage version"),
 )
 # fmt: on
+
+_SPELLINGS = {"analyze": "analyse", "optimize": "optimise"}
 
 MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
 """Models that commands of other wings may ask for."""
@@ -151,13 +153,17 @@ class LazyCommand(TyperCommand):
 class GroupedCommands(TyperGroup):
     """A group that lists its commands by purpose, and loads the one that is called."""
 
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of this name, in British or American spelling."""
+        return super().get_command(ctx, _SPELLINGS.get(cmd_name, cmd_name))
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Name, command and the rest of the arguments."""
         name, found, rest = super().resolve_command(ctx, args)
         command = cast("LazyCommand", found).load() if found else None
-        known = {option for each in getattr(command, "params", ()) for option in each.opts}
+        known = {word for each in getattr(command, "params", ()) for word in (*each.opts, *each.secondary_opts)}
         require(
-            Finding(old, "this option is not known", f"It is called {new}")
+            Finding(old, "this option is not known", f"It is called {new}" if new.startswith("--") else f"Write {name} {new.upper()}")
             for old in dict.fromkeys(word.partition("=")[0] for word in rest)
             if (new := new_name(old, known)) is not None
         )

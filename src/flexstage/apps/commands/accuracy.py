@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, TypeAlias
 
-import typer
-
 from flexstage.analysis.assessment import budget as budgeting
 from flexstage.analysis.assessment import sensitivities as derivatives
 from flexstage.analysis.complete import read, required_command
@@ -18,13 +16,26 @@ from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.displaced import Place, footing
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
-from flexstage.show.command.values import motions
+from flexstage.show.command.options import (
+    Changes,
+    Csv,
+    Design,
+    Json,
+    ModelName,
+    Point,
+    Xlsx,
+    modes_option,
+    parameters_option,
+    temperature_option,
+    text_option,
+)
+from flexstage.show.command.values import motions, names
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
@@ -150,10 +161,8 @@ def drift(
 def sensitivities(
     design: Design,
     *,
-    parameters: Annotated[
-        list[str] | None, text_option("--parameter", "ADDRESS", "Value to vary; several times. Default: every number.")
-    ] = None,
-    count: Annotated[int, typer.Option("--modes", min=1, help="Number of lowest modes.")] = 12,
+    parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
+    count: Annotated[int, modes_option(min=1)] = 12,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -165,7 +174,7 @@ def sensitivities(
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
 
-    found = derivatives.sensitivities(mechanism, tuple(parameters) if parameters else None, modes=count)
+    found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
     answer(
         "sensitivities",
         mechanism,
@@ -183,10 +192,8 @@ def budget(
     design: Design,
     *,
     command: Commands = None,
-    temperature: Annotated[
-        str | None, text_option("--temperature", "VALUE", "Uniform change of temperature. Default: 1 K, where drift is known.")
-    ] = None,
-    at: Annotated[str, typer.Option(metavar="POINT", help="Point of the platform: platform, or a named point.")] = "platform",
+    temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
+    point: Point = PLATFORM,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -201,7 +208,7 @@ def budget(
     asked = motions(command or ()) or required_command(mechanism) or study.all_strokes(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     stands = footing(mechanism, Place())
-    found = budgeting.budget(mechanism, asked, at=at, temperature=warmth)
+    found = budgeting.budget(mechanism, asked, at=point, temperature=warmth)
     small = second_order(mechanism, ideal(mechanism), asked)
     answer(
         "budget",

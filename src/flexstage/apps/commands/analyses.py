@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
-
-import typer
 
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.complete import platform_modes, read
@@ -20,7 +18,7 @@ from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matri
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
 from flexstage.analysis.loaded.stance import Stance
 from flexstage.analysis.loaded.standing import standing
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.record import SideBySide, walk
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.base.units.unit import parse
@@ -33,8 +31,8 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import known_point, open_design
-from flexstage.show.command.displaced import At, Held, Load, Warmth, footing, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Xlsx, text_option
+from flexstage.show.command.displaced import At, Fixed, Load, Temperature, footing, place
+from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Point, Xlsx, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import spectra
 from flexstage.show.document import response_body, stiffness_body
@@ -94,19 +92,12 @@ def stiffness(  # noqa: PLR0913 (its options)
     design: Design,
     *,
     model: ModelName = Model.LUMPED,
-    at: Annotated[
-        list[str] | None,
-        text_option(
-            "--at",
-            "POINT|NAME=VALUE",
-            "Point whose motion is read, platform or a named one; and where the stage is brought from where it rests: "
-            '"platform.x=5 mm", by a force that stays. Several times.',
-        ),
-    ] = None,
-    load_at: Annotated[str, typer.Option(metavar="POINT", help="Point that is loaded. Default: the one that is read.")] = "",
+    point: Point = PLATFORM,
+    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: that of --point.")] = "",
+    at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -115,13 +106,15 @@ def stiffness(  # noqa: PLR0913 (its options)
     """Compliance and stiffness of the platform.
 
     6x6, by direction in the plane, by freedom of stages with fewer than six, and the centre of stiffness; strokes held. Mass at the point.
-    With a place (--at NAME=VALUE, --load, --hold, --temperature) it is that of the stage there, at large displacements, under its weight.
+
+    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    point, brought = _point_and_place(at or ())
-    there = footing(mechanism, place(brought, load, hold, temperature), model)
+    require(Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in at or () if "=" not in text)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     linear = there.linear
-    found = statics(linear, load_point=known_point(linear, load_at or point), read_point=known_point(linear, point))
+    read_point = known_point(linear, point, "--point")
+    found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
     sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.stance is None else None
     mass = mass_matrix(mechanism, linear, point=point)
     attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
@@ -137,14 +130,6 @@ def stiffness(  # noqa: PLR0913 (its options)
         xlsx=xlsx,
         cautions=there.cautions,
     )
-
-
-def _point_and_place(texts: Sequence[str]) -> tuple[str, list[str]]:
-    """The one point that is read, and where the stage is brought."""
-    points = [text for text in texts if "=" not in text]
-    if len(points) > 1:
-        raise refuse("--at", f"{' and '.join(points)} are two points", "Ask for one at a time")
-    return (points or [PLATFORM])[0], [text for text in texts if "=" in text]
 
 
 def _stiffness_tables(
@@ -166,8 +151,8 @@ def lost_motion(  # noqa: PLR0913 (its options)
     model: ModelName = Model.LUMPED,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -175,11 +160,12 @@ def lost_motion(  # noqa: PLR0913 (its options)
 ) -> None:
     """Gain, loss and its budget by part, crosstalk, correction.
 
-    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it. With --at, --load, --hold or
-    --temperature those of the stage where it then is; the ideal motion stays that of the drawn position.
+    What elasticity takes from the ideal motion, what it stirs besides, and the gains that make up for it.
+
+    With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, hold, temperature), model)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     found = losses.lost_motion(ideal(mechanism), there.links)
     answer(
         "lost-motion",
@@ -214,8 +200,8 @@ def modes(  # noqa: PLR0913 (its options)
     ] = None,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -224,11 +210,12 @@ def modes(  # noqa: PLR0913 (its options)
     """Natural frequencies, names and shapes.
 
     Which modes are the platform's, which are local, and what share each has of its energy and compliance. --view shows them, no finite
-    elements needed. With --at, --load, --hold or --temperature they are those of the stage where it then is, at large displacements and
-    under its weight.
+    elements needed.
+
+    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--view", view)])
-    ending, asked = None if view is None else _view_ending(view), place(at, load, hold, temperature)
+    ending, asked = None if view is None else _view_ending(view), place(at, load, fixed, temperature)
     if ending == ".glb" and asked:
         raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {asked.options}, or write a page (.html)")
     there = footing(mechanism, asked, model)
@@ -279,25 +266,30 @@ def response(  # noqa: PLR0913 (its options)
     model: ModelName = Model.LUMPED,
     inputs: Annotated[
         list[str] | None,
-        text_option("--input", "NAME", "Stroke (B1), force (platform.fx), ground motion (ground); several times."),
+        text_option("--input", "NAME", "Input: stroke (B1), force (platform.fx) or ground motion (ground). Repeatable. Default: strokes."),
     ] = None,
     outputs: Annotated[
         list[str] | None,
-        text_option("--output", "NAME", "Motion (platform, chuck.x), gauge (S1), resultant (B4/pivot.mz); several times."),
+        text_option(
+            "--output",
+            "NAME",
+            "Output: motion (chuck.x), gauge (S1) or resultant (B4/pivot.mz). Repeatable. Default: platform and gauges.",
+        ),
     ] = None,
-    band: Annotated[tuple[str, str] | None, text_option("--band", "LOW HIGH", 'Frequencies, e.g. --band "1 Hz" "1 kHz".')] = None,
-    noise: Annotated[
+    band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
+    input_asd: Annotated[
         list[str] | None,
         text_option(
-            "--noise",
+            "--input-asd",
             "INPUT=DENSITY",
-            'White random input: its amplitude density, e.g. "ground.z=1 nm/Hz^0.5", or that of a rate, "ground.z=1e-5 m/s^2/Hz^0.5".',
+            'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". '
+            "Repeatable.",
         ),
     ] = None,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -306,18 +298,19 @@ def response(  # noqa: PLR0913 (its options)
     """Frequency response of outputs to inputs.
 
     Strokes to the platform's motion and the gauges, unless others are named. --input ground gives the transmissibility: absolute motion
-    over absolute motion of the ground. With --noise, the rms values of the outputs too. With --at, --load, --hold or --temperature it is
-    that of the stage where it then is.
+    over absolute motion of the ground. With --input-asd, the rms values of the outputs too.
+
+    With --at, --load, --fixed or --temperature: about that operating point.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx)])
-    there = footing(mechanism, place(at, load, hold, temperature), model)
+    there = footing(mechanism, place(at, load, fixed, temperature), model)
     linear = there.linear
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, _hertz(band), damping=law)
     chosen = outputs or ["platform", *(channel.name for channel in linear.outputs if "." not in channel.name)]
     found = responses.response(linear, chosen, inputs or linear.actuators, grid, damping=law)
     limits = (float(grid[0]), float(grid[-1]))
-    shaken = random_response(linear, chosen, spectra(linear, noise), limits, damping=law) if noise else None
+    shaken = random_response(linear, chosen, spectra(linear, input_asd), limits, damping=law) if input_asd else None
     answer(
         "response",
         mechanism,

@@ -24,7 +24,7 @@ from flexstage.mechanism.store.file import read_text
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import change, open_design
-from flexstage.show.command.options import Changes, Design, Json, output_option, text_option, word_option
+from flexstage.show.command.options import Changes, Design, Json, output_option, text_option
 from flexstage.show.command.output import STDOUT, announce, require_writable, write
 from flexstage.show.command.terminal import print_result
 from flexstage.show.document import FORMAT, check_document
@@ -44,23 +44,20 @@ def new(
     target: Annotated[Path | None, typer.Argument(metavar="STAGE.TOML", help="File to write.", show_default=False)] = None,
     *,
     case: Annotated[str, typer.Option(metavar="NAME", help="Shipped case to start from; --list shows them.")] = DEFAULT_CASE,
-    parameter: Annotated[
-        list[str] | None,
-        text_option(
-            "--parameter", "NAME=VALUE", "State a parameter of the case otherwise, e.g. long_arm=80mm. May be given several times."
-        ),
+    case_parameter: Annotated[
+        list[str] | None, text_option("--case-parameter", "NAME=VALUE", "Parameter of the case, e.g. long_arm=80mm. Repeatable.")
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the shipped cases and stop.")] = False,
-    parameters: Annotated[bool, typer.Option("--parameters", help="List the parameters of the case and stop.")] = False,
+    list_parameters: Annotated[bool, typer.Option("--list-parameters", help="List the parameters of the case and stop.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write a shipped case as a commented design file."""
-    if listed or parameters:
+    if listed or list_parameters:
         show([case_table() if listed else parameter_table(case)])
         return
     if target is None:
         raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
-    stated = _stated(parameter or ())
+    stated = _stated(case_parameter or ())
     start = shipped_case(case)
     require_writable([(str(target), target)])
     if target.exists() and not force:
@@ -73,11 +70,11 @@ def new(
 def _stated(assignments: Sequence[str]) -> dict[str, str]:
     """Names and values of parameters."""
     split = [each.partition("=") for each in assignments]
-    advice = "Write for example --parameter long_arm=80mm"
-    require(Finding(f'--parameter "{name}"', "it gives no value", advice) for name, equals, _ in split if not equals)
+    advice = "Write for example --case-parameter long_arm=80mm"
+    require(Finding(f'--case-parameter "{name}"', "it gives no value", advice) for name, equals, _ in split if not equals)
     names = [name.strip() for name, _, _ in split]
     twice = {name for name in names if names.count(name) > 1}
-    require(Finding(f"--parameter {name}", "it is stated more than once", "State it once") for name in sorted(twice))
+    require(Finding(f"--case-parameter {name}", "it is stated more than once", "State it once") for name in sorted(twice))
     return {name.strip(): value.strip() for name, _, value in split}
 
 
@@ -124,11 +121,12 @@ _SCHEMAS = {File.DESIGN: design_schema, File.STUDY: study_schema, File.LOOP: set
 
 
 def schema(
-    *,
-    of: Annotated[File, word_option("--of", File, "Which file: a design, a study, a loop's set-up or a stack's hysteresis.")] = File.DESIGN,
+    kind: Annotated[
+        File, typer.Argument(metavar="[KIND]", help="Kind of file: design, study, loop (set-up) or hysteresis (of a stack).")
+    ] = File.DESIGN,
 ) -> None:
     """Print the JSON Schema of a kind of file, for editors."""
-    print_result(as_json(_SCHEMAS[of](), indent=1, ensure_ascii=False))
+    print_result(as_json(_SCHEMAS[kind](), indent=1, ensure_ascii=False))
 
 
 def plan(

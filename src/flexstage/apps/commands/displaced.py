@@ -17,7 +17,7 @@ from flexstage.analysis.loaded.misalign import misalignments
 from flexstage.analysis.loaded.stance import require_consistent
 from flexstage.analysis.loaded.stroke import Beyond
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
-from flexstage.apps.words import Side
+from flexstage.apps.words import Branch
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
@@ -30,8 +30,8 @@ from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Held, Load, Place, Warmth, loads_of, place
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option
+from flexstage.show.command.displaced import At, Fixed, Load, Place, Temperature, loads_of, place
+from flexstage.show.command.options import STEPS, Changes, Csv, Design, Json, Report, Xlsx, text_option
 from flexstage.show.command.output import announce, save
 from flexstage.show.displaced import (
     buckling_report,
@@ -57,9 +57,7 @@ def stroke(  # noqa: PLR0913 (its options)
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "Where the drive begins. Default: at rest.")] = "",
     end: Annotated[str, text_option("--to", "VALUE", 'Where it ends, e.g. "5 mm". Default: the actuator\'s stroke, 0.1 mm, 1 mrad.')] = "",
-    points: Annotated[
-        int | None, typer.Option("--points", metavar="N", min=2, help="Points of it. Default: as the path states, 11.")
-    ] = None,
+    steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
     report: Report = None,
     changes: Changes = None,
@@ -79,9 +77,9 @@ def stroke(  # noqa: PLR0913 (its options)
         raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
     stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
-        _stated(mechanism, stated, points, loads)
+        _stated(mechanism, stated, steps, loads)
         if stated
-        else _asked(model, drive or "platform.x", start=start, end=end, points=points or 11, loads=loads)
+        else _asked(model, drive or "platform.x", start=start, end=end, steps=steps or 11, loads=loads)
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
@@ -109,22 +107,22 @@ def _first_path(mechanism: Mechanism) -> str:
     return first
 
 
-def _stated(mechanism: Mechanism, name: str, points: int | None, loads: dict[str, float]) -> Course:
+def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
     """A path of a design, under `loads` too."""
     if name not in mechanism.paths:
         raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
     found = course(mechanism, name)
-    values = found.values if points is None else np.linspace(found.values[0], found.values[-1], points)
+    values = found.values if steps is None else np.linspace(found.values[0], found.values[-1], steps)
     return replace(found, values=values, loads=found.loads | loads)
 
 
-def _asked(model: Nonlinear, drive: str, *, start: str, end: str, points: int, loads: dict[str, float]) -> Course:
+def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, loads: dict[str, float]) -> Course:
     quantity = drive_quantity(model.assembly, drive, "--drive")
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else _end(model, drive, quantity)
     if low == high:
         raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
-    return Course(drive, np.linspace(low, high, points), loads, (), 1.0)
+    return Course(drive, np.linspace(low, high, steps), loads, (), 1.0)
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
@@ -157,37 +155,42 @@ class Buckling:
 def buckle(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    load: Annotated[
+    scale_load: Annotated[
         list[str] | None,
-        text_option("--load", "NAME=VALUE", 'The load that grows: "platform.fx=-20 N". Several grow together. Default: every load case.'),
+        text_option(
+            "--scale-load",
+            "NAME=VALUE",
+            'Load that grows, e.g. "platform.fx=-20 N"; several grow in proportion. Repeatable. '
+            "Default: the weight at a stated operating point, else every load case.",
+        ),
     ] = None,
     at: At = None,
-    hold: Held = None,
-    temperature: Warmth = None,
-    beyond: Annotated[
-        int, typer.Option("--beyond", metavar="N", min=0, help="Points to follow from where the least gives way, on its branch or on.")
+    load: Load = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
+    post_buckling: Annotated[
+        int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
-    side: Annotated[
-        Side, typer.Option("--side", help="Which way the branch goes: along the shape that is told, or against it.")
-    ] = Side.ALONG,
+    branch: Annotated[Branch, typer.Option("--branch", help="Branch: along the buckling mode, or against it.")] = Branch.ALONG,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
 ) -> None:
-    """How far a load may grow until the stage gives way.
+    """Find the load at which the stage buckles.
 
-    At large displacements: a limit, which the load cannot pass, a bifurcation into another motion, or a sharp bend of the path beside one.
-    All else stays, the weight too.
-    Without --load and --at of every load case (weight, stated forces, what paths hold) at rest and at every end of paths and strokes.
+    At large displacements: a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant, the weight too.
+
+    Without --scale-load and operating point: each load case (weight, stated forces, loads of paths), at rest and at all ends of paths
+    and strokes.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    asked = place(at, load, hold, temperature)
-    cases = (_case(mechanism, asked),) if load or at or hold else load_cases(mechanism)
+    asked = place(at, load, fixed, temperature)
+    cases = (_case(mechanism, asked, scale_load or ()),) if scale_load or at or load or fixed else load_cases(mechanism)
     found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
-    after = _beyond(found, cases, side, beyond) if beyond else None
+    after = _beyond(found, cases, branch, post_buckling) if post_buckling else None
     told = _buckling(found, after)
     if report is not None:
         save(report, buckling_report(mechanism, found, after), "--report")
@@ -204,77 +207,84 @@ def buckle(  # noqa: PLR0913 (its options)
     )
 
 
-def _beyond(found: CaseFactors, cases: Sequence[LoadCase], side: Side, points: int) -> Beyond:
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: Branch, points: int) -> Beyond:
     """From where the least case gives way on; refused where that needs something held."""
     least = found.least
     if least is None or least.found is None:
-        raise refuse("--beyond", "nothing gives way", "Leave it out, or name a larger load")
+        raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
     if least.found.state.held:
-        raise refuse(
-            "--beyond", f"the least factor is that of {least.load} at {least.place}, where force holds the stage", "Leave out --at"
-        )
+        what = f"the least factor is that of {least.load} at {least.place}, where force holds the stage"
+        raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
-    path = follow(least.found, grows, side=1.0 if side is Side.ALONG else -1.0, points=points)
+    path = follow(least.found, grows, side=1.0 if branch is Branch.ALONG else -1.0, points=points)
     return Beyond(path, over_stroke(path))
 
 
-def _case(mechanism: Mechanism, asked: Place) -> LoadCase:
-    """What the options name: the load that grows, else the weight, and where."""
+def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
+    """What the options name: the load that grows, else the weight, and the operating point."""
     model = nonlinear(mechanism)
-    grows, there = loads_of(model, asked.load), asked.brought(model)
-    require_consistent(model, there, grows, asked.locked)
-    text, where = (", ".join(asked.load) or WEIGHT), ", ".join([*asked.at, *(f"{name} locked" for name in asked.locked)])
-    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, at=there, locked=asked.locked)
+    grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load), asked.brought(model)
+    require_consistent(model, there, {**grows, **stays}, asked.locked)
+    text, where = (", ".join(scaled) or WEIGHT), ", ".join([*asked.at, *asked.load, *(f"{name} fixed" for name in asked.locked)])
+    return LoadCase(text, where or REST, grows or {WEIGHT: 1.0}, stays=stays, at=there, locked=asked.locked)
 
 
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     """Why there is no answer at all: nothing loads the stage, or the one case that was asked for has no factor."""
     if not found.cases:
         what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
-        yield Finding("stage", what, 'Name a load: --load "platform.fz=-20 N"')
+        yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
-        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another place")
+        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
 
 
 def misalign(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    copy: Annotated[str, text_option("--copy", "NAME", "A copy of a unit, or a link on the ground. Default: each of them.")] = "",
-    about: Annotated[
-        str, text_option("--about", "AXIS", "Its own axis about which it is turned: x, y or z. Default: y; without --copy all.")
+    instance: Annotated[
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link on the ground. Default: each.")
     ] = "",
-    shift: Annotated[str, text_option("--along", "AXIS", "Axis along which it is shifted instead: x, y or z.")] = "",
-    size: Annotated[str, text_option("--size", "VALUE", 'How far it is misaligned: "1 mrad", "10 um". Default: 1 mrad, 0.1 mm.')] = "",
-    points: Annotated[int, typer.Option("--points", metavar="N", min=2, help="Points from none to all of it.")] = 11,
+    rotation: Annotated[
+        str, text_option("--rotation", "AXIS", "Axis of rotation in its own frame: x, y or z. Default: y; without --instance, all.")
+    ] = "",
+    translation: Annotated[
+        str, text_option("--translation", "AXIS", "Axis of translation, instead of a rotation: x, y or z. Default: none.")
+    ] = "",
+    amount: Annotated[
+        str, text_option("--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad or 0.1 mm.')
+    ] = "",
+    steps: Annotated[int, STEPS] = 11,
     report: Report = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
 ) -> None:
-    """What a misaligned copy does to an over-constrained stage.
+    """Compute internal loads of a misaligned, over-constrained stage.
 
-    A copy or link is forced into a seat on the ground that is turned, or shifted: the loads that this leaves in all flexures, the
-    stage's frequencies over it, and the misalignment at which the stage gives way. Without --copy: where it gives way, load and stress copy
-    by copy, about all axes or the one that is named; the worst of them is played in the report.
+    An instance of a unit, or a link, is forced into a rotated or translated seat on the ground. Results: loads in all flexures,
+    frequencies over the misalignment, and the critical misalignment at which the stage buckles.
+
+    Without --instance: critical misalignment, load and stress of each instance, about all axes or the stated one. The report animates
+    the worst.
     """
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    axis = _axis(about, shift)
+    axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH
-    wanted = parse(size, quantity, where="--size") if size else (1e-3 if quantity is ANGLE else 1e-4)
+    wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
-        raise refuse("--size", "a misalignment of zero does nothing", "Give it a size")
-    if not copy:
-        told = misalignments(mechanism, (axis,) if about or shift else COMPONENTS[3:], size=wanted)
+        raise refuse("--amount", "a misalignment of zero does nothing", 'Use for example --amount "1 mrad"')
+    if not instance:
+        told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
-            raise refuse("stage", "no copy of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
+            raise refuse("stage", "no instance of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
         if report is not None:
             save(report, misalignments_report(mechanism, told), "--report")
         answer(
             "misalign",
             mechanism,
             lambda: told,
-            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --copy NAME."],
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --instance NAME."],
             json=json,
             csv=csv,
             xlsx=xlsx,
@@ -282,7 +292,7 @@ def misalign(  # noqa: PLR0913 (its options)
             beside=(report,),
         )
         return
-    found = misaligned(mechanism, copy, axis, wanted, points=points)
+    found = misaligned(mechanism, instance, axis, wanted, points=steps)
     if report is not None:
         save(report, misalign_report(mechanism, found), "--report")
     answer(
@@ -298,13 +308,13 @@ def misalign(  # noqa: PLR0913 (its options)
     )
 
 
-def _axis(about: str, shift: str) -> str:
-    if about and shift:
-        raise refuse("--along", f"it is turned about {about} already", "Leave out --about, or --along")
-    option, axis = ("--along", shift) if shift else ("--about", about or "y")
+def _axis(rotation: str, translation: str) -> str:
+    if rotation and translation:
+        raise refuse("--translation", f"it is rotated about {rotation} already", "Leave out --rotation, or --translation")
+    option, axis = ("--translation", translation) if translation else ("--rotation", rotation or "y")
     if axis not in COMPONENTS[:3]:
         raise refuse(option, f'"{axis}" is no axis', "Write x, y or z")
-    return axis if shift else f"r{axis}"
+    return axis if translation else f"r{axis}"
 
 
 def _buckling(found: CaseFactors, after: Beyond | None) -> Buckling:

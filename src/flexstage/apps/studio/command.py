@@ -9,14 +9,14 @@ from typing import Annotated
 import typer
 
 from flexstage.apps.studio.server import run
-from flexstage.show.command.options import Design
+from flexstage.show.command.options import Design, Port
 from flexstage.show.command.terminal import print_note
 
 
 def studio(
     design: Design,
     *,
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")] = 0,
+    port: Port = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the browser, or only tell the address.")] = True,
 ) -> None:
     """Open a stage in the browser: change it, see what it does.

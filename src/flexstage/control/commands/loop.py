@@ -22,6 +22,7 @@ from flexstage.base.units.quantity import (
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.loop_files import file_findings, require_names, write_export, write_hardware, written_files
 from flexstage.control.loop_options import (
+    Setup,
     amplifier_values,
     compensation,
     floor_setup,
@@ -41,14 +42,30 @@ from flexstage.control.study.file import load_setup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.aim import Aim
 from flexstage.experiment.pipeline import Identification, Told, identification, usable_measurement
-from flexstage.experiment.record_options import Allow, Arrays, Inputs, Only, Outputs, RecordTexts, Units, open_records
+from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import open_design
-from flexstage.show.command.displaced import At, Footing, Held, Load, Place, Warmth, footing, place
+from flexstage.show.command.displaced import At, Fixed, Footing, Load, Place, Temperature, footing, place
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, text_option, word_option
+from flexstage.show.command.options import (
+    FEA,
+    MODEL,
+    AmplifierValues,
+    Changes,
+    Csv,
+    Design,
+    GaugeNoise,
+    GaugeResolution,
+    Json,
+    Report,
+    Seed,
+    Xlsx,
+    rate_option,
+    text_option,
+    word_option,
+)
 from flexstage.show.command.output import announce, require_writable, save, write
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values
@@ -65,102 +82,82 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     context: typer.Context,
     design: Design,
     *,
-    setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file; options on the line go before it.")] = None,
+    setup: Setup = None,
     controller: Annotated[
         str | None,
         text_option(
             "--controller",
             "KIND",
-            "What closes the loop: pi, pid, resonant, ppf, pvf, lqg; none: open loop. Default: pi; of forces pid.",
+            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi, with force actuators pid.",
         ),
     ] = None,
     coordinates: Annotated[
         Axes | None,
-        word_option("--coordinates", Axes, "In which coordinates single loops are closed. Default: platform.", show_default=False),
+        word_option("--coordinates", Axes, "Coordinates of the single loops. Default: platform.", show_default=False),
     ] = None,
-    bandwidth: Annotated[
-        str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: the highest that the margin allows.")
-    ] = None,
-    goal: Annotated[
+    bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None,
+    tune_for: Annotated[
         Aim | None,
-        word_option("--goal", Aim, "Search for laws and notches that are best at this. Default: no search.", show_default=False),
+        word_option("--tune-for", Aim, "Objective of optimisation-based tuning. Default: none.", show_default=False),
     ] = None,
-    compare: Annotated[
-        bool, typer.Option("--compare", help="PI, PID, integral resonant control and LQG side by side: which wins for what.")
-    ] = False,
-    sensitivity: Annotated[
-        str | None, text_option("--sensitivity", "NUMBER", "Highest peak of the sensitivity S that tuning allows.")
+    compare: Annotated[bool, typer.Option("--compare", help="Comparison of PI, PID, integral resonant control and LQG.")] = False,
+    max_sensitivity: Annotated[
+        str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None,
-    damping: Annotated[
+    force_feedback: Annotated[
         str | None,
-        text_option("--damping", "RATIO", "Integral force feedback in the legs, for modes of this damping, e.g. 50%. Default: none."),
+        text_option("--force-feedback", "RATIO", "Modal damping by integral force feedback in the legs, e.g. 50%. Default: none."),
     ] = None,
-    follow: Annotated[
+    tracking: Annotated[
         Following | None,
-        word_option("--follow", Following, "How a path known beforehand is commanded: zv, zvd need the set-up.", show_default=False),
-    ] = None,
-    rate: Annotated[
-        str | None, text_option("--rate", "VALUE", "Sampling rate. Default: 10 kHz, or 10 times the highest platform mode.")
-    ] = None,
-    delay: Annotated[str | None, text_option("--delay", "VALUE", "From sampling to the new output. Default: one sample.")] = None,
-    trajectory: Annotated[
-        str | None,
-        text_option("--trajectory", "NAME|FILE", "step, raster, spiral or sine, or a CSV file of times and poses. Default: step."),
-    ] = None,
-    command: Annotated[
-        list[str] | None,
-        text_option(
-            "--command", "AXIS=VALUE", "Size of a step or sine, e.g. x=1um; several times. Default: 1 um and 10 urad of every motion."
+        word_option(
+            "--tracking", Following, "Tracking method of a known path; zv and zvd need a set-up file. Default: none.", show_default=False
         ),
     ] = None,
-    seconds: Annotated[
-        float | None, text_option("--seconds", "NUMBER", "Length of the simulation. Default: until all has settled.")
+    rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode")] = None,
+    delay: Annotated[str | None, text_option("--delay", "VALUE", "Delay from sampling to the new output. Default: one sample.")] = None,
+    trajectory: Annotated[
+        str | None,
+        text_option("--trajectory", "NAME|FILE", "Trajectory: step, raster, spiral, sine, or CSV file of times and poses. Default: step."),
     ] = None,
-    compensate: Annotated[
+    amplitude: Annotated[
+        list[str] | None,
+        text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Repeatable. Default: 1 um, 10 urad, all axes."),
+    ] = None,
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all has settled.")] = None,
+    feedforward: Annotated[
         list[str] | None,
         text_option(
-            "--compensate", "NAME", f"{', '.join(each.value for each in Compensation)}, or none; several times. Default: lost-motion."
+            "--feedforward",
+            "NAME",
+            f"Feedforward: {', '.join(each.value for each in Compensation)}, or none. Repeatable. Default: lost-motion.",
         ),
     ] = None,
     hysteresis: Annotated[
         str | None,
-        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: a model's file, or its width, e.g. 15%. Default: none."),
+        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: file of a model, or width, e.g. 15%. Default: none."),
     ] = None,
     floor: Annotated[
         list[str] | None,
-        text_option("--floor", "[AXIS=]VALUE", 'Vibration of the floor: VC-D, z=VC-C, "x=3 um/s^2/Hz^0.5"; several times. Default: none.'),
+        text_option("--floor", "[AXIS=]VALUE", 'Floor vibration: VC-D, z=VC-C or "x=3 um/s^2/Hz^0.5". Repeatable. Default: none.'),
     ] = None,
-    gauge_noise: Annotated[
-        str | None, text_option("--gauge-noise", "DENSITY", 'Noise of the gauges, e.g. "0.1 nm/Hz^0.5". Default: what the design states.')
-    ] = None,
-    resolution: Annotated[
-        str | None, text_option("--resolution", "VALUE", "Steps of the gauges; 0nm: none. Default: the design's.")
-    ] = None,
-    amplifier: Annotated[
-        list[str] | None,
-        text_option("--amplifier", "VALUE", "Bandwidth (500Hz) or output resistance (50ohm); largest current (0.2A). Default: ideal."),
-    ] = None,
-    seed: Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")] = None,
-    model: Annotated[
-        Model | None, word_option("--model", Model, "Model of the stage as the plant. Default: lumped.", show_default=False)
-    ] = None,
-    fea: Annotated[
-        bool, typer.Option("--fea", help="Finite elements of the drawn stage as the plant: from the cache, else computed, to 1 %.")
-    ] = False,
+    gauge_noise: GaugeNoise = None,
+    resolution: GaugeResolution = None,
+    amplifier: AmplifierValues = None,
+    seed: Seed = None,
+    model: Annotated[Model | None, MODEL] = None,
+    fea: Annotated[bool, FEA] = False,
     at: At = None,
     load: Load = None,
-    hold: Held = None,
-    temperature: Warmth = None,
-    record: Annotated[
-        list[Path] | None,
-        text_option("--record", "FILE", "Records or responses of a test: the plant is what they tell, not the model. Several times."),
-    ] = None,
+    fixed: Fixed = None,
+    temperature: Temperature = None,
+    record: Annotated[list[Path] | None, RECORD] = None,
     inputs: Inputs = None,
     outputs: Outputs = None,
-    only: Only = None,
+    channels: Channels = None,
     units: Units = None,
     arrays: Arrays = None,
-    allow: Allow = None,
+    accept_fault: AcceptFault = None,
     changes: Changes = None,
     json: Json = None,
     csv: Csv = None,
@@ -171,30 +168,34 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         text_option(
             "--export",
             "FILE",
-            "Write plant.mat, controller.c, controller.fmu, the whole loop stage.loop.fmu, or with --follow path.csv; several times.",
+            "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop), or with --tracking path.csv. Repeatable.",
         ),
     ] = None,
     hardware: Annotated[
         Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
     ] = None,
-    single: Annotated[bool, typer.Option("--single", help="With --hardware: numbers of 32 bits instead of 64.")] = False,
+    float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware, instead of 64-bit.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
 ) -> None:
     """Close the control loop of a stage.
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one sample late. Where
-    forces drive the stage, a PID controller. With --at, --load, --hold or --temperature it is the loop of the stage where it then is.
+    With nothing else given: the lumped model, a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one
+    sample late. Where forces drive the stage, a PID controller.
 
-    Kinds side by side: flexstage loop stage.toml --floor VC-D --goal balance --compare --report loops.html
+    With --at, --load, --fixed or --temperature: about that operating point.
+
+    With --record or --fea, the plant is the identified model of the test, or finite elements of the nominal stage to 1 %.
+
+    Kinds side by side: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """
     exports = export or []
     if example is not None:
         _write_example(design, example)
         return
     require_names(exports, hardware)
-    texts = RecordTexts(inputs, outputs, only, units, arrays=arrays, allow=allow)
+    texts = RecordTexts(inputs, outputs, channels, units, arrays=arrays, accept_fault=accept_fault)
     if not record:
         texts.require_unsaid()
     values = Values()
@@ -205,7 +206,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         "delay": values.value("--delay", delay, TIME),
         "seconds": seconds,
         "seed": seed,
-        "compensate": values.attempt(lambda: compensation(compensate)),
+        "compensate": values.attempt(lambda: compensation(feedforward)),
         "amplifier": override(given.amplifier, amplifier_values(values, amplifier or ())),
         "gauges": override(
             given.gauges,
@@ -220,21 +221,21 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
             {
                 "kind": None if controller is None else values.attempt(lambda: forms.KINDS.parse(controller, "--controller")),
                 "coordinates": coordinates,
-                "goal": None if goal is None else override(given.controller.goal or forms.GoalSetup(), {"objective": goal}),
+                "goal": None if tune_for is None else override(given.controller.goal or forms.GoalSetup(), {"objective": tune_for}),
                 "bandwidth": values.value("--bandwidth", bandwidth, FREQUENCY),
-                "sensitivity": values.value("--sensitivity", sensitivity, RATIO),
+                "sensitivity": values.value("--max-sensitivity", max_sensitivity, RATIO),
             },
         ),
         "damping": None
-        if damping is None
-        else override(given.damping or forms.DampingSetup(), {"ratio": values.value("--damping", damping, RATIO)}),
-        "follow": None if follow is None else follow_setup(given.follow, follow),
+        if force_feedback is None
+        else override(given.damping or forms.DampingSetup(), {"ratio": values.value("--force-feedback", force_feedback, RATIO)}),
+        "follow": None if tracking is None else follow_setup(given.follow, tracking),
         "hysteresis": hysteretic_stacks(hysteresis),
-        "trajectory": values.attempt(lambda: trajectory_setup(given.trajectory, trajectory, command)),
+        "trajectory": values.attempt(lambda: trajectory_setup(given.trajectory, trajectory, amplitude)),
     }
     asked = override(given, options)
     require([*values.findings, *setup_findings(asked), *file_findings(asked, exports, hardware)])
-    where = place(at, load, hold, temperature)
+    where = place(at, load, fixed, temperature)
     require(_fea_findings(where, model) if fea else ())
     written = [("--json", json), ("--xlsx", xlsx), ("--report", report), *written_files(exports, hardware)]
     mechanism = open_design(design, changes, written)
@@ -242,7 +243,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
     stands = Footing(mechanism, asked.model) if fea else footing(mechanism, where, asked.model)
     asking = _Asking(mechanism, asked, stands, solid, tuple(record or ()), texts, None if fea else asked.model)
-    written_to = _Written(json, csv, xlsx, report, tuple(exports), hardware, Precision.SINGLE if single else Precision.DOUBLE)
+    written_to = _Written(json, csv, xlsx, report, tuple(exports), hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
     if compare:
         _compare(asking, written_to)
     else:

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import asyncio
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from flexstage.control.loop_options import Setup
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.server import HOST, PORT, run
 from flexstage.control.study.file import load_setup
 from flexstage.control.study.setup import LoopSetup
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, text_option
+from flexstage.show.command.options import Changes, Design, Port
 from flexstage.show.command.terminal import print_note
 
 
 def serve(
     design: Design,
     *,
-    setup: Annotated[Path | None, text_option("--setup", "LOOP.TOML", "Set-up file of the loop, as for flexstage loop.")] = None,
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")] = PORT,
-    fast: Annotated[bool, typer.Option("--fast", help="As fast as it is computed, instead of by the clock.")] = False,
+    setup: Setup = None,
+    port: Port = PORT,
+    realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Real time, or as fast as it is computed.")] = True,
     changes: Changes = None,
 ) -> None:
     """Run a stage as a virtual controller that programs drive over TCP.
@@ -37,6 +37,6 @@ def serve(
         print_note(f"{stage.name} at {HOST}:{where}: axes {', '.join(stage.axes)}, {1.0 / stage.step:g} samples a second. Ctrl+C ends it.")
 
     began = stage.seconds
-    pace = asyncio.run(run(stage, port, started, paced=not fast))
+    pace = asyncio.run(run(stage, port, started, paced=realtime))
     told = "" if pace is None else f"; at most {1e3 * pace.most:.3g} ms late, {pace.lost:.3g} s given up"
     print_note(f"The stage ran for {stage.seconds - began:.3g} s{told}.")

@@ -10,17 +10,18 @@ import typer
 from flexstage.analysis.complete import platform_modes
 from flexstage.experiment import comparison
 from flexstage.experiment.record_options import (
-    Allow,
+    RECORD,
+    AcceptFault,
     Arrays,
     Band,
+    Channels,
+    FrequencyResolution,
     Inputs,
     Kind,
     Moved,
-    Only,
     Outputs,
     Rate,
     RecordTexts,
-    Resolution,
     Units,
     identify_records,
     shapes_on,
@@ -31,7 +32,7 @@ from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
 from flexstage.show.command.design import elastic_model, open_design
 from flexstage.show.command.models import Models
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, Xlsx, text_option
+from flexstage.show.command.options import FEA, Changes, Csv, Design, Json, ModelName, Report, Xlsx
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
 
@@ -40,19 +41,19 @@ def compare(  # noqa: PLR0913 (its options)
     context: typer.Context,
     design: Design,
     *,
-    record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
+    record: Annotated[list[Path], RECORD],
     model: ModelName = Model.LUMPED,
-    fea: Annotated[bool, typer.Option("--fea", help="Compute finite elements where the cache does not have them.")] = False,
+    fea: Annotated[bool, FEA] = False,
     inputs: Inputs = None,
     outputs: Outputs = None,
-    only: Only = None,
+    channels: Channels = None,
     units: Units = None,
     rate: Rate = None,
     arrays: Arrays = None,
     kind: Kind = None,
-    allow: Allow = None,
+    accept_fault: AcceptFault = None,
     band: Band = None,
-    resolution: Resolution = None,
+    frequency_resolution: FrequencyResolution = None,
     excitation: Moved = None,
     changes: Changes = None,
     json: Json = None,
@@ -66,7 +67,7 @@ def compare(  # noqa: PLR0913 (its options)
 
     FEA is shown where the cache holds all of it, else with --fea.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays, excitation)
+    texts = RecordTexts(inputs, outputs, channels, units, rate, kind, accept_fault, band, frequency_resolution, arrays, excitation)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], design, record)
     mechanism = open_design(design, changes)
     linear = elastic_model(mechanism, model)

@@ -13,17 +13,17 @@ from flexstage.base.record import SideBySide
 from flexstage.experiment.comparison import compare
 from flexstage.experiment.pipeline import Identification
 from flexstage.experiment.record_options import (
-    Allow,
+    AcceptFault,
     Arrays,
     Band,
+    Channels,
+    FrequencyResolution,
     Inputs,
     Kind,
     Moved,
-    Only,
     Outputs,
     Rate,
     RecordTexts,
-    Resolution,
     Units,
     identify_records,
     shapes_on,
@@ -54,14 +54,14 @@ def identify(  # noqa: PLR0913 (its options)
     stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Draw the shapes on this stage.")] = None,
     inputs: Inputs = None,
     outputs: Outputs = None,
-    only: Only = None,
+    channels: Channels = None,
     units: Units = None,
     rate: Rate = None,
     arrays: Arrays = None,
     kind: Kind = None,
-    allow: Allow = None,
+    accept_fault: AcceptFault = None,
     band: Band = None,
-    resolution: Resolution = None,
+    frequency_resolution: FrequencyResolution = None,
     excitation: Moved = None,
     json: Json = None,
     csv: Csv = None,
@@ -72,9 +72,9 @@ def identify(  # noqa: PLR0913 (its options)
 
     Frequencies, damping and shapes with 95 % intervals, from white or other noise at the inputs; nothing is picked by hand.
 
-    Bad channels are named and explained, and used only as far as --allow says.
+    Bad channels are named and explained, and used only with --accept-fault.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays, excitation)
+    texts = RecordTexts(inputs, outputs, channels, units, rate, kind, accept_fault, band, frequency_resolution, arrays, excitation)
     require_writable([("--json", json), ("--xlsx", xlsx), ("--report", report)], stage, records)
     mechanism = None if stage is None else open_design(stage)
     seen = identify_records(records, texts, None if mechanism is None else elastic_model(mechanism, Model.LUMPED))

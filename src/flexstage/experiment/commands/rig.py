@@ -18,7 +18,20 @@ from flexstage.models.theory import Model
 from flexstage.parts.amplifier import Amplifier
 from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import elastic_model, open_design
-from flexstage.show.command.options import Changes, Design, ModelName, output_option, text_option, word_option
+from flexstage.show.command.options import (
+    AmplifierValues,
+    Changes,
+    Design,
+    GaugeNoise,
+    GaugeResolution,
+    ModelName,
+    Seed,
+    band_option,
+    output_option,
+    rate_option,
+    text_option,
+    word_option,
+)
 from flexstage.show.command.output import announce
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.values import Values, first_that_parses
@@ -28,41 +41,30 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     design: Design,
     *,
     output: Annotated[Path, output_option("RECORD", "File to write: .uff, .mat, .h5 or .csv.")],
-    seconds: Annotated[float, typer.Option("--seconds", help="Length of the record.", show_default=False)],
-    seed: Annotated[int, typer.Option("--seed", help="Seed of all random numbers: same seed, same record.")] = 0,
-    rate: Annotated[
-        str | None, text_option("--rate", "VALUE", "Sampling rate. Default: a power of two, at least ten times the highest platform mode.")
-    ] = None,
-    noise: Annotated[
+    seconds: Annotated[float, text_option("--seconds", "NUMBER", "Duration in seconds.")],
+    seed: Seed = None,
+    rate: Annotated[str | None, rate_option("a power of two, at least ten times the highest platform mode")] = None,
+    drive_rms: Annotated[
         str | None,
-        text_option("--noise", "VALUE", "Rms of the driving noise, as a free stroke (1um) or a voltage (5V). Default: 1 % of each stroke."),
+        text_option("--drive-rms", "VALUE", "Rms of the noise drive: stroke (1um) or voltage (5V). Default: 1 % of each stroke."),
     ] = None,
-    band: Annotated[
-        tuple[str, str] | None, text_option("--band", "LOW HIGH", "Band of the driving noise. Default: from 0 to 0.4 times the rate.")
-    ] = None,
-    actuators: Annotated[
-        list[str] | None, text_option("--actuator", "NAME", "Drive this actuator only; several times. Default: all.")
-    ] = None,
-    amplifier: Annotated[
-        list[str] | None,
-        text_option("--amplifier", "VALUE", "Bandwidth (500Hz) or output resistance (50ohm); largest current (0.2A). Default: ideal."),
-    ] = None,
+    band: Annotated[tuple[str, str] | None, band_option("0 to 0.4 times the rate")] = None,
+    actuators: Annotated[list[str] | None, text_option("--actuator", "NAME", "Driven actuator. Repeatable. Default: all.")] = None,
+    amplifier: AmplifierValues = None,
     filter_order: Annotated[int, typer.Option("--filter-order", help="Order of the anti-alias filter (Butterworth); 0: none.")] = 8,
     filter_corner: Annotated[str | None, text_option("--filter-corner", "VALUE", "Its corner. Default: 0.4 times the rate.")] = None,
-    gauge_noise: Annotated[
-        str | None, text_option("--gauge-noise", "DENSITY", 'Noise of the gauges, e.g. "0.1 nm/Hz^0.5". Default: what the design states.')
-    ] = None,
-    resolution: Annotated[
-        str | None, text_option("--resolution", "VALUE", "Steps of the gauges; 0nm: none. Default: the design's.")
-    ] = None,
+    gauge_noise: GaugeNoise = None,
+    resolution: GaugeResolution = None,
     drift: Annotated[
         str, typer.Option("--drift", metavar="VALUE", help="Random walk of each gauge: standard deviation after a minute.")
     ] = "0 nm",
-    tap: Annotated[
-        Tap, word_option("--tap", Tap, "Record inputs behind the amplifier and filtered as the gauges are, or as commanded.")
+    input_signal: Annotated[
+        Tap, word_option("--input-signal", Tap, "Recorded input signal: amplifier output with the gauges' filter, or command.")
     ] = Tap.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
-    inputs: Annotated[Recorded, word_option("--inputs", Recorded, "Inputs as strokes in um or volts.")] = Recorded.STROKE,
+    input_quantity: Annotated[
+        Recorded, word_option("--input-quantity", Recorded, "Quantity of the recorded inputs: stroke in um, or voltage in V.")
+    ] = Recorded.STROKE,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
 ) -> None:
@@ -77,8 +79,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     setup = RigSetup(
         seconds=seconds,
         rate=values.value("--rate", rate, FREQUENCY),
-        seed=seed,
-        drive=_drive(values, noise, band, actuators),
+        seed=seed or 0,
+        drive=_drive(values, drive_rms, band, actuators),
         amplifier=_amplifier(values, amplifier),
         filter=AntiAlias(filter_order, values.value("--filter-corner", filter_corner, FREQUENCY)),
         sensing=Sensing(
@@ -86,8 +88,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
             values.value("--resolution", resolution, DISPLACEMENT),
             values.value("--drift", drift, DISPLACEMENT) or 0.0,
         ),
-        tap=tap,
-        recorded=inputs,
+        tap=input_signal,
+        recorded=input_quantity,
         delay=values.value("--delay", delay, TIME) or 0.0,
     )
     require(values.findings)
@@ -99,8 +101,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     announce(f"Wrote {output}")
 
 
-def _drive(values: Values, noise: str | None, band: tuple[str, str] | None, actuators: list[str] | None) -> NoiseDrive:
-    quantity, amount = _of_one(values, "--noise", noise, (DISPLACEMENT, VOLTAGE)) or (None, None)
+def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, actuators: list[str] | None) -> NoiseDrive:
+    quantity, amount = _of_one(values, "--drive-rms", drive_rms, (DISPLACEMENT, VOLTAGE)) or (None, None)
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
         stroke=amount if quantity is DISPLACEMENT else None,

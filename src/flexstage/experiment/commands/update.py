@@ -13,19 +13,19 @@ from flexstage.base.finding import refuse
 from flexstage.base.units.quantity import RATIO
 from flexstage.base.units.unit import parse
 from flexstage.experiment.record_options import (
-    Allow,
+    RECORD,
+    AcceptFault,
     Arrays,
     Band,
+    Channels,
+    FrequencyResolution,
     Inputs,
     Kind,
-    Only,
     Outputs,
     Rate,
     RecordTexts,
-    Resolution,
     Units,
     identify_records,
-    names,
 )
 from flexstage.experiment.updating import update as updating
 from flexstage.experiment.updating.free import DEFAULT, Known
@@ -37,16 +37,17 @@ from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.file import read_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import answer
-from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, text_option
+from flexstage.show.command.options import Csv, Design, Json, Xlsx, output_option, parameters_option, text_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.terminal import print_warning
+from flexstage.show.command.values import names
 
 
 def update(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    record: Annotated[list[Path], text_option("--record", "RECORD", "File of the test. May be given several times.")],
-    free: Annotated[list[str], text_option("--free", "ADDRESSES", 'Numbers that may change, e.g. "neck.thickness, steel.density".')],
+    record: Annotated[list[Path], RECORD],
+    parameters: Annotated[list[str], parameters_option()],
     output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
     prior: Annotated[
         list[str] | None,
@@ -65,14 +66,14 @@ def update(  # noqa: PLR0913 (its options)
     ] = "0.1 %",
     inputs: Inputs = None,
     outputs: Outputs = None,
-    only: Only = None,
+    channels: Channels = None,
     units: Units = None,
     rate: Rate = None,
     arrays: Arrays = None,
     kind: Kind = None,
-    allow: Allow = None,
+    accept_fault: AcceptFault = None,
     band: Band = None,
-    resolution: Resolution = None,
+    frequency_resolution: FrequencyResolution = None,
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
@@ -83,12 +84,12 @@ def update(  # noqa: PLR0913 (its options)
 
     Writes a new design file with the values tagged; comments stay, and the file that was read stays as it is.
     """
-    texts = RecordTexts(inputs, outputs, only, units, rate, kind, allow, band, resolution, arrays)
+    texts = RecordTexts(inputs, outputs, channels, units, rate, kind, accept_fault, band, frequency_resolution, arrays)
     require_writable([("--output", output), ("--json", json), ("--xlsx", xlsx)], design, record)
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
-    chosen = names(free)
+    chosen = names(parameters)
     free_numbers(mechanism, chosen, known)  # refused before the records are read
     model = standing(mechanism)
     seen = identify_records(record, texts, model, highest_mode(mechanism, model))

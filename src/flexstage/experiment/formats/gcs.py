@@ -113,7 +113,7 @@ def _samples(path: Path, said: Mapping[str, str], layout: Layout, options: Optio
         raise refuse(where, what, "Save one answer of the recorder a file")
     if Allow.TRUNCATED in options.allow and lines.count > 1:
         return TableSamples(path, layout, lines, whole.columns, lines.count - 1)
-    advice = f'Save it anew, or allow "truncated" to use the {max(0, lines.count - 1)} samples before'
+    advice = f'Save it anew, or accept "truncated" to use the {max(0, lines.count - 1)} samples before'
     raise refuse(str(path), f"it breaks off: it has {lines.count} of {wanted} samples", advice)
 
 

@@ -159,7 +159,7 @@ def _gaps(clock: Clock, times: list[float], where: str) -> Finding:
         f"there {'is 1 gap' if gaps == 1 else f'are {gaps} gaps'} between samples, before {listed}{' and more' if gaps > _LISTED else ''}"
     )
     length = f"{stop - start} samples ({(stop - start) / clock.rate:.4g} s)"
-    return Finding(where, what, f'The longest stretch without gaps has {length}: allow "gaps" to use it alone')
+    return Finding(where, what, f'The longest stretch without gaps has {length}: accept "gaps" to use it alone')
 
 
 def _update(known: _Steps, block: Array) -> None:

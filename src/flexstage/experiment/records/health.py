@@ -28,7 +28,7 @@ _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
 _HAMMERS = ("hammer*", "force*", "impact*", "f", "f[0-9]*", "f[xyz]")
 _UNWINDOWED = (
-    'If only noise was cut off, allow "windowed" to use it as it is; outputs must not have been weighted by an exponential window, which '
+    'If only noise was cut off, accept "windowed" to use it as it is; outputs must not have been weighted by an exponential window, which '
     "adds to damping: save those as recorded"
 )
 
@@ -90,7 +90,7 @@ def examine(record: Record, needs: Needs = _NEEDS) -> Examination:
     >>> noise = np.random.default_rng(1).normal(size=(4096, 2)) * [1.0, 0.0]
     >>> shaken = in_memory([Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT)], 2048.0, noise)
     >>> [str(finding) for finding in examine(shaken).findings]
-    ['record: S1: it is zero throughout. Check cable and range, or allow "dead" to leave it out.']
+    ['record: S1: it is zero throughout. Check cable and range, or accept "dead" to leave it out.']
     """
     found = gather(record)
     where = record.source or record.name or "record"
@@ -145,7 +145,7 @@ def responses_findings(responses: Responses, needs: Needs = _NEEDS) -> list[Faul
         faults.append(Fault(None, "", Finding(where, falling, "Export each frequency once, from the lowest to the highest")))
     elif needs.highest is not None and needs.highest > frequencies[-1]:
         what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {needs.highest:g} Hz"
-        faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or allow "slow" to use what there is')))
+        faults.append(Fault(Allow.SLOW, "", Finding(where, what, 'Measure a wider band, or accept "slow" to use what there is')))
     if responses.coherence is not None:
         faults += _coherence(responses.coherence, where)
     return faults
@@ -157,7 +157,7 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
         what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
-        advice = 'Check what was exported, or allow "clipped" to cut it off there'
+        advice = 'Check what was exported, or accept "clipped" to cut it off there'
         yield Fault(Allow.CLIPPED, "", Finding(where, what, advice))
 
 
@@ -172,7 +172,7 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
             if windowed:
                 yield Fault(Allow.WINDOWED, channel.name, Finding(place, windowed, _UNWINDOWED))
             elif dead:
-                yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or allow "dead" to leave it out'))
+                yield Fault(Allow.DEAD, channel.name, Finding(place, dead, 'Check cable and range, or accept "dead" to leave it out'))
             else:
                 yield from _clipped(record, channel, numbers, place)
 
@@ -183,10 +183,10 @@ def _broken_samples(record: Record, channel: Channel, numbers: Numbers, place: s
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
     if share > _BROKEN_SHARE:
-        yield Fault(Allow.DEAD, channel.name, Finding(place, what, 'Record it anew, or allow "dead" to leave it out'))
+        yield Fault(Allow.DEAD, channel.name, Finding(place, what, 'Record it anew, or accept "dead" to leave it out'))
     else:
         advice = (
-            f'The longest stretch without has {stop - start} samples ({(stop - start) / record.rate:.4g} s): allow "gaps" to use it alone'
+            f'The longest stretch without has {stop - start} samples ({(stop - start) / record.rate:.4g} s): accept "gaps" to use it alone'
         )
         yield Fault(Allow.GAPS, channel.name, Finding(place, what, advice))
 
@@ -235,7 +235,9 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> 
     if 0.0 < numbers.levels < _LEVELS:
         span = f"{numbers.low:.6g} and {numbers.high:.6g}{unit}"
         what = f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
-        yield Fault(Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a smaller range, or allow "clipped" to use it as it is'))
+        yield Fault(
+            Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a smaller range, or accept "clipped" to use it as it is')
+        )
         return
     ends = (
         ("highest", numbers.at_high if numbers.flat_high else 0, numbers.next_high, numbers.high),
@@ -245,7 +247,7 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers, place: str) -> 
         if at >= _PILE and at > _PILE_RATIO * after:
             what = f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {value:.6g}{unit}"
             yield Fault(
-                Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a wider range, or allow "clipped" to use it as it is')
+                Allow.CLIPPED, channel.name, Finding(place, what, 'Record with a wider range, or accept "clipped" to use it as it is')
             )
 
 
@@ -253,7 +255,7 @@ def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
     for channel in channels:
         problem = unit_problem(channel.unit)
         if problem is not None:
-            advice = 'State it (units, by names or patterns, such as "S*=um"), or allow "units" to use the numbers as they are'
+            advice = 'State it (units, by names or patterns, such as "S*=um"), or accept "units" to use the numbers as they are'
             yield Fault(Allow.UNITS, channel.name, Finding(f"{where}: {channel.name}", problem, advice))
 
 
@@ -268,7 +270,9 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
             return
         name = names[alive.pop(worst)]
         what = f"{100.0 * shares[worst]:.3g} % of it is explained by the other inputs, {', '.join(names[number] for number in alive)}"
-        advice = 'Drive the inputs with independent noise, or allow "dependent" to leave it out: its effect is then counted with the others'
+        advice = (
+            'Drive the inputs with independent noise, or accept "dependent" to leave it out: its effect is then counted with the others'
+        )
         yield Fault(Allow.DEPENDENT, name, Finding(f"{where}: {name}", what, advice))
 
 
@@ -281,7 +285,7 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
 def _roles(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
-            advice = 'Say what it is (inputs, outputs), or allow "names" to leave it out'
+            advice = 'Say what it is (inputs, outputs), or accept "names" to leave it out'
             yield Fault(
                 Allow.NAMES, channel.name, Finding(f"{where}: {channel.name}", "it is neither known as an input nor as an output", advice)
             )
@@ -305,12 +309,14 @@ def _name_faults(inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], need
         for channel in channels if expected is not None else ():
             place = f"{where}: {channel.name}"
             if channel.name not in known:
-                advice = f'{suggest_nearest(channel.name, known)}; rename it, or allow "names" to leave it out'
+                advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
                 yield Fault(Allow.NAMES, channel.name, Finding(place, f"the stage has no {kind} of this name", advice))
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
                 yield Fault(
-                    Allow.UNITS, channel.name, Finding(place, what, 'State its unit, or allow "units" to use the numbers as they are')
+                    Allow.UNITS,
+                    channel.name,
+                    Finding(place, what, 'State its unit, or accept "units" to use the numbers as they are'),
                 )
 
 
@@ -322,9 +328,9 @@ def _extent(record: Record, needs: Needs, where: str) -> Iterator[Fault]:
         )
         coarser = needs.averages / record.duration
         yield Fault(
-            Allow.SHORT, "", Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or allow "short" to use fewer averages')
+            Allow.SHORT, "", Finding(where, what, f'Ask for {coarser:.3g} Hz, record longer, or accept "short" to use fewer averages')
         )
     if needs.highest is not None and record.rate <= 2.0 * needs.highest:
         what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {needs.highest:g} Hz"
-        advice = f'Sample at {2.56 * needs.highest:.4g} Hz or more, or allow "slow" to find what lies below {0.5 * record.rate:g} Hz'
+        advice = f'Sample at {2.56 * needs.highest:.4g} Hz or more, or accept "slow" to find what lies below {0.5 * record.rate:g} Hz'
         yield Fault(Allow.SLOW, "", Finding(where, what, advice))

@@ -158,7 +158,12 @@ def number_names(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def _unknown_names(names: list[str], options: Options, where: str) -> list[Finding]:
-    asked = {"inputs": options.inputs, "outputs": options.outputs, "only": options.only, "units": tuple(name for name, _ in options.units)}
+    asked = {
+        "inputs": options.inputs,
+        "outputs": options.outputs,
+        "channels": options.only,
+        "units": tuple(name for name, _ in options.units),
+    }
     missing = [
         (kind, pattern) for kind, patterns in asked.items() for pattern in patterns if not any(matches(name, [pattern]) for name in names)
     ]

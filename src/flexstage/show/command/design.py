@@ -75,10 +75,10 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
     return linear
 
 
-def known_point(model: LinearModel, name: str) -> str:
+def known_point(model: LinearModel, name: str, option: str) -> str:
     """The name, if it is one of a body or point whose twist the model gives; else refused with the nearest ones."""
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:
-        raise refuse("--at", f"there is no body or point {name}", suggest_nearest(name, places))
+        raise refuse(option, f"there is no body or point {name}", suggest_nearest(name, places))
     return name

@@ -16,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.theory import Model
 from flexstage.show.command.design import elastic_model
-from flexstage.show.command.options import text_option
+from flexstage.show.command.options import temperature_option, text_option
 from flexstage.show.table import Table, matrix_table
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ else:  # few commands are asked about another place than the drawn one
 
 Load: TypeAlias = Annotated[
     list[str] | None,
-    text_option("--load", "NAME=VALUE", 'A load that stays: "platform.fx=-20 N", a stroke "B1=10 um". May be given several times.'),
+    text_option("--load", "NAME=VALUE", 'Constant load, e.g. "platform.fx=-20 N" or the stroke "B1=10 um". Repeatable.'),
 ]
 
 At: TypeAlias = Annotated[
@@ -37,17 +37,14 @@ At: TypeAlias = Annotated[
     text_option(
         "--at",
         "NAME=VALUE",
-        'Where the stage is brought from where it rests: "platform.x=5 mm", by a force that stays; a stroke "B1=10 um". Several times.',
+        'Operating point relative to static equilibrium, e.g. "platform.x=5 mm" or the stroke "B1=10 um". Repeatable.',
     ),
 ]
 
-Held: TypeAlias = Annotated[
-    list[str] | None, text_option("--hold", "NAME", 'A coordinate that stays locked: "platform.rz". May be given several times.')
-]
+Fixed: TypeAlias = Annotated[list[str] | None, text_option("--fixed", "NAME", "Fixed coordinate, e.g. platform.rz. Repeatable.")]
 
-Warmth: TypeAlias = Annotated[
-    str | None, text_option("--temperature", "VALUE", 'A uniform change of temperature, "5 K": what expands unlike bends.')
-]
+
+Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 
 @dataclass(frozen=True)
@@ -56,11 +53,11 @@ class Place:
 
     at: Sequence[str] = ()
     load: Sequence[str] = ()
-    hold: Sequence[str] = ()
+    fixed: Sequence[str] = ()
     temperature: str | None = None
 
     def __bool__(self) -> bool:
-        return bool(self.at or self.load or self.hold or self.temperature)
+        return bool(self.at or self.load or self.fixed or self.temperature)
 
     @property
     def warmth(self) -> float:
@@ -69,15 +66,15 @@ class Place:
 
     @property
     def locked(self) -> tuple[str, ...]:
-        """The coordinates that stay locked. Raises `DesignError` for a value among them, and for what is given twice."""
-        held = tuple(name.strip() for name in self.hold)
+        """The fixed coordinates. Raises `DesignError` for a value among them, and for what is given twice."""
+        fixed = tuple(name.strip() for name in self.fixed)
         require(
-            Finding(f"--hold {name}", "what stays locked has no value here", f'Write --at "{name}" --hold {name.partition("=")[0]}')
-            for name in held
+            Finding(f"--fixed {name}", "a fixed coordinate has no value here", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
+            for name in fixed
             if "=" in name
         )
-        require(Finding(f"--hold {name}", "it is given twice", "Say it once") for name in dict.fromkeys(held) if held.count(name) > 1)
-        return held
+        require(Finding(f"--fixed {name}", "it is given twice", "Say it once") for name in dict.fromkeys(fixed) if fixed.count(name) > 1)
+        return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
         """Where the stage is brought, in SI units."""
@@ -86,13 +83,13 @@ class Place:
     @property
     def options(self) -> str:
         """The options that were given."""
-        given = {"--at": self.at, "--load": self.load, "--hold": self.hold, "--temperature": self.temperature}
+        given = {"--at": self.at, "--load": self.load, "--fixed": self.fixed, "--temperature": self.temperature}
         return ", ".join(option for option, value in given.items() if value)
 
 
-def place(at: Sequence[str] | None, load: Sequence[str] | None, hold: Sequence[str] | None, temperature: str | None) -> Place:
+def place(at: Sequence[str] | None, load: Sequence[str] | None, fixed: Sequence[str] | None, temperature: str | None) -> Place:
     """What the options of a command say."""
-    return Place(at or (), load or (), hold or (), temperature)
+    return Place(at or (), load or (), fixed or (), temperature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,9 +141,9 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
     if not asked:
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the place")
+        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
-    there = stances.stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), hold=asked.locked, temperature=asked.warmth)
+    there = stances.stance(mechanism, asked.brought(known), loads=loads_of(known, asked.load), fixed=asked.locked, temperature=asked.warmth)
     return Footing(mechanism, model, there)
 
 
@@ -155,20 +152,20 @@ def _stance_tables(found: Stance) -> Iterator[Table]:
     if found.moved is not None:
         yield matrix_table("From there it is brought by", found.moved)
     if found.held is not None:
-        kept = f" ({', '.join(found.locked)} stays locked)" if found.locked else ""
+        kept = f" ({', '.join(found.locked)} fixed)" if found.locked else ""
         yield matrix_table(f"Held by, counted from the sagged position{kept}", found.held)
 
 
-def loads_of(model: Nonlinear, texts: Sequence[str]) -> dict[str, float]:
+def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:
     """Loads in SI units from texts NAME=VALUE."""
     units = {channel.name: channel.unit for channel in model.inputs}
 
     def quantity(name: str) -> Quantity:
         if name not in units:
-            raise refuse(f"--load {name}", f'there is no load "{name}"', suggest_nearest(name, units))
+            raise refuse(f"{option} {name}", f'there is no load "{name}"', suggest_nearest(name, units))
         return quantity_of_unit(units[name])
 
-    return _values(texts, "--load", quantity)
+    return _values(texts, option, quantity)
 
 
 def _values(texts: Sequence[str], option: str, quantity: Callable[[str], Quantity]) -> dict[str, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import Enum
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, TypeAlias, TypeVar
@@ -19,9 +20,9 @@ _Kind = TypeVar("_Kind", bound=Enum)
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
-def text_option(name: str, metavar: str, about: str) -> Any:
-    """An option that is a text; its default is said in words, if at all."""
-    return typer.Option(name, metavar=metavar, help=about, show_default=False)
+def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
+    """An option that is a text; its default is stated in words, if at all."""
+    return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
 def output_option(metavar: str, about: str) -> Any:
@@ -58,22 +59,21 @@ def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Cal
 
 Design: TypeAlias = Annotated[Path, typer.Argument(help="Design file (TOML).", metavar="STAGE.TOML", show_default=False)]
 
-ModelName: TypeAlias = Annotated[
+
+MODEL = word_option(
+    "--model",
     Model,
-    word_option(
-        "--model",
-        Model,
-        "Model of the stage: rigid bodies, the paper's axial springs, or lumped 6x6 hinges.",
-        otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
-    ),
-]
+    "Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.",
+    otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
+)
+ModelName: TypeAlias = Annotated[Model, MODEL]
 
 Changes: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--set",
         "ADDRESS=VALUE",
-        "Change a value before the analysis, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. May be given several times.",
+        "Changed value of the design, e.g. horizontal/front.thickness=1.4mm or numbers.arm=+10%. Repeatable.",
     ),
 ]
 
@@ -92,6 +92,46 @@ Csv: TypeAlias = Annotated[
 
 Xlsx: TypeAlias = Annotated[
     Path | None, text_option("--xlsx", "FILE", "Write the tables of the result as an Excel workbook: a sheet a table, SI units.")
+]
+
+
+Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 is a free one.")]
+
+GaugeNoise: TypeAlias = Annotated[
+    str | None, text_option("--gauge-noise", "DENSITY", 'Noise density of the gauges, e.g. "0.1 nm/Hz^0.5". Default: that of the design.')
+]
+
+GaugeResolution: TypeAlias = Annotated[
+    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for none. Default: that of the design.")
+]
+
+AmplifierValues: TypeAlias = Annotated[
+    list[str] | None,
+    text_option(
+        "--amplifier",
+        "VALUE",
+        "Amplifier bandwidth (500Hz), output resistance (50ohm) or maximum current (0.2A). Repeatable. Default: ideal.",
+    ),
+]
+
+rate_option = partial(text_option, "--rate", "FREQUENCY", 'Sampling rate, e.g. "2 kHz".')
+band_option = partial(text_option, "--band", "LOW HIGH", 'Frequency band, e.g. --band "50 Hz" "400 Hz".')
+temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform temperature change, e.g. "5 K".')
+parameters_option = partial(
+    text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
+)
+order_option = partial(typer.Option, "--order", max=5, help="Order of the elements.")
+modes_option = partial(typer.Option, "--modes", help="Number of lowest modes.")
+STEPS = typer.Option(
+    "--steps", metavar="N", min=2, help="Number of equilibria, both ends included. Default: that of a path, else 11.", show_default=False
+)
+
+Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
+
+FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
+
+Point: TypeAlias = Annotated[
+    str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")
 ]
 
 Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "Write a self-contained HTML report with pictures.")]

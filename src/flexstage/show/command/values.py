@@ -14,7 +14,7 @@ from flexstage.models.linear.port import ports
 from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
-_NOISE_EXAMPLE = 'Write for example --noise "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+_ASD_EXAMPLE = 'Write for example --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
 
 
 class Values:
@@ -36,6 +36,11 @@ class Values:
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
+def names(texts: Sequence[str] | None) -> tuple[str, ...]:
+    """Names in texts, separated by commas."""
+    return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
+
+
 def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, float] | None:
     """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
     for name, quantity in known.items():
@@ -46,8 +51,8 @@ def first_that_parses(text: str, known: Mapping[str, Quantity]) -> tuple[str, fl
     return None
 
 
-def motions(texts: Sequence[str]) -> dict[str, float]:
-    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of `--command`; all mistakes are told together."""
+def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
+    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
     found: dict[str, float] = {}
     findings: list[Finding] = []
     for text in texts:
@@ -55,29 +60,29 @@ def motions(texts: Sequence[str]) -> dict[str, float]:
         if name not in COMPONENTS or not value:
             findings.append(
                 Finding(
-                    f"--command {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
+                    f"{option} {text}", "this names no motion and value", f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
                 )
             )
             continue
         try:
-            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"--command {text}"))
+            found[name] = abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=f"{option} {text}"))
         except DesignError as error:
             findings += error.findings
     require(findings)
     return found
 
 
-def spectra(model: LinearModel, noises: Sequence[str]) -> dict[str, Spectrum]:
-    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--noise`, of the input or of its first or second rate.
+def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
+    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second rate.
 
     All mistakes are told together.
     """
     found: dict[str, Spectrum] = {}
     findings: list[Finding] = []
-    for text in noises:
+    for text in densities:
         name, _, value = (part.strip() for part in text.partition("="))
         try:
-            found[name] = _spectrum(model, name, value, f"--noise {text}")
+            found[name] = _spectrum(model, name, value, f"--input-asd {text}")
         except DesignError as error:
             findings += error.findings
     require(findings)
@@ -94,4 +99,4 @@ def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum
         except DesignError:
             continue
     what = f'found "{value}", which is no amplitude density of {name} [{unit}/Hz^0.5] or of its rates'
-    raise DesignError([Finding(where, what, _NOISE_EXAMPLE)])
+    raise DesignError([Finding(where, what, _ASD_EXAMPLE)])

@@ -14,7 +14,7 @@ from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import load, outline_text, part_text
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Design, output_option, text_option
+from flexstage.show.command.options import Changes, Design, modes_option, order_option, output_option, text_option
 from flexstage.show.command.output import announce, save
 from flexstage.show.command.progress import progress_bar
 from flexstage.show.command.terminal import print_result, print_warning
@@ -34,13 +34,13 @@ def cad(
     output: Annotated[Path | None, output_option("STAGE.STEP", "Write the named solids as a STEP assembly.")] = None,
     mesh: Annotated[Path | None, text_option("--mesh", "STAGE.VTU", "Mesh the stage and write the tetrahedra as VTU.")] = None,
     gltf: Annotated[Path | None, text_option("--gltf", "STAGE.GLB", "Read the stage as solids; write its modes as animations.")] = None,
-    order: Annotated[int, typer.Option("--order", min=1, max=5, help="Order of elements and curved geometry, for --mesh and --gltf.")] = 2,
-    modes: Annotated[int, typer.Option("--modes", min=0, max=100, help="How many of the lowest modes --gltf shows.")] = 12,
+    order: Annotated[int, order_option(min=1)] = 2,
+    modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Write a stage as solids.
 
-    One STEP assembly of named solids with materials; the mesh; the modes in motion.
+    One STEP assembly of named solids with materials; the mesh; the modes in motion. --order is for --mesh and --gltf, --modes for --gltf.
 
     Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
     """
@@ -85,13 +85,14 @@ def superelement(
     solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that the solid is, or is part of.", show_default=False)],
     *,
     output: Annotated[Path, output_option("FRAME.NPZ", "Write stiffness and mass as an NPZ file.")],
-    order: Annotated[int, typer.Option("--order", min=1, max=5, help="Order of elements and curved geometry.")] = 3,
-    modes: Annotated[int, typer.Option("--modes", min=0, max=100, help="How many of the lowest modes with its ports held are kept.")] = 12,
+    order: Annotated[int, order_option(min=1)] = 3,
+    modes: Annotated[int, modes_option(min=0, max=100)] = 12,
     changes: Changes = None,
 ) -> None:
     """Reduce one solid of a stage to a superelement.
 
-    Writes stiffness and mass over its ports and modes; prints the table of the part for a design file in the folder of the matrices.
+    Writes stiffness and mass over its ports and fixed-interface modes. Prints the table of the part for a design file in the folder of
+    the matrices.
 
     A body counts with the links that are one solid with it; its ports are the faces where that ends.
     """

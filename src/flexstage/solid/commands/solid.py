@@ -29,7 +29,7 @@ from flexstage.parts.leaf import Leaf, LeafEnds
 from flexstage.parts.part import inner
 from flexstage.show.command.answer import answer, print_missing
 from flexstage.show.command.design import open_design
-from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, output_option, text_option, word_option
+from flexstage.show.command.options import Changes, Csv, Design, Json, Report, Xlsx, order_option, output_option, text_option, word_option
 from flexstage.show.command.output import require_writable, save
 from flexstage.show.command.progress import ProgressBar, progress_bar
 from flexstage.show.command.terminal import print_note, print_warning
@@ -48,6 +48,7 @@ from flexstage.solid.results.plan import Plan, reduction_plan, units_alone, veri
 from flexstage.solid.results.read import Solids, solids
 from flexstage.solid.results.resolution import NOT_ESTIMATED, Converged, Resolution
 from flexstage.solid.results.verified import Known, recall, retain
+from flexstage.solid.scope import Scope
 from flexstage.solid.show.tables import (
     block_table,
     calibration_table,
@@ -59,7 +60,6 @@ from flexstage.solid.show.tables import (
     verdict_table_of,
     verification_table,
 )
-from flexstage.solid.what import What
 
 if TYPE_CHECKING:
     from flexstage.show import page
@@ -70,16 +70,12 @@ if TYPE_CHECKING:
 else:  # few are asked for a report
     page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.show.report"), Late("flexstage.solid.show.sections")
 
-Scope: TypeAlias = Annotated[
-    What,
-    word_option("--what", What, "Every distinct hinge, every distinct unit alone, or the whole stage."),
-]
 Accuracy: TypeAlias = Annotated[
     str, typer.Option("--accuracy", metavar="SHARE", help="Relative error to reach in stiffness, gain and frequency.")
 ]
 Order: TypeAlias = Annotated[
     int | None,
-    typer.Option("--order", min=2, max=5, help="Order of the elements; without it, raised until the accuracy is met.", show_default=False),
+    order_option(min=2, help="Order of the elements. Default: raised until the accuracy is met.", show_default=False),
 ]
 Memory: TypeAlias = Annotated[
     str | None,
@@ -116,7 +112,9 @@ class _Result:
 def solid(  # noqa: PLR0913 (its options)
     design: Design,
     *,
-    what: Scope = What.STAGE,
+    scope: Annotated[
+        Scope, word_option("--scope", Scope, "Scope: each distinct hinge, each distinct unit, or the whole stage.")
+    ] = Scope.STAGE,
     accuracy: Accuracy = _DEFAULT_ACCURACY,
     order: Order = None,
     memory: Memory = None,
@@ -134,16 +132,16 @@ def solid(  # noqa: PLR0913 (its options)
     """
     asked = _request(accuracy, order, memory)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
-    if what is What.STAGE:
+    if scope is Scope.STAGE:
         require_standing(mechanism)
     with progress_bar() as shown, Pool() as pool:
-        found = _STUDIES[what](mechanism, replace(asked, pool=pool), shown)
+        found = _STUDIES[scope](mechanism, replace(asked, pool=pool), shown)
     if report is not None:
         save(report, reports.solid_report(mechanism, found.said, found.sections(), found.cautions, found.motions()), "--report")
     answer(
         "solid",
         mechanism,
-        lambda: SideBySide(({"what": what.value}, *found.results)),
+        lambda: SideBySide(({"what": scope.value}, *found.results)),
         found.tables,
         json=json,
         csv=csv,
@@ -381,7 +379,7 @@ def _stage_study(mechanism: Mechanism, asked: _Request, shown: ProgressBar) -> _
     )
 
 
-_STUDIES = {What.HINGE: _hinge_study, What.UNIT: _unit_study, What.STAGE: _stage_study}
+_STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _stage_study}
 
 
 def free_end_cautions(mechanism: Mechanism) -> tuple[Finding, ...]:

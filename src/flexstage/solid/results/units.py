@@ -93,7 +93,7 @@ def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
         raise refuse(
             "units",
             "none of the stage's units drives an output of its own by one actuator",
-            "Ask for the whole stage instead: --what stage",
+            "Ask for the whole stage instead: --scope stage",
         )
     return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}
 

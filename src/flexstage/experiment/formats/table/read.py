@@ -90,7 +90,7 @@ def _samples(path: Path, layout: Layout, options: Options) -> TableSamples:
     if Allow.TRUNCATED in options.allow and unsure > 0:
         return replace(whole, length=unsure)
     what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {lines.count} of {announced} samples"
-    advice = f'Export it anew, or allow "truncated" to use the {unsure} samples before'
+    advice = f'Export it anew, or accept "truncated" to use the {unsure} samples before'
     raise refuse(f"{path}: line {layout.line + lines.count - 1}", what, advice)
 
 

@@ -76,7 +76,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     return (*record, *((_responses(path, responses, coherences, options),) if responses and options.kind is not Kind.RECORD else ()))
 
 
-_ADVICE = 'Export the file anew, or allow "truncated" to use what there is'
+_ADVICE = 'Export the file anew, or accept "truncated" to use what there is'
 
 
 def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
@@ -222,7 +222,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
     outputs, inputs = (tuple(dict.fromkeys(pair[side] for pair in table)) for side in (0, 1))
     missing = {output: [input_ for input_ in inputs if (output, input_) not in table] for output in outputs}
     if Allow.INCOMPLETE not in options.allow:
-        advice = 'Measure them, name channels that are complete (inputs, outputs), or allow "incomplete" to leave this output out'
+        advice = 'Measure them, name channels that are complete (inputs, outputs), or accept "incomplete" to leave this output out'
         require(
             Finding(f"{path}: {output}", f"its responses to {', '.join(lack)} are missing", advice)
             for output, lack in missing.items()
@@ -315,7 +315,7 @@ def _coherence(
     lack = [(output, input_) for output in outputs for input_ in inputs if (output, input_) not in stored]
     if lack and lack == list(table)[-1:] and len(table) > 1 and Allow.INCOMPLETE not in options.allow:
         what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
-        raise DesignError([Finding(str(path), what, 'Export the file anew, or allow "incomplete" to do without coherence')])
+        raise DesignError([Finding(str(path), what, 'Export the file anew, or accept "incomplete" to do without coherence')])
     if lack:
         return None
     return np.stack([np.stack([np.real(_complex(stored[output, input_])) for input_ in inputs], axis=-1) for output in outputs], axis=-2)
