@@ -114,7 +114,7 @@ def test_no_ball_of_osmium_is_doubted() -> None:
         ("gravity", (0.0, 0.0, -9.80665e-3), "gravity"),
         ("envelope", (160.0, 0.08, 0.025), "envelope.x"),
         ("payloads", {"mirror": fs.Payload("platform", 0.01, (0.0, 0.0, 0.0), fs.Inertia(5.0, 5.0, 5.0))}, "payloads.mirror.inertia"),
-        ("opening", fs.Opening((0.1e-3, 0.1e-3)), "opening.size"),
+        ("opening", fs.Aperture((0.1e-3, 0.1e-3)), "opening.size"),
     ],
 )
 def test_what_does_not_fit_the_stage_is_told(path: str, value: object, where: str) -> None:

@@ -279,7 +279,7 @@ def test_discs_and_boxes_against_the_opening():
     clear = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.01, 0.0, 0.0))
     corner = fs.Cylinder("steel", 0.02, 0.01, at=(half + 0.0095 * np.sqrt(0.5), half + 0.0095 * np.sqrt(0.5), 0.0))
     lying = fs.Cylinder("steel", 0.02, 0.1, at=(0.0, half + 0.008, 0.0), along=X)
-    found = clearance(solids(disc, clear, corner, lying, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(disc, clear, corner, lying, opening=fs.Aperture((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s2", "platform.s3"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.0005, 0.002], rtol=1e-9)
 
@@ -288,7 +288,7 @@ def test_an_oblong_opening_is_as_long_and_wide_as_it_says():
     """110 mm along x, 70 mm along y: blocks that stand 1 mm and 2 mm into it, and two beside it."""
     places = [(0.064, 0.0, 0.0), (0.0, 0.043, 0.0), (-0.065, 0.0, 0.0), (0.0, -0.045, 0.0)]
     blocks = [fs.Block("steel", (0.02, 0.02, 0.01), at=place) for place in places]
-    found = clearance(solids(*blocks, opening=fs.Opening((0.11, 0.07))))
+    found = clearance(solids(*blocks, opening=fs.Aperture((0.11, 0.07))))
     assert [item.name for item in found.intrusions] == ["platform.s0", "platform.s1"]
     np.testing.assert_allclose([item.depth for item in found.intrusions], [0.001, 0.002], rtol=1e-9)
 
@@ -300,10 +300,10 @@ def test_holes_and_bores_leave_the_opening_clear():
     narrow = fs.Cylinder("steel", 0.2, 0.01, bore=0.15)
     wheel = fs.Cylinder("steel", 0.2, 0.01, along=X, bore=0.18)
     wall = fs.Block("steel", (0.2, 0.2, 0.01), hole=(0.19, 0.19), along=Z, up=X)
-    found = clearance(solids(plate, ring, narrow, opening=fs.Opening((0.11, 0.11))))
+    found = clearance(solids(plate, ring, narrow, opening=fs.Aperture((0.11, 0.11))))
     assert [item.name for item in found.intrusions] == ["platform.s2"]
     for standing in (wheel, wall):
-        (intrusion,) = clearance(solids(standing, opening=fs.Opening((0.11, 0.11)))).intrusions
+        (intrusion,) = clearance(solids(standing, opening=fs.Aperture((0.11, 0.11)))).intrusions
         assert intrusion.depth == pytest.approx(0.055 + 0.005, rel=1e-9)
 
 

@@ -36,7 +36,7 @@ from flexstage.apps.studio.wire import encode
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.mechanism.store import dumps
 from flexstage.show.viewer.data import still_data
-from flexstage.studies.optimisation.file import load_wanted
+from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.sweeps.file import loads_study
 from tests.browser.conftest import Watch
 from tests.hygiene.source import SRC
@@ -330,7 +330,7 @@ def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_pa
     if name == "Sweep":
         assert found.plan is not None
     else:
-        load_wanted(found)
+        load_optimisation(found)
 
 
 def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from flexstage.cases.registry import case
-from flexstage.control.study.setup import ControllerSetup, LoopSetup, Motion, SineMotion
+from flexstage.control.study.setup import AxisAmplitudes, ControllerSetup, LoopSetup, SineMotion
 from flexstage.control.study.study import loop_study
 from flexstage.mechanism.assembly.expand import expand
 
 
 def test_heat_is_that_of_the_simulated_current():
     stage = case("voice-coil-stage")
-    path = SineMotion(frequency=20.0, periods=2.0, by=Motion(x=50e-6))
+    path = SineMotion(frequency=20.0, periods=2.0, by=AxisAmplitudes(x=50e-6))
     (run,) = loop_study(stage, LoopSetup(trajectory=path, controller=ControllerSetup(bandwidth=40.0))).runs
     assembly = expand(stage)
     for number, name in enumerate(assembly.thrusts):

@@ -16,7 +16,7 @@ from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search
 from flexstage.experiment.pipeline import identification, usable_measurement
-from flexstage.experiment.records.health import Needs
+from flexstage.experiment.records.health import RecordRequirements
 from flexstage.experiment.records.record import Channel, InMemory, Record, Role
 from flexstage.models.linear.frequency import superpose
 from flexstage.models.linear.port import ports
@@ -111,7 +111,7 @@ def test_what_moved_the_stage_is_never_guessed() -> None:
         usable_measurement([made])
     driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
     with pytest.raises(DesignError, match="u: taken for inputs, where none is said to have been recorded"):
-        usable_measurement([driven], needs=Needs(unrecorded=True))
+        usable_measurement([driven], requirements=RecordRequirements(unrecorded=True))
     with pytest.raises(DesignError, match="there are 2 records"):
         identification((made, made), FLOOR)
     with pytest.raises(DesignError, match="40 blocks of 400 are needed"):

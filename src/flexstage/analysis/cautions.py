@@ -38,8 +38,8 @@ from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
+from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
 from flexstage.parts.contact import Contact
-from flexstage.parts.given import Given, Joint
 from flexstage.parts.part import Restricted, material_of
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.plausible import implausible
@@ -146,7 +146,9 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         holder = mechanism.materials[material] if material else inner
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
-            told[where] = "State the drawn part that it stands_for" if isinstance(inner, Given) else "State it: loss_factor = 0.002"
+            told[where] = (
+                "State the drawn part that it stands_for" if isinstance(inner, ComplianceMatrix) else "State it: loss_factor = 0.002"
+            )
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
             told[f"parts.{item.link.part}"] = "State it: loss_factor = 0.002"

@@ -15,8 +15,8 @@ from flexstage.base.number import Array
 from flexstage.base.storage.digest import digest
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.nonlinear.paths.critical import Kind
-from flexstage.models.nonlinear.paths.path import Path
+from flexstage.models.nonlinear.paths.critical_load import Kind
+from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import format_value, to_typography
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.stroke import stroke_figure
@@ -25,7 +25,7 @@ from flexstage.show.scene.stage import Scene, scene
 from flexstage.show.sections.caveats import caveat_section
 from flexstage.show.sections.stage import drawing_section, stage_section
 from flexstage.show.table import Column, Table, make_table, matrix_table, number_cells
-from flexstage.show.viewer.course import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
+from flexstage.show.viewer.animation import buckling_data, curves_of, limits, misalign_data, quantities_of, stroke_data
 from flexstage.show.viewer.data import StageData, still_data
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
@@ -35,7 +35,7 @@ _MEANING = {
 }
 
 
-def stroke_report(mechanism: Mechanism, path: Path, found: Stroke) -> str:
+def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
     """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
     seen, data = scene(mechanism), stroke_data(mechanism, path, found)
     said = limits(found)

@@ -76,7 +76,7 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "response": None if analysis.response is None else response_body(analysis.response, damping),
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
-        **({} if analysis.reach is None else {"reach": analysis.reach}),
+        **({} if analysis.force_workspace is None else {"force_workspace": analysis.force_workspace}),
         "buckling": analysis.buckling,
         **({} if analysis.ends is None else {"ends": analysis.ends}),
         "drift": analysis.drift,

@@ -149,7 +149,7 @@ def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
 
 def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
     if reach is not None:
-        yield from reach_figures(reach.single if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
+        yield from reach_figures(reach.single_axis if reach.corrected is None else reach.corrected, reach.stress, reach.buckling)
 
 
 def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:

@@ -26,9 +26,8 @@ from flexstage.spatial.frame import COMPONENTS
 if TYPE_CHECKING:
     from flexstage.models.nonlinear import equilibrium, linearise
     from flexstage.models.nonlinear import stage as nonlinear
-    from flexstage.models.nonlinear.paths import critical
 else:
-    critical = Late("flexstage.models.nonlinear.paths.critical")
+    critical = Late("flexstage.models.nonlinear.paths.critical_load")
     equilibrium = Late("flexstage.models.nonlinear.equilibrium")
     linearise = Late("flexstage.models.nonlinear.linearise")
     nonlinear = Late("flexstage.models.nonlinear.stage")

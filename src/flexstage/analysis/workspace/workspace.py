@@ -49,7 +49,7 @@ class Workspace(InNotebook):
 
     command: Annotated[Mapping[str, Number], MOTION]
     limits: StrokeLimits
-    single: SingleAxis
+    single_axis: SingleAxis
     corrected: SingleAxis | None
     corner: Utilisation | None
     polytope: Polytope | None
@@ -103,7 +103,7 @@ def workspace(
     return Workspace(
         command=Table(asked),
         limits=limits,
-        single=single,
+        single_axis=single,
         corrected=attempt.of_ground(
             "corrected", lost, _RIGID, lambda known: single_axis(*stopped(known.correction), provenance=known.provenance)
         ),

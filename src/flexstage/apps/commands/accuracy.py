@@ -13,7 +13,7 @@ from flexstage.analysis.complete import read, required_command
 from flexstage.analysis.linear_statics import drift as drifting
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
-from flexstage.analysis.workspace.reach import reach
+from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
@@ -28,7 +28,7 @@ from flexstage.show.command.values import motions
 from flexstage.show.table import Table, row_table
 from flexstage.show.tables import workspace as tables
 from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge_drift_table
-from flexstage.show.tables.reach import reach_tables
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.sensitivities import frequency_sensitivity_table, loss_sensitivity_table
 from flexstage.show.tables.strength import strength_tables
 
@@ -61,13 +61,13 @@ def workspace(
 
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
-        reached = reach(mechanism, kinematics, elastic_model(mechanism, model))
+        reached = force_workspace(mechanism, kinematics, elastic_model(mechanism, model))
         small = second_order(mechanism, kinematics, motions(command or ()) or required_command(mechanism))
         answer(
             "workspace",
             mechanism,
             lambda: _with_error(reached, small),
-            lambda: [_small_text(small), *reach_tables(reached)],
+            lambda: [_small_text(small), *force_workspace_tables(reached)],
             model=model,
             json=json,
             csv=csv,

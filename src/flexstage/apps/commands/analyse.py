@@ -26,9 +26,9 @@ from flexstage.show.document import analysis_body, analysis_results, envelope, r
 from flexstage.show.table import Table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, strength, workspace
 from flexstage.show.tables.change import change_table, set_table
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
-from flexstage.show.tables.reach import reach_tables
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table, unit_table
 
@@ -165,8 +165,8 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     for unit in (analysis.units or {}).values():
         yield None if unit.omitted is None else omitted_table(unit.omitted)
     yield None if analysis.modes is None else mode_table(analysis.modes)
-    if analysis.reach is not None:
-        yield from reach_tables(analysis.reach)
+    if analysis.force_workspace is not None:
+        yield from force_workspace_tables(analysis.force_workspace)
     if analysis.workspace is not None:
         yield workspace.stroke_table(analysis.workspace)
         yield from strength.strength_tables(analysis.workspace)

@@ -11,10 +11,10 @@ import typer
 
 from flexstage.analysis.assessment.requirements import asked_factor
 from flexstage.analysis.loaded.course import Course, course, drive_quantity
-from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, critical_factors, load_cases
+from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors, load_cases
 from flexstage.analysis.loaded.misalign import misalign as misaligned
 from flexstage.analysis.loaded.misalign import misalignments
-from flexstage.analysis.loaded.stance import require_consistent
+from flexstage.analysis.loaded.operating_point import require_consistent
 from flexstage.analysis.loaded.stroke import Beyond
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
 from flexstage.apps.words import Side
@@ -24,7 +24,7 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
-from flexstage.models.nonlinear.paths.path import beyond as follow
+from flexstage.models.nonlinear.paths.load_path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
@@ -185,7 +185,7 @@ def buckle(  # noqa: PLR0913 (its options)
     mechanism = open_design(design, changes, [("--json", json), ("--xlsx", xlsx), ("--report", report)])
     asked = place(at, load, hold, temperature)
     cases = (_case(mechanism, asked),) if load or at or hold else load_cases(mechanism)
-    found = critical_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
+    found = buckling_factors(mechanism, cases, temperature=asked.warmth, demand=asked_factor(mechanism))
     require(_unanswered(found))
     after = _beyond(found, cases, side, beyond) if beyond else None
     told = _buckling(found, after)

@@ -316,7 +316,7 @@ def _bearing_or_none(text: str, file: str) -> Bearing | None:
 
 def _inputs(known: Bench) -> Matrix:
     """Inputs per motion of the platform, elasticity made up for."""
-    return matrix(known.reach("platform").per_motion if known.forced else known.felt.lost.correction)
+    return matrix(known.force_workspace("platform").per_motion if known.forced else known.felt.lost.correction)
 
 
 def _ideal(known: Bench) -> Matrix:

@@ -16,7 +16,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.show.command.displaced import loads_of, quantity_of
-from flexstage.show.viewer.course import stroke_data
+from flexstage.show.viewer.animation import stroke_data
 
 _MOST = 201
 _FOUND = 0.1

@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, require
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import FREQUENCY, RATE
-from flexstage.control.systems.closed import Cut, Loop, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, open_at
 from flexstage.control.systems.system import System
 
 _UP, _DOWN, _FARTHEST = 1.08, 0.6, 1000.0
@@ -104,7 +104,7 @@ def _is_stable(closed: Loop, least: Pole) -> bool:
 
 def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
     """Factors of all commands between which the loop is stable."""
-    open_loop = open_at(closed, Cut.COMMAND)
+    open_loop = open_at(closed, LoopBreak.COMMAND)
     start, up, down = 1.0, int(np.log(_FARTHEST) / np.log(_UP)), int(-np.log(_FARTHEST) / np.log(_DOWN))
     if not stable:
         found = [factor for factor in _UP ** -np.arange(1.0, up + 1) if _growth(open_loop, factor) < 0.0][:1]

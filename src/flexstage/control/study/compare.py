@@ -10,7 +10,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 
 from flexstage.analysis.dynamics.solid_modes import FeaModes
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, refuse
 from flexstage.base.notebook import InNotebook
@@ -27,8 +27,8 @@ from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.judge import closed_growth
 from flexstage.control.tuning.outcome import Bench, bench, outcome
 from flexstage.control.tuning.search import field
+from flexstage.control.tuning.search_spec import SearchSpec
 from flexstage.control.tuning.view import view
-from flexstage.control.tuning.wish import Wish
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
@@ -133,7 +133,7 @@ def compare_controllers(
     mechanism: Mechanism,
     setup: LoopSetup | None = None,
     *,
-    there: Stance | None = None,
+    there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
@@ -184,7 +184,7 @@ def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, 
 
 def _rival_of(
     mechanism: Mechanism,
-    there: Stance | None,
+    there: OperatingPoint | None,
     solid: FeaModes | None,
     test: Identification | None,
     _line: Line | None,
@@ -242,7 +242,7 @@ def _turned(study: LoopStudy, settling: float) -> Turned:
     """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
-    tried = bench(seen, field(seen, Wish(spread=0.0), study.settled.floor))
+    tried = bench(seen, field(seen, SearchSpec(spread=0.0), study.settled.floor))
     control = study.controller.system
     quieter = ((gain, replace(control, C=gain * control.C, D=gain * control.D)) for gain in _TURNED)
     stable = [gain for gain, system in quieter if closed_growth(seen.systems[0], system) < 0.0]

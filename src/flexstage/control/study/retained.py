@@ -14,7 +14,7 @@ from flexstage.control.plant_models.retention import MARGIN_CHANGE, Retention, r
 from flexstage.control.robustness.stability_margins import margins, peaks
 from flexstage.control.study.control import Control, make_controller
 from flexstage.control.study.resolve import ResolvedSetup, retain_modes
-from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.closed import Loop, LoopBreak, loop
 
 
 def control_and_modes(
@@ -68,5 +68,5 @@ def _worst(closed: Loop) -> tuple[float, float]:
     """Peak of S and least phase margin [deg]; infinite and none of an unstable loop."""
     if closed.system.growth >= 0.0:
         return np.inf, 0.0
-    least = min(each.phase.value for each in margins(closed, Cut.POSE).channels)
-    return peaks(closed, Cut.POSE).sensitivity.value, float(np.degrees(least))
+    least = min(each.phase.value for each in margins(closed, LoopBreak.POSE).channels)
+    return peaks(closed, LoopBreak.POSE).sensitivity.value, float(np.degrees(least))

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.loaded.load_effect import LoadEffect
-from flexstage.analysis.loaded.stance import Stance
+from flexstage.analysis.loaded.operating_point import OperatingPoint
 from flexstage.analysis.workspace.small import SecondOrder, second_order
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
@@ -39,7 +39,7 @@ from flexstage.control.study.retained import control_and_modes, stated_modes_cau
 from flexstage.control.study.runs import RestRms, Run, rest_rms, runs, simulate_rest
 from flexstage.control.study.setup import LoopSetup
 from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stacks
-from flexstage.control.systems.closed import Cut, Loop, loop
+from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification, Told
 from flexstage.mechanism.mechanism import Mechanism
@@ -154,7 +154,7 @@ def loop_study(
     mechanism: Mechanism,
     setup: LoopSetup | None = None,
     *,
-    there: Stance | None = None,
+    there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
     tell: Told | None = None,
@@ -190,7 +190,7 @@ def loop_study(
     noise = said.of(0.9, "noise", lambda: noise_budget(closed, given.floor, (_LOWEST, 0.5 * given.rate), _relative_motions(given)))
     still = simulate_rest(given, control, closed)
     resting = rest_rms(given, control, closed) if noise.slowly_rounding else None
-    seen = curves(closed, Cut.POSE) if is_closed else None
+    seen = curves(closed, LoopBreak.POSE) if is_closed else None
     return LoopStudy(
         settled=given,
         lost=lost,
@@ -198,12 +198,12 @@ def loop_study(
         closed=closed,
         stability=found,
         growth_all_modes=growth,
-        margins=said.of(0.8, "margins", lambda: margins(closed, Cut.POSE, seen)) if is_closed else None,
-        peaks=peaks(closed, Cut.POSE) if is_closed else None,
+        margins=said.of(0.8, "margins", lambda: margins(closed, LoopBreak.POSE, seen)) if is_closed else None,
+        peaks=peaks(closed, LoopBreak.POSE) if is_closed else None,
         bandwidths=bandwidths(closed, seen) if is_closed else None,
         curves=seen,
         crosstalk=crosstalk(closed),
-        disk_margin=disk_margins(closed, Cut.POSE) if is_closed else None,
+        disk_margin=disk_margins(closed, LoopBreak.POSE) if is_closed else None,
         static_errors=rest,
         noise=noise,
         still=still,

@@ -10,7 +10,7 @@ import typer
 from flexstage.base.finding import Finding, require
 from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FREQUENCY, NOISE_DENSITY, RESISTANCE, TIME, VOLTAGE, Quantity
 from flexstage.experiment.formats.write import write
-from flexstage.experiment.virtual_rig.recorded import Recorded, Tap
+from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.experiment.virtual_rig.rig import as_record, simulate_test
 from flexstage.experiment.virtual_rig.setup import AntiAlias, NoiseDrive, RigSetup, Sensing
 from flexstage.experiment.virtual_rig.tables import rig_table
@@ -59,10 +59,11 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         str, typer.Option("--drift", metavar="VALUE", help="Random walk of each gauge: standard deviation after a minute.")
     ] = "0 nm",
     tap: Annotated[
-        Tap, word_option("--tap", Tap, "Record inputs behind the amplifier and filtered as the gauges are, or as commanded.")
-    ] = Tap.MONITOR,
+        InputSignal,
+        word_option("--tap", InputSignal, "Record inputs behind the amplifier and filtered as the gauges are, or as commanded."),
+    ] = InputSignal.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="How much later gauges are recorded, e.g. 1ms.")] = "0 s",
-    inputs: Annotated[Recorded, word_option("--inputs", Recorded, "Inputs as strokes in um or volts.")] = Recorded.STROKE,
+    inputs: Annotated[InputQuantity, word_option("--inputs", InputQuantity, "Inputs as strokes in um or volts.")] = InputQuantity.STROKE,
     model: ModelName = Model.LUMPED,
     changes: Changes = None,
 ) -> None:
@@ -86,8 +87,8 @@ def rig(  # noqa: PLR0913  a test has that many knobs
             values.value("--resolution", resolution, DISPLACEMENT),
             values.value("--drift", drift, DISPLACEMENT) or 0.0,
         ),
-        tap=tap,
-        recorded=inputs,
+        input_signal=tap,
+        input_quantity=inputs,
         delay=values.value("--delay", delay, TIME) or 0.0,
     )
     require(values.findings)

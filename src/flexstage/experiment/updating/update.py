@@ -21,7 +21,7 @@ from flexstage.experiment.comparison import Compared, compare, shared_sensors
 from flexstage.experiment.identification.confidence import NORMAL_95
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.updating.fit import Fitted, Problem, gauss_newton
-from flexstage.experiment.updating.free import DEFAULT, Free, Known, free
+from flexstage.experiment.updating.free import DEFAULT, Free, Prior, free
 from flexstage.experiment.updating.gains import Gains, measured_gains
 from flexstage.experiment.updating.rows import (
     Design,
@@ -140,7 +140,7 @@ class Updated(InNotebook):
     chi_square_before: float
     chi_square: float
     steps: int
-    assumed: Known
+    assumed: Prior
     mechanism: Mechanism
     compared: Compared
     warnings: tuple[str, ...]
@@ -244,7 +244,7 @@ class Updated(InNotebook):
 
 @check_arguments
 @one_thread
-def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Known = DEFAULT) -> Updated:
+def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
     """The values of the numbers at `names` that make the lumped model agree best with a test, given what is known before.
 
     Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise
@@ -287,7 +287,7 @@ class _Data:
     """The data with their weights, and the problem they make of free numbers; `gains` is absent where they are not compared."""
 
     freed: Free
-    known: Known
+    known: Prior
     rows: tuple[ModeRow, ...]
     gains: Gains | None
 

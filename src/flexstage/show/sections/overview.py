@@ -125,7 +125,7 @@ def _zero_if_noise(share: float) -> float:
 def _reach_facts(analysis: Analysis) -> Iterator[Fact]:
     if analysis.workspace is None:
         return
-    single = analysis.workspace.corrected or analysis.workspace.single
+    single = analysis.workspace.corrected or analysis.workspace.single_axis
     if single.coordinates:
         name = single.coordinates[0]
         value = float(first_design(single.symmetric, 1)[0])

@@ -8,7 +8,7 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Folded, Picture, Prose, Section, fold, section
 from flexstage.show.table import row_table
-from flexstage.show.tables.reach import reach_tables
+from flexstage.show.tables.force_workspace import force_workspace_tables
 from flexstage.show.tables.strength import buckling_table, load_table, platform_line_table, stress_table
 from flexstage.show.tables.workspace import (
     clearance_table,
@@ -31,7 +31,9 @@ def workspace_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is None:
-        return None if analysis.reach is None else section("Reach", list(reach_tables(analysis.reach)))
+        return (
+            None if analysis.force_workspace is None else section("Force workspace", list(force_workspace_tables(analysis.force_workspace)))
+        )
     figure = workspace_figure(reach)
     caption = "Reachable poses, projected on pairs of coordinates."
     picture = None if figure is None else Picture(to_svg(figure, "reach", caption), caption)

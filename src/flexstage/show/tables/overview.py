@@ -116,7 +116,7 @@ def _axis_note(analysis: Analysis) -> str:
     said = {
         "Strokes: one axis at a time, lost motion made up by command": analysis.workspace is not None and analysis.lost_motion is not None,
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
-        "Strokes: elastic motion, held for ever": analysis.reach is not None,
+        "Strokes: elastic motion, held for ever": analysis.force_workspace is not None,
         "Stiffness: against a load along that axis, strokes held, the others giving way": analysis.statics is not None,
         "Resolution: all gauges a step off, signs at their worst": bool(_resolution(analysis)),
     }
@@ -126,10 +126,14 @@ def _axis_note(analysis: Analysis) -> str:
 def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     """Stroke both ways and what ends it, by coordinate."""
     if analysis.workspace is not None:
-        single = analysis.workspace.corrected or analysis.workspace.single
-        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single.limiting
-    elif analysis.reach is not None:
-        names, values, causes = analysis.reach.coordinates, first_design(analysis.reach.held, 1), analysis.reach.limited_by
+        single = analysis.workspace.corrected or analysis.workspace.single_axis
+        names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single_axis.limiting
+    elif analysis.force_workspace is not None:
+        names, values, causes = (
+            analysis.force_workspace.coordinates,
+            first_design(analysis.force_workspace.held, 1),
+            analysis.force_workspace.limited_by,
+        )
     else:
         return {}
     return {

@@ -85,11 +85,11 @@ def front_report(found: Front) -> str:
 
 def _headline(found: Optimum) -> Headline:
     """The objective before and after, and how many limits are kept."""
-    asked, point = found.wanted.objectives[0], found.final
+    asked, point = found.definition.objectives[0], found.final
     if point is None:
         return Headline(f"No design was found: {found.failure}.", good=False)
     before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
-    limits = zip(found.limits, point.values[len(found.wanted.objectives) :], strict=True)
+    limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
     told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
     return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))
