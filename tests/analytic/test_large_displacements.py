@@ -30,7 +30,7 @@ from flexstage.models.nonlinear.elements.strain import strains
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.linearise import linearise
 from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
-from flexstage.models.nonlinear.paths.load_path import load_path, post_buckling_path, trace
+from flexstage.models.nonlinear.paths.load_path import continuation, load_path, post_buckling_path
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.parts.body import Body, Inertia
@@ -407,7 +407,7 @@ def vee() -> Nonlinear:
 def test_a_shallow_vee_snaps_through():
     """By arc length the load rises to a limit, where the count of unstable motions has it too, and turns negative: it is bistable."""
     model, push = vee(), {"platform.fy": -1.0}
-    found = trace(model, push, step=0.002, points=24)
+    found = continuation(model, push, step=0.002, points=24)
     top = next(event for event in found.events if event.kind is Kind.LIMIT)
     curve = np.polyfit([-1.0, 0.0, 1.0], found.values[top.before - 1 : top.before + 2], 2)
     limit = curve[2] - curve[1] ** 2 / (4.0 * curve[0])
@@ -421,7 +421,7 @@ def test_a_shallow_vee_snaps_through():
 
 def test_a_drive_is_followed_where_no_load_could_go():
     """The same states by holding the platform instead: beyond the limit its force falls."""
-    traced = trace(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
+    traced = continuation(vee(), {"platform.fy": -1.0}, step=0.004, points=5)
     found = load_path(vee(), "platform.y", traced.state.displacement()[:, 1])
     assert found.state.converged.all()
     assert -found.state.reactions[:, 0] == pytest.approx(traced.values, rel=1e-6, abs=1e-6)

@@ -11,7 +11,7 @@ from flexstage.base.finding import LowerBoundError
 from flexstage.cases.parallelogram import parallelogram
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
-from flexstage.models.nonlinear.paths.load_path import beyond, trace
+from flexstage.models.nonlinear.paths.load_path import beyond, continuation
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from tests.laws.test_nonlinear import LEAF, UNIT, guide
 
@@ -65,7 +65,7 @@ def test_an_imperfect_bifurcation_is_no_critical_load():
     with pytest.raises(LowerBoundError, match="strained by 5% there") as error:
         critical_load(model, load)
     assert error.value.bound == pytest.approx(11.063, rel=5e-3)
-    after = trace(model, load, step=0.02, points=2)
+    after = continuation(model, load, step=0.02, points=2)
     assert (np.diff(after.values) > 0.0).all()
     assert not after.motions.any()
     assert not after.events

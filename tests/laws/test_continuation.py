@@ -18,7 +18,7 @@ from flexstage.models.nonlinear.elements.hold import nothing
 from flexstage.models.nonlinear.equilibrium import equilibrium
 from flexstage.models.nonlinear.graph import System, advance, assemble
 from flexstage.models.nonlinear.paths.critical_load import Kind, critical_load, unstable_motions
-from flexstage.models.nonlinear.paths.load_path import trace
+from flexstage.models.nonlinear.paths.load_path import continuation
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import Loads, SolverOptions
 from flexstage.parts.body import Body, Inertia
@@ -184,7 +184,7 @@ def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load()
 def test_a_trace_with_long_steps_has_the_events_of_one_with_short_steps():
     """A dome through its snap: a limit point, and another one where it takes load again; nothing else."""
     model, load = nonlinear(random_legs(2)), {DOWN: -1.0}
-    long, short = (trace(model, load, step=step, points=count) for step, count in ((0.05, 4), (0.005, 40)))
+    long, short = (continuation(model, load, step=step, points=count) for step, count in ((0.05, 4), (0.005, 40)))
     assert [each.kind for each in long.events] == [Kind.LIMIT, Kind.LIMIT]
     assert [each.value for each in long.events] == pytest.approx([each.value for each in short.events], rel=5e-3)
     assert not long.motions[[0, -1]].any()

@@ -235,7 +235,7 @@ def test_a_gap_divides_the_record(suffix: str, tmp_path: Path) -> None:
     told = refusal(path, named)
     assert "1 gap between samples, before 1.7 s" in told
     assert "280 samples (2.8 s)" in told
-    found = read(path, replace(named, allow=frozenset({FaultTolerance.GAPS})))
+    found = read(path, replace(named, accept_faults=frozenset({FaultTolerance.GAPS})))
     assert isinstance(found, Record)
     assert (found.rate, round(found.start, 9)) == (RATE, 1.7)
     np.testing.assert_array_equal(found.select(["u1", "S1"]).values, VALUES[120:])

@@ -90,7 +90,7 @@ def workspace(
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
     >>> stage = double_triangle()
-    >>> (1e6 * workspace(stage, ideal(stage), None).single.symmetric[:3]).round(1).tolist()
+    >>> (1e6 * workspace(stage, ideal(stage), None).single_axis.symmetric[:3]).round(1).tolist()
     [75.0, 86.6, 300.0]
     """
     attempt, limits, mapping = Attempts(() if whole else _FURTHER), stroke_limits(mechanism), kinematics.mapping

@@ -38,7 +38,7 @@ class SearchSpec:
 def search_findings(spec: SearchSpec, step: float | None) -> Iterator[Finding]:
     """What contradicts itself, for a loop sampled every `step` [s].
 
-    >>> [each.advice for each in wish_findings(SearchSpec(rejection=500.0, delay_margin=1e-3), 1e-4)]
+    >>> [each.advice for each in search_findings(SearchSpec(rejection=500.0, delay_margin=1e-3), 1e-4)]
     ['Ask for less than 159.2 Hz, or 0.3183 ms']
     """
     if spec.rejection is not None and step is not None and spec.rejection >= 0.5 / step:

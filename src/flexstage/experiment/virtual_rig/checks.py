@@ -110,7 +110,7 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
     >>> from flexstage.models.mapped import mapped
     >>> from flexstage.experiment.virtual_rig.plan import plan_test
     >>> stage = double_triangle()
-    >>> list(plan_findings(plan_test(stage, mapped(stage), RigSetup(seconds=1.0, recorded=InputQuantity.VOLTAGE))))
+    >>> list(plan_findings(plan_test(stage, mapped(stage), RigSetup(seconds=1.0, input_quantity=InputQuantity.VOLTAGE))))
     []
     """
     setup = plan.setup

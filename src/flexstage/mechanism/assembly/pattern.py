@@ -54,7 +54,7 @@ class Polar(Description):
     """Copies at equal steps on a circle around the stage's z axis.
 
     `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
-    turned by `turn` about z. Each copy has its z axis along the stage's (`InstanceOrientation.AXIS`: x up, z inward, before `turn`). `step` is
+    turned by `turn` about z. Each copy's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is
     the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in the stage's
     plane of that normal.
     """
