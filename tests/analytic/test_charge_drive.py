@@ -100,7 +100,7 @@ def test_modes_rise_and_rest_stays():
 
 def test_legs_on_charge_are_damped_too():
     found = resolve(case("parallelogram"), LoopSetup(amplifier=HELD, damping=DampingSetup(ratio=0.05)))
-    assert found.damping.least >= 0.05 * (1.0 - 1e-6)
+    assert found.damping.min_ratio >= 0.05 * (1.0 - 1e-6)
     assert not [each for each in found.plant.system.output_names if each.endswith(".fx")]
     assert found.plant.system.growth < 0.0
 

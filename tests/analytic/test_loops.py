@@ -72,7 +72,7 @@ def test_a_loop_that_neither_grows_nor_decays_is_not_stable():
     """A pole at rest that no gain moves, beside one that decays."""
     found = verdict(_closed([0.0], [1.0, 1.0, 0.0]))
     assert not found.stable
-    assert found.least.growth == 0.0
+    assert found.slowest_pole.growth == 0.0
     assert np.isnan(found.gain_low)
 
 

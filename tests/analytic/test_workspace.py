@@ -122,7 +122,7 @@ def test_force_on_the_stage_counts_the_stroke_lost_in_the_stack():
     line = stack_lines(stage, model)
     low, high = load_share(stage, model).range(stroke_limits(stage).from_zero)
     assert line.stiffness == pytest.approx(STACK.stiffness)
-    series = 1.0 / (1.0 / line.against + 1.0 / line.stiffness)
+    series = 1.0 / (1.0 / line.stage_stiffness + 1.0 / line.stiffness)
     np.testing.assert_allclose(np.concatenate([low, high]), series * 20e-6 * np.array([-1.0, 5.0]) / 6.0, rtol=1e-9)
 
 
@@ -139,8 +139,8 @@ def test_a_stack_against_a_spring():
     leaves = 2.0 * 12.0 * 200e9 * 0.002 * 0.0005**3 / 12.0 / 0.05**3
     rod = 200e9 * np.pi / 4.0 * 0.001**2 / 0.02
     spring = 1.0 / (1.0 / leaves + 1.0 / rod)
-    assert found.against[0] == pytest.approx(spring, rel=0.01)
-    assert found.travel[0] == pytest.approx(20e-6 * 50e6 / (50e6 + found.against[0]), rel=1e-12)
+    assert found.stage_stiffness[0] == pytest.approx(spring, rel=0.01)
+    assert found.travel[0] == pytest.approx(20e-6 * 50e6 / (50e6 + found.stage_stiffness[0]), rel=1e-12)
     assert found.blocking[0] == pytest.approx(1000.0)
     line = platform_lines(ideal(stage).mapping, lumped(stage), stroke_limits(stage))
     series = 1.0 / (1.0 / 50e6 + 1.0 / rod) + leaves

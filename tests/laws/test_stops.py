@@ -74,7 +74,7 @@ def test_turning_closes_a_stop_by_its_arm():
     assert (held.high[rz], held.high[0]) == (free.high[rz], pytest.approx(GAP, rel=1e-12))
     np.testing.assert_array_equal(held.high[1:], free.high[1:])
     command = {"x": 1 * um, "rz": 40e-6}
-    corner = workspace(stage, ideal(stage), None, command=command).corner
+    corner = workspace(stage, ideal(stage), None, command=command).worst_case
     assert corner.actuators[-1] == "stops/end"
     assert corner.ratio[-1] == pytest.approx((1 * um + ARM * 40e-6) / GAP, rel=1e-9)
 
@@ -105,7 +105,7 @@ def test_a_stop_out_of_reach_changes_nothing_bit_by_bit():
         both = [workspace(stage, ideal(stage), None) for stage in (plain, far)]
         for name in ("low", "high", "limiting"):
             np.testing.assert_array_equal(*(getattr(item.single_axis, name) for item in both))
-        np.testing.assert_array_equal(*(item.corner.ratio for item in both))
+        np.testing.assert_array_equal(*(item.worst_case.ratio for item in both))
         np.testing.assert_array_equal(*(item.polytope.vertices for item in both))
     far = replace(ONE, stops={"end": Stop(PLATFORM, FACE, 0.1 * mm)})
     assert [line.value for line in judge(far)] == [line.value for line in judge(ONE)]

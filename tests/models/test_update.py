@@ -139,7 +139,7 @@ def test_chi_square_tells_of_what_is_not_modelled() -> None:
     built = changed(density=1.2)
     found = update(STAGE, made(built), [NECK], Prior(prior=0.05))
     assert found.probability < 1e-6
-    assert any("state a larger model error" in warning for warning in found.warnings)
+    assert any("state a larger model error" in warning for warning in found.data_warnings)
     told = update(STAGE, made(built), ["steel.density"])
     assert told.probability > 0.01
     tenth = scipy.stats.chi2.ppf(0.9, len(told.residuals))  # priors are data too: each makes up for the number that it is of
@@ -326,7 +326,7 @@ def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other(
     assert found.told == (Told.WITHHELD,)
     assert found.verdicts[0].startswith("withheld: chi-square ")
     assert update_table(found).texts()[1][-1] == found.verdicts[0]
-    assert any("look exchanged" in each for each in found.warnings)
+    assert any("look exchanged" in each for each in found.data_warnings)
     assert "theory and test contradict each other" in updated_text(dumps(STAGE), found, "test.uff")
 
 

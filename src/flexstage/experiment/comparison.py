@@ -131,7 +131,7 @@ class Compared(InNotebook):
     model: Annotated[Model, INNER]
     experiment: Annotated[Identified, INNER]
     fea: Annotated[FeaModes | None, INNER]
-    warnings: tuple[str, ...]
+    data_warnings: tuple[str, ...]
     provenance: str
     misnamed: Annotated[tuple[str, ...], INNER] = ()
 
@@ -192,7 +192,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         model=model,
         experiment=experiment,
         fea=fea,
-        warnings=(*experiment.warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),
+        data_warnings=(*experiment.data_warnings, *(f"{each}." for each in misnamed), *_cautions(rows, repeated, sensors)),
         misnamed=misnamed,
         provenance=f"{theory.provenance}; {experiment.provenance}",
     )

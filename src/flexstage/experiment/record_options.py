@@ -155,7 +155,7 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
     with progress_bar() as shown:
         test = usable_measurement(open_records(paths, reader), reader.accept_faults, needs, shown.share)
         seen = identification(test, search, shown.share)
-    for caution in seen.found.warnings:
+    for caution in seen.found.data_warnings:
         print_warning(caution)
     return seen
 

@@ -120,7 +120,7 @@ def _buckling_text(found: CaseFactors) -> str:
 def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table]:
     """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
     heads = ["load", "place", Column("factor"), "kind", "gives way"]
-    rows = [[case.load, case.place, _factor_text(case), case.kind, case.gives_way or case.why] for case in found.cases]
+    rows = [[case.load, case.place, _factor_text(case), case.kind, case.buckling_mode or case.why] for case in found.cases]
     note = "Each load by itself, all else stays, the place too, where the stage counts as free under the force that brings it there."
     table = make_table("Load cases and stroke ends", heads, rows, notes=[note])
     least = found.least

@@ -20,7 +20,7 @@ from flexstage.mechanism.mechanism import Damping, Mechanism, ModalDamping, Rayl
 from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
 
-FORMAT = "flexstage result 2"
+FORMAT = "flexstage result 3"
 _UNLUMPED = "deflection under dead load needs the lumped model"
 _UNSORTED = "it is told of platforms with fewer than six ideal motions, loaded at the point of theirs that is read"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
@@ -56,7 +56,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
     False
     """
     found = list(errors)
-    body: Document = {"sound": not found, "findings": found}
+    body: Document = {"sound": not found, "errors": found}
     if mechanism is None:
         return {"format": FORMAT, "kind": "check", "version": __version__, **body, "cautions": [], "defaults": [], "warnings": []}
     document = envelope("check", mechanism, None, body)

@@ -190,7 +190,7 @@ def safety(bench: Bench, _: Measure) -> Array:
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
 def buckling(bench: Bench, _: Measure) -> Array:
     """Critical load over compression in the worst part at the worst corner of the strokes."""
-    return bench.buckling.least
+    return bench.buckling.min_factor
 
 
 @partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)

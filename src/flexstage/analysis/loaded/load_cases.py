@@ -74,7 +74,7 @@ class LoadCase(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class CaseFactor:
-    """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and what `gives_way`.
+    """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and the `buckling_mode`.
 
     `factor` is infinite where nothing gives way up to the largest factor, NaN where it is not known; `why` gives the reason. `bound` is the
     factor up to which the stage is stable, NaN where that is not known.
@@ -84,7 +84,7 @@ class CaseFactor:
     place: str
     factor: Annotated[float, RATIO]
     kind: str
-    gives_way: str
+    buckling_mode: str
     why: str
     bound: Annotated[float, RATIO] = np.nan
     found: Annotated[Critical | None, INNER] = None
@@ -122,7 +122,7 @@ class CaseFactors(InNotebook):
             least = min(short, key=lambda case: case.factor)
             asked = f" ({self.demand:g} is asked for)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases bear less than {bound:g} times theirs" if short[1:] else ""
-            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.gives_way)}{others}"
+            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.buckling_mode)}{others}"
             yield Finding(least.place, what, "Ask for less stroke, lighten the load, or make what it presses on stiffer")
         for case in self.cases:
             if np.isnan(case.factor) and not case.bound >= bound:

@@ -103,7 +103,7 @@ def _small_text(small: SecondOrder | None) -> str | None:
 def _workspace_tables(workspace: study.Workspace) -> Iterator[Table | None]:
     """The tables of motion first, then those of strength."""
     yield tables.stroke_table(workspace)
-    yield None if workspace.corner is None else tables.corner_table(workspace.corner)
+    yield None if workspace.worst_case is None else tables.corner_table(workspace.worst_case)
     yield None if workspace.polytope is None else tables.extent_table(workspace.polytope)
     yield None if workspace.map_error is None else tables.map_error_table(workspace.map_error)
     yield None if workspace.drive is None else row_table("Drive", workspace.drive)

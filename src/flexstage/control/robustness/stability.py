@@ -42,14 +42,14 @@ class Pole:
 class Verdict(InNotebook):
     """Whether a loop is stable: all closed-loop poles decay, exact hold and delay included.
 
-    `least` is the least stable pole, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands
+    `slowest_pole` is the least stable, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands
     multiplied by the same factor the loop is stable between `gain_low` and `gain_high`: the interval around 1 of a stable loop (0 and
     infinite: no edge within a factor of 1000), the nearest one below 1 of an unstable loop (NaN: none down to 1/1000). `sentence` says it
     in words.
     """
 
     stable: bool
-    least: Pole
+    slowest_pole: Pole
     poles: Array
     gain_low: float
     gain_high: float
@@ -65,7 +65,7 @@ def verdict(closed: Loop) -> Verdict:
     of 40 %.
 
     >>> from flexstage.control.example import integral_loop
-    >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).least.source
+    >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
     (True, 'mode 2 at 1674 Hz')
     >>> found = verdict(integral_loop(gain=1e5))
     >>> found.stable, found.gain_high < 1.0

@@ -58,7 +58,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     lines = [
         FrontLine(kind_name(name), name in found.front, one.rejection, one.noise, one.settling, one.delay_margin)
         for name, each in found.controllers.items()
-        if (one := each.turned) is not None and len(one.gains)
+        if (one := each.detuned) is not None and len(one.gains)
     ]
     caption = (
         "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "

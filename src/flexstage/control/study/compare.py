@@ -41,8 +41,8 @@ _TURNED = np.geomspace(1.0, 0.1, 9)
 
 
 @dataclass(frozen=True, eq=False)
-class Turned:
-    """A controller as it was tuned, and turned down: its output times `gains` (g,), those that are stable.
+class DetunedController:
+    """Detuned controller: the tuned one with its output times `gains` (g,), those that are stable.
 
     By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` (NaN: longer than the step
     that is looked at) and `delay_margin`; `noise` is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing
@@ -62,8 +62,8 @@ class Rival:
 
     `peak` is the coupled peak of S, `rejection` where |S| first rises through 1, `noise` the rms at rest, `settling` the time
     to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
-    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `turned`
-    what it comes to with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
+    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `detuned`
+    is the same with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
     `cautions` are the loop's.
     """
 
@@ -77,7 +77,7 @@ class Rival:
     overshoot: Annotated[Array, Along("coordinates")]
     delay_margin: Annotated[float, TIME]
     gauge_share: float | None
-    turned: Turned | None = None
+    detuned: DetunedController | None = None
     slowly_rounding: tuple[str, ...] = ()
     cautions: Annotated[tuple[Finding, ...], INNER] = ()
 
@@ -232,13 +232,13 @@ def rival(study: LoopStudy) -> Rival:
         overshoot=np.array([steps[name].overshoot for name in names]),
         delay_margin=min(each.delay.value for each in study.margins.channels),
         gauge_share=_gauge_share(study.noise),
-        turned=_turned(study, float(np.max(settling))),
+        detuned=_detuned(study, float(np.max(settling))),
         slowly_rounding=study.noise.slowly_rounding,
         cautions=study.cautions,
     )
 
 
-def _turned(study: LoopStudy, settling: float) -> Turned:
+def _detuned(study: LoopStudy, settling: float) -> DetunedController:
     """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
@@ -250,7 +250,7 @@ def _turned(study: LoopStudy, settling: float) -> Turned:
     noises, settled = (np.array(each) for each in ([one.noise for one in found], [np.max(one.settling) for one in found]))
     settled = np.where(settled < _SEEN * _step_length(tried), settled, np.nan)
     settled = np.where(np.isnan(settled) & (np.array(stable) == 1.0), settling, settled)
-    return Turned(
+    return DetunedController(
         gains=np.array(stable),
         rejection=np.array([np.min(each.rejection[0]) for each in found]),
         noise=np.exp(np.mean(np.log(noises), axis=1)) if found and np.all(noises > 0.0) else np.zeros(0),

@@ -320,7 +320,7 @@ def advance(seen: View, within: Field, known: Decentralised) -> Found:
             part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
         starts = [own, *_calmed(part, [own], _BACK)]
         if within.spec.objective is TuningObjective.SETTLING:  # what rejects far too settles soon
-            balanced = replace(part, spec=replace(part.spec, aim=TuningObjective.BALANCE))
+            balanced = replace(part, spec=replace(part.spec, objective=TuningObjective.BALANCE))
             starts.insert(0, _climb(balanced, starts, _frequencies_of_aim(balanced, own)))
         found = _climb(part, starts, _frequencies_of_aim(part, starts[0]))
         for place, loop in enumerate(block):

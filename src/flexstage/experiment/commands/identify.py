@@ -93,7 +93,7 @@ def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:
     doubts = tuple(f"{each}." for each in compare(mechanism, seen.found).misnamed)
     for each in doubts:
         print_warning(each)
-    return replace(seen, found=replace(seen.found, warnings=(*seen.found.warnings, *doubts))) if doubts else seen
+    return replace(seen, found=replace(seen.found, warnings=(*seen.found.data_warnings, *doubts))) if doubts else seen
 
 
 def _body(seen: Identification, shapes: StageShapes | None) -> SideBySide:

@@ -91,7 +91,7 @@ def identify(
 def _with_doubts(found: Identified) -> Identified:
     """What was found, with a caution for every channel that comes later than the others."""
     late = tuple(late_channels(found))
-    return replace(found, warnings=(*found.warnings, *late)) if late else found
+    return replace(found, warnings=(*found.data_warnings, *late)) if late else found
 
 
 def _without_delay(known: Evidence, search: Search, found: Identified) -> Identified:
@@ -266,7 +266,7 @@ def _result(
         stabilisation=diagrams,
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
-        warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
+        data_warnings=warnings(known, Modes(poles, close, share[order], widening[order]), reach),
         peaks=peaks(known, Left(lines, rest, poles), refused, lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )

@@ -54,7 +54,7 @@ def found_section(seen: Identification) -> Section | None:
     found = seen.found
     text = text if found.inputs else _FLOOR
     shapes = measured_shape_table(found) if len(found.frequencies) else None
-    blocks = [recorded_table(seen.test), warning_table(found.warnings), identified_table(found), peak_table(found.peaks), shapes]
+    blocks = [recorded_table(seen.test), warning_table(found.data_warnings), identified_table(found), peak_table(found.peaks), shapes]
     return section("Modes found", [*blocks, Prose(text)])
 
 
@@ -165,4 +165,4 @@ def compare_section(found: Compared) -> Section | None:
 
 def compare_tables(found: Compared) -> tuple[Table | None, ...]:
     """The tables of a comparison, in order."""
-    return compare_table(found), repeated_table(found), further_table(found), warning_table(found.warnings)
+    return compare_table(found), repeated_table(found), further_table(found), warning_table(found.data_warnings)

@@ -143,7 +143,7 @@ class Updated(InNotebook):
     assumed: Prior
     mechanism: Mechanism
     compared: Compared
-    warnings: tuple[str, ...]
+    data_warnings: tuple[str, ...]
     provenance: str
 
     @property
@@ -364,7 +364,7 @@ def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: in
         assumed=data.known,
         mechanism=found.state.mechanism,
         compared=compared,
-        warnings=(*compared.warnings, *_cautions(data, found, compared)),
+        data_warnings=(*compared.data_warnings, *_cautions(data, found, compared)),
         provenance=compared.provenance,
     )
 

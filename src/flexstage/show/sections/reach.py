@@ -42,7 +42,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
         [
             stroke_table(reach),
             picture,
-            None if reach.corner is None else corner_table(reach.corner),
+            None if reach.worst_case is None else corner_table(reach.worst_case),
             None if reach.gauges is None else gauge_range_table(reach.gauges),
             None if reach.resolution is None else resolution_table(reach.resolution),
             fold(

@@ -228,9 +228,9 @@ def _strength_text(analysis: Analysis) -> str | None:
     buckling = analysis.buckling if reach is None else reach.buckling
     said: list[str] = []
     if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {_first(reach.stress.least, 4)} against yield, in {reach.stress.weakest}")
+        said.append(f"least safety factor {_first(reach.stress.min_safety, 4)} against yield, in {reach.stress.weakest}")
     if buckling is not None:
-        said.append(f"load factor of buckling {_first(buckling.least, 4)}")
+        said.append(f"load factor of buckling {_first(buckling.min_factor, 4)}")
     return f"Strength: {', '.join(said)}." if said else None
 
 
