@@ -262,7 +262,7 @@ def test_both_loops_are_held_against_the_amplifiers_speed(size, held):
     use = run.legs["B"]
     assert use.slew == pytest.approx(1800.0 * 38e-6 / 140.0)
     assert use.is_held == held
-    assert any("as if its amplifier gave it" in each.what for each in run.cautions) != held
+    assert any("as if its amplifier gave it" in each.what for each in run.warnings) != held
 
 
 LIMITED = {
@@ -332,7 +332,7 @@ def test_damping_that_is_not_reached_is_said():
     for rate, reached in ((None, 0.3), (10e3, 0.01)):
         study = loop_study(case("parallelogram"), LoopSetup(damping=DampingSetup(ratio=0.3, rate=rate)))
         assert study.damping.reached == pytest.approx(reached, rel=0.15)
-        told = [each.where for each in study.cautions if "was asked for, and the least" in each.what]
+        told = [each.where for each in study.warnings if "was asked for, and the least" in each.what]
         assert told == (["damping.ratio"] if rate else [])
 
 

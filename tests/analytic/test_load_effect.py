@@ -314,7 +314,7 @@ def test_the_error_over_strokes_is_that_of_kinematics_alone():
 
 @pytest.mark.parametrize(("dead", "stiffens"), [(1.5, 0.0), (100.0, 0.5), (1.5, 0.5)])
 def test_only_the_load_effect_says_which_stage_results_are_of(dead: float, stiffens: float):
-    doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").cautions
+    doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").warnings
     assert doubts
     assert not any("told of" in str(each) or "results are of" in str(each) for each in doubts)
 
@@ -323,5 +323,5 @@ def test_stages_guided_by_given_matrices_have_a_stroke_and_no_second_order():
     stage = fs.case("spiral-stage")
     model = fs.nonlinear(stage)
     found = fs.stroke(fs.load_path(model, "platform.z", np.array([0.0, 1e-3])))
-    assert found.cautions == ()
+    assert found.warnings == ()
     assert fs.analyse(stage).second_order is None

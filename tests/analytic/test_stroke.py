@@ -42,7 +42,7 @@ def test_what_the_drawn_stage_cannot_tell_of_long_travel():
 
 
 def test_what_is_beyond_theory_is_told():
-    told = fs.stroke(fs.load_path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).cautions
+    told = fs.stroke(fs.load_path(fs.nonlinear(guide()), "platform.y", np.array([0.0, 0.08]))).warnings
     assert told[0].where == "left"
     assert "strain" in told[0].what
 
@@ -53,7 +53,7 @@ def test_stress_above_the_limit_of_the_material_is_told(limits: dict[str, float]
     weak = replace(whole, materials={name: replace(each, **limits) for name, each in whole.materials.items()})
     found = fs.stroke(fs.load_path(fs.nonlinear(weak), "platform.y", np.array([1e-4, 4e-3])))
     assert found.along.at("1", "stress") < 1e8 < found.along.at("2", "stress")
-    assert "limit is 100 MPa" in found.cautions[0].what
+    assert "limit is 100 MPa" in found.warnings[0].what
 
 
 def test_weight_is_a_load_that_grows():
@@ -94,6 +94,6 @@ def test_what_stays_locked_is_said_once():
 
 
 def test_what_is_bent_beyond_the_theory_is_told():
-    told = " ".join(each.what for each in fs.operating_point(guide(), {"platform.y": 90e-3}).cautions)
+    told = " ".join(each.what for each in fs.operating_point(guide(), {"platform.y": 90e-3}).warnings)
     assert "beyond which no linear elastic law is physics" in told
     assert "two shapes across its width do not suffice" in told

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.analysis.assessment.judge import judge
-from flexstage.analysis.cautions import caveats
+from flexstage.analysis.caveats import caveats
 from flexstage.analysis.workspace.blocking import platform_lines, stack_lines
 from flexstage.analysis.workspace.buckling import Ends, buckling
 from flexstage.analysis.workspace.clearance import clearance
@@ -360,7 +360,7 @@ def test_the_pseudo_inverse_lets_complex_steps_through_and_stays_exact_for_gauge
 def test_motions_that_are_not_small_are_told_and_verdicts_on_them_withheld():
     """Leaves of 50 mm: beyond sqrt(2 x 1 %) of their length linear models are 1 % off; a demand below that is judged."""
     far = guide(replace(STACK, stroke=30e-3, bias=None), requirements={"stroke.x": "at least 8 mm", "safety": "at least 0.1"})
-    (told,) = (each for each in caveats(far).cautions if each.where == "stroke.x")
+    (told,) = (each for each in caveats(far).warnings if each.where == "stroke.x")
     assert "bends by 0.3 of its length" in told.what
     assert told.advice == f"Count on +-{np.sqrt(0.02) * 0.05:.4g} m"
     stroke, safety = judge(far)

@@ -106,7 +106,7 @@ def test_assignments_move_what_depends_on_a_number_and_say_what_formula_they_tak
     assert "--set numbers.thin=1.1 N" in ended.err
 
 
-def test_a_number_that_nothing_refers_to_is_a_caution(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> None:
+def test_a_number_that_nothing_refers_to_is_a_warning(folder: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: Any) -> None:
     flexstage = command_in(folder, monkeypatch, capfdbinary)
     text = (folder / "stage.toml").read_text().replace("[numbers]", '[numbers]\nspare = "3 mm"')
     (folder / "stage.toml").write_text(text)

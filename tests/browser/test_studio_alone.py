@@ -99,7 +99,7 @@ def state(revision: int, text: str = TEXT, *, page: int = 0, problems: tuple[Pro
     saved = text == TEXT
     return State(
         revision, page, "leaf.toml", "one leaf", text, digest="", saved=saved, sound=not problems, changed=0, undo=True, redo=False,
-        problems=problems, cautions=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
+        problems=problems, warnings=(), amounts=(amount,), actuators=(), axes=(), gauges=(), inputs=(), outputs=(),
         links={"leaf": 4}, paths=(), pins=(), unprotected="", drafts=(),
     )  # fmt: skip
 

@@ -91,7 +91,7 @@ def test_a_requirement_that_a_path_meets_is_met_and_what_is_demanded_beyond_is_w
     """The same end, asked for less than it bears, and for more than it does; of a column always, below."""
     (met,) = judge(replace(OUT, requirements={"out.buckling at 0 mm": "at least 2"}))
     assert met.passed
-    told = buckling_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).cautions
+    told = buckling_factors(OUT, [load_cases(OUT)[1]], most=3.0, demand=3.0).warnings
     assert [each.where for each in told] == ["platform.x = 0 mm"]
     assert "stable up to 2.4" in told[0].what
 
@@ -110,7 +110,7 @@ def test_what_hangs_bears_any_weight() -> None:
     """Nothing gives way: the factor is infinite, requirements on it are met, and nothing is warned of."""
     hangs = replace(STAGE, gravity=(0.0, 0.0, -1e-9), paths={}, requirements={"buckling.factor": "at least 3"})
     assert np.isinf(buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).cases[0].factor)
-    assert not buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).cautions
+    assert not buckling_factors(hangs, load_cases(hangs)[:1], most=100.0).warnings
 
 
 def test_a_preload_is_a_load_that_grows() -> None:
@@ -130,5 +130,5 @@ def test_a_preload_is_a_load_that_grows() -> None:
     (found,) = buckling_factors(column).cases
     assert (found.load, found.place, found.kind) == (STATED, REST, "bifurcation")
     assert 0.5 * found.factor == pytest.approx(np.pi**2 * 200e9 * np.pi * 2e-3**4 / 64.0 / 0.2**2, rel=1e-3)
-    (told,) = buckling_factors(column, demand=80.0).cautions
+    (told,) = buckling_factors(column, demand=80.0).warnings
     assert told.where == REST

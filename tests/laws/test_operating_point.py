@@ -129,7 +129,7 @@ def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: 
 
 def test_drives_that_do_nothing_are_told():
     stage = parallelogram()
-    assert [each.where for each in operating_point(stage, loads={"platform.fy": 0.0}).cautions] == ["platform.fy"]
+    assert [each.where for each in operating_point(stage, loads={"platform.fy": 0.0}).warnings] == ["platform.fy"]
 
 
 def test_a_traced_load_keeps_what_is_held():

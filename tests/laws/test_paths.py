@@ -12,7 +12,7 @@ import flexstage as fs
 from flexstage.analysis.assessment.judge import judge, measure_all
 from flexstage.analysis.assessment.measures import measure_kind
 from flexstage.analysis.assessment.requirements import measure, requirements
-from flexstage.analysis.cautions import model_findings
+from flexstage.analysis.caveats import model_findings
 from flexstage.analysis.loaded.course import course
 from flexstage.mechanism.design import design, designs
 from flexstage.mechanism.store import dumps, loads

@@ -166,7 +166,7 @@ def test_stated_modes_are_kept_to_and_what_they_hide_is_said_with_numbers():
     stated = loop_study(stage, LoopSetup(modes=2))
     assert len(stated.plant.frequencies) == 2
     assert not stated.retention.complete
-    (warning,) = [str(each) for each in stated.cautions if each.where == "modes"]
+    (warning,) = [str(each) for each in stated.warnings if each.where == "modes"]
     every = loop(retain_modes(stated.settled, np.ones(24, dtype=bool)).plant, stated.controller.system)
     for closed in (stated.closed, every):
         assert f"the peak of S is {peaks(closed, LoopBreak.POSE).sensitivity.value:.3g}"[:-1] in warning

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.cautions import defaults
+from flexstage.analysis.caveats import defaults
 from flexstage.analysis.linear_statics.units import units
 from flexstage.analysis.trust import Trust
 from flexstage.base.finding import DesignError

@@ -1,4 +1,4 @@
-"""What voice coils bear over a course: i^2 R of the simulated current, by the coil's own data, and a caution above what it is held at."""
+"""What voice coils bear over a course: i^2 R of the simulated current, by the coil's own data, and a warning above what it is held at."""
 
 import numpy as np
 import pytest
@@ -20,4 +20,4 @@ def test_heat_is_that_of_the_simulated_current():
         assert found.power == (None if part.resistance is None else pytest.approx(found.rms**2 * part.resistance))
         told = part.resistance is not None and part.thermal_resistance is not None
         assert found.warming == (pytest.approx(found.power * part.thermal_resistance) if told else None)
-        assert any("for ever" in each.what for each in run.cautions) is (found.held is not None and found.rms > found.held)
+        assert any("for ever" in each.what for each in run.warnings) is (found.held is not None and found.rms > found.held)

@@ -150,13 +150,13 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """The modes of the records, each caution told; with the model of the stage and its `highest` mode [Hz] where they are known."""
+    """The modes of the records, each warning told; with the model of the stage and its `highest` mode [Hz] where they are known."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown:
         test = usable_measurement(open_records(paths, reader), reader.accept_faults, needs, shown.share)
         seen = identification(test, search, shown.share)
-    for caution in seen.found.data_warnings:
-        print_warning(caution)
+    for warning in seen.found.data_warnings:
+        print_warning(warning)
     return seen
 
 

@@ -47,7 +47,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
             seen, motion=f"path {path.drive}", said="Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
         ),
         section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
         drawing_section(mechanism, seen),
     )
@@ -88,7 +88,7 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | No
         stage_section(seen, motion="state buckling", said=moves) if known else stage_section(seen),
         section("What gives way", [None if least is None else _buckling_facts(least), *buckling_tables(found)]),
         None if after is None else _beyond_section(after.stroke),
-        caveat_section(mechanism, found.cautions if after is None else (*found.cautions, *after.stroke.cautions)),
+        caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
         drawing_section(mechanism, seen),
     )
     good = least is None or least.factor >= max(1.0, found.demand)
@@ -158,7 +158,7 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
     sections = (
         _misaligned_stage(seen, data),
         _misaligned_curves(found),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Point by point", misaligned_tables(found)),
         drawing_section(mechanism, seen),
     )
@@ -202,7 +202,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
         stage_section(seen) if worst is None else _misaligned_stage(seen, data),
         section("Copy by copy", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
         drawing_section(mechanism, seen),
     )

@@ -111,7 +111,7 @@ class CaseFactors(InNotebook):
         return min(unknown, key=lambda case: case.bound, default=None)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """Cases that bear less than they have, or less than is asked."""
         return tuple(self._doubts())
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.loaded.strained import strain_cautions
+from flexstage.analysis.loaded.strained import strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, LowerBoundError, refuse, suggest_nearest
 from flexstage.base.labelled import Matrix
@@ -56,9 +56,9 @@ class Misaligned(InNotebook):
     provenance: str
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory at these sizes."""
-        return tuple(strain_cautions(self.strained))
+        return tuple(strain_warnings(self.strained))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +78,9 @@ class Misalignments(InNotebook):
     worst: Misaligned | None
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory in the worst of them."""
-        return () if self.worst is None else self.worst.cautions
+        return () if self.worst is None else self.worst.warnings
 
 
 @check_arguments

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -57,9 +57,9 @@ class OperatingPoint(InNotebook):
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory there, and drives that do nothing."""
-        return (*self.doubts, *strain_cautions(strains(self.state)), *left_out(self.state))
+        return (*self.doubts, *strain_warnings(strains(self.state)), *left_out(self.state))
 
 
 @check_arguments

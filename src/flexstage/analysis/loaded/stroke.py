@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from flexstage.analysis.loaded.operating_point import coordinate
-from flexstage.analysis.loaded.strained import left_out, strain_cautions
+from flexstage.analysis.loaded.strained import left_out, strain_warnings
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding
 from flexstage.base.labelled import Matrix
@@ -54,9 +54,9 @@ class Stroke(InNotebook):
     provenance: str
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is beyond the theory, or not found."""
-        return (*_cautions(self), *self.doubts)
+        return (*_warnings(self), *self.doubts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,8 +213,8 @@ def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
     return np.where(known[..., 0, 0], 1.0 / compliance, np.nan)
 
 
-def _cautions(found: Stroke) -> Iterator[Finding]:
-    yield from strain_cautions(found.strained)
+def _warnings(found: Stroke) -> Iterator[Finding]:
+    yield from strain_warnings(found.strained)
     lost = np.isnan(found.along.values[:, -2])
     if lost.any():
         what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {_first(found, lost)}"

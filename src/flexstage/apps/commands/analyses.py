@@ -135,7 +135,7 @@ def stiffness(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -190,7 +190,7 @@ def lost_motion(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -251,7 +251,7 @@ def modes(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 
@@ -333,7 +333,7 @@ def response(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=there.cautions,
+        warnings=there.warnings,
     )
 
 

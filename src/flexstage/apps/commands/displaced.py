@@ -96,7 +96,7 @@ def stroke(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        warnings=found.warnings,
         beside=(report,),
     )
 
@@ -199,7 +199,7 @@ def buckle(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions if after is None else (*found.cautions, *after.stroke.cautions),
+        warnings=found.warnings if after is None else (*found.warnings, *after.stroke.warnings),
         beside=(report,),
     )
 
@@ -278,7 +278,7 @@ def misalign(  # noqa: PLR0913 (its options)
             json=json,
             csv=csv,
             xlsx=xlsx,
-            cautions=told.cautions,
+            warnings=told.warnings,
             beside=(report,),
         )
         return
@@ -293,7 +293,7 @@ def misalign(  # noqa: PLR0913 (its options)
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=found.cautions,
+        warnings=found.warnings,
         beside=(report,),
     )
 

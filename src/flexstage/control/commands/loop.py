@@ -303,7 +303,7 @@ def _compare(asking: _Asking, outputs: _Written) -> None:
         json=outputs.json,
         csv=outputs.csv,
         xlsx=outputs.xlsx,
-        cautions=(*stands.cautions, *rivals.cautions),
+        warnings=(*stands.warnings, *rivals.warnings),
         beside=(outputs.report,),
     )
 
@@ -329,7 +329,7 @@ def _close(asking: _Asking, outputs: _Written) -> None:
         json=outputs.json,
         csv=outputs.csv,
         xlsx=outputs.xlsx,
-        cautions=(*stands.cautions, *found.cautions),
+        warnings=(*stands.warnings, *found.warnings),
         beside=(outputs.report,),
     )
 

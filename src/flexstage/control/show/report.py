@@ -40,7 +40,7 @@ def loop_report(found: LoopStudy) -> str:
     sections = (
         stage_section(scene(mechanism), motion=played or first_motion(data)),
         loop_section(found),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         frequency_section(found),
         measured_section(found),
         time_section(found),
@@ -68,7 +68,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     sections = (
         stage_section(scene(mechanism), motion=first_motion(data)),
         section("Controllers side by side", [comparison_table(found), drawn if lines else None]),
-        caveat_section(mechanism, found.cautions),
+        caveat_section(mechanism, found.warnings),
         section("Motion by motion", [rivals_table(found)]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))

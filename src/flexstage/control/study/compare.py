@@ -64,7 +64,7 @@ class Rival:
     to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
     the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `detuned`
     is the same with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
-    `cautions` are the loop's.
+    `warnings` are the loop's.
     """
 
     coordinates: tuple[str, ...]
@@ -79,7 +79,7 @@ class Rival:
     gauge_share: float | None
     detuned: DetunedController | None = None
     slowly_rounding: tuple[str, ...] = ()
-    cautions: Annotated[tuple[Finding, ...], INNER] = ()
+    warnings: Annotated[tuple[Finding, ...], INNER] = ()
 
     @property
     def figures(self) -> Mapping[str, float]:
@@ -109,9 +109,9 @@ class Comparison(InNotebook):
         return {aim: min((name for name in every if aim in every[name]), key=lambda name: every[name][aim]) for aim in aims}
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What holds of every controller."""
-        every = [each.cautions for each in self.controllers.values()]
+        every = [each.warnings for each in self.controllers.values()]
         return tuple(each for each in dict.fromkeys(every[0] if every else ()) if all(each in others for others in every))
 
     @property
@@ -234,7 +234,7 @@ def rival(study: LoopStudy) -> Rival:
         gauge_share=_gauge_share(study.noise),
         detuned=_detuned(study, float(np.max(settling))),
         slowly_rounding=study.noise.slowly_rounding,
-        cautions=study.cautions,
+        warnings=study.warnings,
     )
 
 

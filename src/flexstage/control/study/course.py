@@ -170,7 +170,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     return [Finding(f"trajectory {course.name}", each.what, each.advice) for each in found]
 
 
-def course_cautions(
+def course_warnings(
     course: Course, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
     """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""

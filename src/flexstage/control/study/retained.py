@@ -50,7 +50,7 @@ def control_and_modes(
             control = make_controller(given, gains)
 
 
-def stated_modes_cautions(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
+def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
     """Margins with the modes that matter, where the set-up states fewer and a margin is another with more."""
     if given.setup.modes is None or found.complete:
         return []

@@ -94,8 +94,8 @@ def update(  # noqa: PLR0913 (its options)
     seen = identify_records(record, texts, model, highest_mode(mechanism, model))
     found = updating.update(mechanism, seen.found, chosen, known)
     save(output, updated_text(text, found, ", ".join(path.name for path in record), where=str(design)), "--output")
-    for caution in found.data_warnings[len(seen.found.data_warnings) :]:
-        print_warning(caution)
+    for warning in found.data_warnings[len(seen.found.data_warnings) :]:
+        print_warning(warning)
     answer(
         "update",
         mechanism,

@@ -364,12 +364,12 @@ def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: in
         assumed=data.known,
         mechanism=found.state.mechanism,
         compared=compared,
-        data_warnings=(*compared.data_warnings, *_cautions(data, found, compared)),
+        data_warnings=(*compared.data_warnings, *_warnings(data, found, compared)),
         provenance=compared.provenance,
     )
 
 
-def _cautions(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
+def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
     """What not to rely on, besides what the comparison says."""
     freed, errors = data.freed, data.known
     if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:

@@ -134,9 +134,9 @@ class Footing:
             yield from _operating_point_tables(self.operating_point)
 
     @property
-    def cautions(self) -> tuple[Finding, ...]:
+    def warnings(self) -> tuple[Finding, ...]:
         """What is doubtful where the stage stands."""
-        return () if self.operating_point is None else self.operating_point.cautions
+        return () if self.operating_point is None else self.operating_point.warnings
 
 
 def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Footing:

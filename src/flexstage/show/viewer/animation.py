@@ -53,14 +53,14 @@ def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: st
     """
     still = still_data(mechanism, text=text)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
-    return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.cautions))
+    return replace(still, motions=tuple(motions), notes=tuple(str(each) for each in found.warnings))
 
 
 def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     """A stage as one of its copies is forced into a misaligned seat: one motion from none to all of it."""
     still = still_data(mechanism)
     motion = _along(still, found.state, f"{found.copy} {found.axis}", found)
-    return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.cautions))
+    return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.warnings))
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:

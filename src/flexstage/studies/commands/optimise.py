@@ -56,11 +56,11 @@ def optimise(
     _require_solution(found)
     if isinstance(found, Optimum) and found.final is not None:
         values = values_of(asked, found.final.shares)
-        cautions = require_stable(asked, values)
+        warnings = require_stable(asked, values)
         if output is not None:
             save(output, write_optimum(design_text(asked, study.parent), asked, definition, values, where=str(source or study)), "--output")
     else:
-        cautions = loaded_findings(asked)
+        warnings = loaded_findings(asked)
     if report is not None:
         save(report, optimise_report(found) if isinstance(found, Optimum) else front_report(found), "--report")
     answer(
@@ -72,7 +72,7 @@ def optimise(
         json=json,
         csv=csv,
         xlsx=xlsx,
-        cautions=cautions,
+        warnings=warnings,
         beside=(output, report),
     )
 

@@ -37,7 +37,7 @@ def optimise_report(found: Optimum) -> str:
     Raises `DesignError` where the best design does not hold under its dead load.
     """
     study = found.study
-    cautions = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
+    warnings = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
     objective, variables, limits, *rest = optimise_tables(found)
     search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
     final = None if found.final is None else study.mechanism_for(values_of(study, found.final.shares))
@@ -47,7 +47,7 @@ def optimise_report(found: Optimum) -> str:
     sections: list[Section | None] = [
         _stage(study, final, stages),
         section("Objective", [objective, search]),
-        caveat_section(study.design, cautions),
+        caveat_section(study.design, warnings),
         section("Variables", [variables]),
         section("Limits", [limits, *rest[:-1]]),
         section("Starts", rest[-1:]),
