@@ -158,7 +158,7 @@ from flexstage.models.nonlinear.linearise import (
 from flexstage.models.nonlinear.paths.load_path import (
     post_buckling_path as post_buckling_path,
     load_path as load_path,
-    trace as trace,
+    continuation as continuation,
 )
 from flexstage.models.nonlinear.gradients import (
     evaluate_designs as evaluate_designs,

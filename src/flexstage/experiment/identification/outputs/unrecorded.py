@@ -110,7 +110,7 @@ def identify_decay(records: Sequence[Record], search: Search, tell: Tell | None 
     said = f"a free decay is taken from where outputs are largest: {began}."
     return replace(
         found,
-        warnings=(_UNSCALED, said, *found.data_warnings),
+        data_warnings=(_UNSCALED, said, *found.data_warnings),
         provenance=f"identified from free decays in {where}: pLSCF, then maximum likelihood",
     )
 
