@@ -259,5 +259,5 @@ def test_the_report_shows_the_reach():
     """Where strokes would stand: how far, and what holding it takes."""
     shown = workspace_section(analyse(stage(LIMITED)))
     assert shown is not None
-    assert shown.title == "Reach"
+    assert shown.title == "Force workspace"
     assert [each.title for each in shown.blocks] == ["Reach", "What holding it takes"]

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import state
 else:
     cases = Late("flexstage.analysis.loaded.load_cases")
-    critical = Late("flexstage.models.nonlinear.paths.critical_load")
+    critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
     state = Late("flexstage.models.nonlinear.state")
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
@@ -542,7 +542,7 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
     for case in load_cases:
         try:
             factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
-        except critical.NothingGivesWayError:
+        except critical_load.NothingGivesWayError:
             continue
         except LowerBoundError as found:
             factor, error = found.bound, found
